@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+# Warnings and float rules for our own targets; nothing of this reaches a user of the library.
+function(raycontact_strict target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    # No contraction anywhere: one fused multiply-add changes a bit, and a bit changes the hash.
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
+    if(RAYCONTACT_STRICT)
+        target_compile_options(${target} PRIVATE -Werror)
+    endif()
+endfunction()

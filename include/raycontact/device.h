@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace raycontact {
+
+/// A device as `raycontact devices` lists it.
+struct DeviceInfo {
+    std::string id;     ///< "cpu", "opencl:i", "cuda:i"
+    std::string kind;   ///< "cpu", "opencl" or "cuda"
+    std::string name;
+    std::string driver;
+    std::uint32_t cores = 0;
+    std::uint64_t memory_bytes = 0;
+    bool exact = false;  ///< correctly rounded division and root, denormals: same bits as every other exact device
+    bool usable = false;
+    std::string why_not; ///< empty when usable
+};
+
+/// Every device found on this machine; drivers are looked for at run time. Never throws for a missing driver.
+std::vector<DeviceInfo> list_devices();
+
+} // namespace raycontact

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/pose.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace raycontact {
+
+/// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
+/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order; polygons split as fans).
+struct Mesh {
+    std::string name;                                     ///< for messages; the file name when loaded
+    std::vector<Vec3> vertices;                           ///< metres, body frame
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+};
+
+/// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
+/// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: a missing,
+/// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
+Mesh load_mesh(const std::filesystem::path& file);
+
+/// What a mesh is, after the repairs it names.
+struct MeshReport {
+    std::uint64_t vertices = 0;       ///< distinct positions in use by a triangle
+    std::uint64_t triangles = 0;      ///< kept
+    std::uint64_t file_vertices = 0;  ///< as in the file
+    std::uint64_t file_triangles = 0; ///< as in the file, polygons split
+    bool closed = false;              ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
+    bool manifold = false;            ///< no edge has more than two triangles, no vertex more than one fan
+    bool oriented = false;            ///< across every shared edge the two triangles wind the same way
+    bool self_intersecting = false;   ///< two triangles meet elsewhere than in their shared vertices or edge
+    bool outward = false;             ///< closed and oriented, winding number 0 outside and 1 inside everywhere
+    std::uint64_t components = 0;     ///< connected over shared vertices
+    double volume = 0;                ///< m^3, signed; 0 when not closed
+    double area = 0;                  ///< m^2
+    Vec3 box_min, box_max;            ///< body frame, metres
+    std::vector<std::string> repairs; ///< in words with counts; empty when nothing was changed
+};
+
+/// Whether prepare_mesh may change anything beyond welding for connectivity.
+enum class Repair {
+    allowed, ///< drop degenerate triangles, make windings agree, turn components whose winding contradicts their nesting
+    as_is,   ///< change nothing; connectivity is still found by exact position
+};
+
+/// A mesh ready to become a shape: welded by exact position, checked, with the way back to the file's indices.
+struct PreparedMesh {
+    std::string name;
+    std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
+    std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
+    std::vector<std::uint32_t> vertex_index;             ///< file index (the lowest, where several were welded) of each vertex
+    std::vector<std::uint32_t> triangle_index;           ///< file index of each triangle
+    MeshReport report;
+};
+
+/// Welds, checks and, where allowed, repairs. Throws InputError when no triangle with an area is left.
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed);
+
+/// As text for a person, or as the JSON of `raycontact mesh --json`.
+std::string to_text(const MeshReport& report);
+std::string to_json(const MeshReport& report);
+
+} // namespace raycontact

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+
+namespace raycontact {
+
+/// A point or direction in double precision; metres or unitless, the frame is said where it is used.
+struct Vec3 {
+    double x = 0, y = 0, z = 0;
+    friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+/// Rigid placement of a body: x_world = rotation * x_body + translation. Right-handed, metres.
+struct Pose {
+    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< row-major, orthonormal, determinant +1
+    Vec3 translation{};
+    friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+/// From a row-major 4x4 matrix. Throws InputError when an entry is not finite or the matrix is not rigid to 1e-4
+/// (sheared, scaled or mirrored). Within that, the nearest rotation is taken (polar decomposition), so the rest of
+/// the library may rely on rotation^T being its inverse.
+Pose pose_from_matrix(std::span<const double, 16> row_major);
+
+/// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero or not finite.
+Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y, double z);
+
+/// Throws InputError naming `who` unless every entry is finite and the rotation is orthonormal to 1e-4, unmirrored.
+void check_pose(const Pose& pose, const char* who);
+
+/// The point in the world frame, double precision.
+Vec3 transform_point(const Pose& pose, const Vec3& body_point);
+
+/// The pose of `inner` seen from the frame of `outer`: inverse(outer) * inner, formed in double precision.
+Pose relative_pose(const Pose& outer, const Pose& inner);
+
+} // namespace raycontact

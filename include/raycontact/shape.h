@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/mesh.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace raycontact {
+
+struct ShapeData;
+
+/// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
+/// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to read from any thread.
+class Shape {
+public:
+    /// From a prepared mesh. Deterministic: equal input gives equal bits. Throws InputError for a mesh without area.
+    static std::shared_ptr<const Shape> make(const PreparedMesh& mesh);
+    /// From a mesh, prepared with all repairs allowed; report() says which were made.
+    static std::shared_ptr<const Shape> make(const Mesh& mesh);
+
+    ~Shape();
+    Shape(const Shape&) = delete;
+    Shape& operator=(const Shape&) = delete;
+
+    const std::string& name() const;
+    const MeshReport& report() const;
+
+    /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far from
+    /// their origin lose nothing; these positions are exactly centre + float32 offset, in double.
+    std::span<const Vec3> vertices() const;
+    std::span<const std::array<std::uint32_t, 3>> triangles() const;
+    std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex
+    std::span<const std::uint32_t> triangle_index() const; ///< file index of each triangle
+    Vec3 centre() const;
+    Vec3 box_min() const; ///< body frame
+    Vec3 box_max() const;
+    double radius() const; ///< largest distance of a vertex from the body origin, metres
+
+    /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero where
+    /// the triangles around a vertex cancel out: such a vertex casts no ray.
+    std::span<const Vec3> vertex_normals() const;
+    /// How far the ray from a vertex along its inward normal travels inside its own mesh, metres: t_max of its rays.
+    /// +inf where it never leaves, 0 where it points out of the mesh at once.
+    std::span<const float> exit_distances() const;
+    /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several meet.
+    std::span<const std::array<std::uint32_t, 3>> neighbours() const;
+    static constexpr std::uint32_t no_triangle = 0xffffffffu;
+
+    std::uint64_t memory_bytes() const;
+    const ShapeData& data() const { return *data_; } ///< the kernels' arrays; for the library's own use
+
+private:
+    explicit Shape(std::unique_ptr<ShapeData> data);
+    std::unique_ptr<ShapeData> data_;
+};
+
+} // namespace raycontact
