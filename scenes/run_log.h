@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/shape.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace raycontact::scenes {
+
+/// One step of a simulation, as the report plots it.
+struct StepRow {
+    std::uint32_t step = 0;
+    std::uint64_t pairs = 0, rays = 0, contacts = 0;
+    double step_ms = 0, narrow_ms = 0;
+    double ray_length = 0;      ///< sum over contacts, metres
+    double penetration_max = 0; ///< deepest contact, metres
+    double median_speed = 0;    ///< of the moving bodies, m/s
+};
+
+/// Poses of all bodies at the end of a step, for pictures.
+struct Frame {
+    std::uint32_t step = 0;
+    std::vector<Pose> poses;
+};
+
+/// All a report needs to know of a run.
+struct RunLog {
+    std::string scene;
+    std::uint64_t seed = 0;
+    double dt = 1.0 / 60;
+    std::vector<std::shared_ptr<const Shape>> shapes; ///< distinct shapes
+    std::vector<std::uint32_t> body_shape;            ///< index into shapes, per body
+    std::vector<bool> body_moves;                     ///< false for the ground
+    std::vector<StepRow> rows;                        ///< one a step
+    std::vector<Frame> frames;                        ///< a few, evenly over the run, the first and last included
+    std::string mesh_source;                          ///< what the meshes are and where they came from, for a person
+    std::string summary_json;                         ///< the object that `run --json` prints
+};
+
+} // namespace raycontact::scenes
