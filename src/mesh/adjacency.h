@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// One side of an edge: the edge lo < hi as met by edge `corner % 3` (0-1, 1-2, 2-0) of triangle `corner / 3`.
+struct HalfEdge {
+    std::uint32_t lo, hi, corner;
+    bool forward; ///< the triangle runs from lo to hi
+    std::uint32_t triangle() const { return corner / 3; }
+};
+
+/// Every side of every edge, sorted by (lo, hi, corner), so that the sides of one edge are neighbours in the list.
+/// Edges from a vertex to itself (degenerate triangles) are left out. Up to 2^32 / 3 triangles.
+std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles);
+
+/// Triangle across each edge (0-1, 1-2, 2-0): 0xffffffff at a border, the lowest other index where several meet.
+std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles);
+
+/// The triangles around each vertex: of(v) is ascending and names each triangle once.
+struct VertexTriangles {
+    std::vector<std::uint32_t> offsets; ///< vertex count + 1
+    std::vector<std::uint32_t> triangles;
+    std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+        return {triangles.data() + offsets[vertex], triangles.data() + offsets[vertex + 1]};
+    }
+};
+
+/// Needs every index below vertex_count.
+VertexTriangles vertex_triangles(std::span<const Triangle> triangles, std::uint32_t vertex_count);
+
+} // namespace raycontact
