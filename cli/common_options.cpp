@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_options.h"
+
+#include <raycontact/device.h>
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <vector>
+
+using raycontact::InputError;
+
+namespace {
+
+/// One DEV of the list: "cpu", "cpu/1", "opencl:0", "opencl:0/1", ...
+struct DeviceName {
+    std::string whole; ///< without the part
+    bool is_part = false;
+    std::uint32_t part = 0;
+    friend bool operator==(const DeviceName&, const DeviceName&) = default;
+};
+
+bool read_number(std::string_view text, std::uint32_t& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+DeviceName read_device(std::string_view word) {
+    const auto malformed = [&] {
+        return InputError("--devices: \"" + std::string(word)
+                          + "\" is not a device: give auto, all, or a list of cpu[/k], opencl:i[/k], cuda:i");
+    };
+    DeviceName device;
+    std::string_view whole = word;
+    if (const auto slash = word.find('/'); slash != std::string_view::npos) {
+        whole = word.substr(0, slash);
+        device.is_part = true;
+        if (!read_number(word.substr(slash + 1), device.part)) throw malformed();
+    }
+    device.whole = whole;
+    if (whole == "cpu") return device;
+    std::uint32_t index = 0;
+    const auto colon = whole.find(':');
+    if (colon == std::string_view::npos || !read_number(whole.substr(colon + 1), index)) throw malformed();
+    const std::string_view kind = whole.substr(0, colon);
+    if (kind != "opencl" && !(kind == "cuda" && !device.is_part)) throw malformed();
+    device.whole = std::string(kind) + ":" + std::to_string(index);
+    return device;
+}
+
+/// Every GPU this version can use, or the CPU where there is none.
+std::string every_gpu() {
+    std::string list;
+    for (const auto& device : raycontact::list_devices()) {
+        if (device.usable && device.kind != "cpu") list += (list.empty() ? "" : ",") + device.id;
+    }
+    return list.empty() ? "cpu" : list;
+}
+
+/// A name whose bad values are InputErrors already, so that one sentence reaches the user, with the option in front.
+template <class Read>
+void add_word(CLI::App& command, const std::string& option, const std::string& help, const std::string& shown,
+              const std::string& otherwise, Read read) {
+    command
+        .add_option_function<std::string>(
+            option,
+            [option, read](const std::string& word) {
+                try {
+                    read(word);
+                } catch (const InputError& error) {
+                    const std::string text = error.what();
+                    throw InputError(text.starts_with("--") ? text : option + ": " + text);
+                }
+            },
+            help)
+        ->type_name(shown)
+        ->default_str(otherwise);
+}
+
+} // namespace
+
+std::string device_from_list(std::string_view list) {
+    if (list == "auto") return "auto";
+    if (list == "all") return device_from_list(every_gpu());
+    std::vector<DeviceName> devices;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        devices.push_back(read_device(list.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (devices[i] == devices[j]) {
+                throw InputError("--devices: \"" + std::string(list) + "\" names a device twice; name each once");
+            }
+            if (devices[i].whole == devices[j].whole && devices[i].is_part != devices[j].is_part) {
+                throw InputError("--devices: \"" + std::string(list) + "\" names a part beside its whole ("
+                                 + devices[i].whole + "); name one or the other");
+            }
+        }
+    }
+    if (devices.size() > 1) {
+        throw InputError("--devices: \"" + std::string(list)
+                         + "\" names several devices, this version uses one at a time; name one");
+    }
+    const DeviceName& one = devices.front();
+    return one.is_part ? one.whole + "/" + std::to_string(one.part) : one.whole;
+}
+
+void add_common_options(CLI::App& command, raycontact::Settings& settings) {
+    using namespace raycontact;
+    add_word(command, "--method", "how rays are kept from step to step: standard (every ray in full, every step)",
+             "WORD", std::string(to_string(settings.method)),
+             [&](const std::string& word) { settings.method = method_from(word); });
+    add_word(command, "--caster", "how a ray meets a mesh: basic (every triangle) or bvh; same bits from both", "WORD",
+             std::string(to_string(settings.caster)),
+             [&](const std::string& word) { settings.caster = caster_from(word); });
+    add_word(command, "--direction", "what normal and depth are made of: ray or reprojected", "WORD",
+             std::string(to_string(settings.direction)),
+             [&](const std::string& word) { settings.direction = direction_from(word); });
+    add_word(command, "--devices",
+             "auto, all, or a device as `raycontact devices` lists it; cpu/k is its k-th core alone", "LIST",
+             settings.device, [&](const std::string& word) { settings.device = device_from_list(word); });
+    command.add_option("--threads", settings.threads, "threads of the CPU device, 0: one per core; changes no result")
+        ->type_name("N")
+        ->default_str("0")
+        ->check(CLI::Range(0u, 1024u));
+}
