@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common_options.h"
+#include "cli/common_options.h"
 
 #include <raycontact/device.h>
 #include <raycontact/error.h>

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/collide.h"
+
+#include "cli/common_options.h"
+#include "cli/pairs_file.h"
+
+#include <raycontact/error.h>
+#include <raycontact/scene.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace raycontact;
+using Json = nlohmann::ordered_json;
+
+struct CollideOptions {
+    std::string a, b, pairs_file;
+    bool json = false;
+    Settings settings;
+};
+
+/// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
+class ShapeCache {
+public:
+    std::shared_ptr<const Shape> get(const PairBody& body) {
+        auto& shape = shapes_[{body.file.string(), body.scale}];
+        if (!shape) shape = make(body);
+        return shape;
+    }
+
+private:
+    static std::shared_ptr<const Shape> make(const PairBody& body) {
+        try {
+            Mesh mesh = load_mesh(body.file);
+            for (Vec3& v : mesh.vertices) {
+                v = {v.x * body.scale, v.y * body.scale, v.z * body.scale};
+                if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) {
+                    throw InputError(body.file.string() + fmt::format(": too large to be scaled by {}", body.scale));
+                }
+            }
+            return Shape::make(mesh);
+        } catch (const InputError& error) {
+            throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
+        }
+    }
+
+    std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
+};
+
+Json to_json(const Contact& contact) {
+    return {{"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
+            {"vertex", contact.vertex},
+            {"triangle", contact.triangle},
+            {"point", {contact.point.x, contact.point.y, contact.point.z}},
+            {"normal", contact.normal},
+            {"depth", contact.depth},
+            {"ray_length", contact.ray_length},
+            {"key", contact_key(contact)}};
+}
+
+void print_json(std::size_t index, std::span<const Contact> contacts) {
+    Json list = Json::array();
+    for (const Contact& contact : contacts) list.push_back(to_json(contact));
+    const Json line{{"pair", index}, {"colliding", !contacts.empty()}, {"contacts", std::move(list)}};
+    std::cout << line.dump() << '\n';
+}
+
+void print_table(std::size_t index, const QueryPair& pair, std::span<const Contact> contacts) {
+    std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
+    if (contacts.empty()) {
+        std::cout << "no contact\n";
+        return;
+    }
+    const auto deepest = std::max_element(contacts.begin(), contacts.end(),
+                                          [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
+    std::cout << fmt::format("{} contact{}, deepest {:.6g} m\n", contacts.size(), contacts.size() == 1 ? "" : "s",
+                             deepest->depth);
+    std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12} {:>12}  {:<38}  {}\n", "body", "vertex", "triangle",
+                             "depth (m)", "ray (m)", "point (m)", "normal from a to b");
+    for (const Contact& c : contacts) {
+        std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12.6g} {:>12.6g}  {:>12.6g} {:>12.6g} {:>12.6g}  "
+                                 "{:>9.6f} {:>9.6f} {:>9.6f}\n",
+                                 c.vertex_body == VertexBody::a ? "a" : "b", c.vertex, c.triangle, c.depth,
+                                 c.ray_length, c.point.x, c.point.y, c.point.z, c.normal[0], c.normal[1], c.normal[2]);
+    }
+}
+
+/// Bodies 2i and 2i + 1 are a and b of pair i, so a is always the lower one. One batch is one step; its size bounds
+/// the memory of a query of any length.
+void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, ShapeCache& shapes, std::size_t first,
+                   bool json) {
+    Scene scene(settings);
+    std::vector<Pair> list;
+    list.reserve(pairs.size());
+    for (const QueryPair& pair : pairs) {
+        const BodyId a = scene.add(shapes.get(pair[0]), pair[0].pose);
+        const BodyId b = scene.add(shapes.get(pair[1]), pair[1].pose);
+        list.emplace_back(a, b);
+    }
+    const std::span<const Contact> contacts = scene.step(list);
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        std::size_t end = begin;
+        while (end < contacts.size() && contacts[end].body_a == list[i].first) ++end;
+        const auto own = contacts.subspan(begin, end - begin);
+        json ? print_json(first + i, own) : print_table(first + i, pairs[i], own);
+        begin = end;
+    }
+}
+
+std::vector<QueryPair> query_of(const CollideOptions& options) {
+    if (!options.pairs_file.empty()) return read_pairs_file(options.pairs_file);
+    if (options.a.empty() || options.b.empty()) {
+        throw InputError("collide: give two mesh files, or --pairs with a pairs file");
+    }
+    QueryPair pair;
+    pair[0].file = options.a;
+    pair[1].file = options.b;
+    return {pair};
+}
+
+void collide(const CollideOptions& options) {
+    const std::vector<QueryPair> pairs = query_of(options);
+    ShapeCache shapes;
+    for (const QueryPair& pair : pairs) {
+        for (const PairBody& body : pair) shapes.get(body);
+    }
+    const Scene checks_the_settings(options.settings);
+    constexpr std::size_t batch = 4096;
+    for (std::size_t first = 0; first < pairs.size(); first += batch) {
+        const std::size_t count = std::min(batch, pairs.size() - first);
+        collide_batch(options.settings, std::span(pairs).subspan(first, count), shapes, first, options.json);
+    }
+}
+
+} // namespace
+
+void add_collide(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("collide", "Find the contacts of two meshes, or of many pairs at once");
+    auto options = std::make_shared<CollideOptions>();
+    CLI::Option* a = command->add_option("A", options->a, "the first mesh file");
+    CLI::Option* b = command->add_option("B", options->b, "the second mesh file");
+    command
+        ->add_option("--pairs", options->pairs_file,
+                     "a JSON file of pairs: [{\"a\", \"b\", \"pose_a\", \"pose_b\", \"scale_a\", \"scale_b\"}, ...]")
+        ->type_name("FILE")
+        ->excludes(a)
+        ->excludes(b);
+    command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
+    add_common_options(*command, options->settings);
+    command->callback([options] { collide(*options); });
+}

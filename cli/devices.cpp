@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/devices.h"
+
+#include <raycontact/device.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+#include <memory>
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print_json(const std::vector<raycontact::DeviceInfo>& devices) {
+    Json list = Json::array();
+    for (const auto& device : devices) {
+        list.push_back({{"id", device.id},
+                        {"kind", device.kind},
+                        {"name", device.name},
+                        {"driver", device.driver},
+                        {"cores", device.cores},
+                        {"memory_bytes", device.memory_bytes},
+                        {"exact", device.exact},
+                        {"usable", device.usable},
+                        {"why_not", device.why_not}});
+    }
+    // Drivers choose their own names: what is not UTF-8 in them must not end the program.
+    std::cout << list.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+void print_table(const std::vector<raycontact::DeviceInfo>& devices) {
+    for (const auto& device : devices) {
+        std::cout << fmt::format(
+            "{:<10} {} ({}), {} cores, {:.1f} GiB, {}, {}\n", device.id, device.name, device.driver, device.cores,
+            static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.exact ? "exact" : "not exact",
+            device.usable ? "usable" : "not usable: " + device.why_not);
+    }
+}
+
+} // namespace
+
+void add_devices(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("devices", "List the devices of this machine");
+    auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "print one JSON array on stdout");
+    command->callback([json] {
+        const auto devices = raycontact::list_devices();
+        *json ? print_json(devices) : print_table(devices);
+    });
+}

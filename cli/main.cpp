@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/collide.h"
+#include "cli/devices.h"
+#include "cli/mesh.h"
+
+#include <raycontact/error.h>
+
+#include <CLI/CLI.hpp>
+
+#include <exception>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace {
+
+enum Status : int { fine = 0, failed = 1, bad_input = 2 };
+
+/// One line, whatever a file name or a library put into the message.
+void complain(std::string_view message) {
+    std::string line = "raycontact: ";
+    for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    std::cerr << line << '\n';
+}
+
+int run_program(int argc, char** argv) {
+    CLI::App app{"RayContact finds the contacts between moving, concave triangle meshes by casting rays.",
+                 "raycontact"};
+    app.set_version_flag("--version", "raycontact " RAYCONTACT_VERSION);
+    app.require_subcommand(1);
+    app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
+    add_devices(app);
+    add_mesh(app);
+    add_collide(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
+        complain(std::string(error.what()) + " (see raycontact --help)");
+        return bad_input;
+    }
+    if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
+    return fine;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run_program(argc, argv);
+    } catch (const raycontact::InputError& error) {
+        complain(error.what());
+        return bad_input;
+    } catch (const std::bad_alloc&) {
+        complain("not enough memory");
+    } catch (const std::exception& error) {
+        complain(error.what());
+    }
+    return failed;
+}
