@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reference/compare.h"
+
+#include "reference/vector.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace raycontact::reference {
+
+namespace {
+
+template <class... Args>
+std::string text(const char* format, Args... args) {
+    char buffer[512];
+    std::snprintf(buffer, sizeof buffer, format, args...);
+    return buffer;
+}
+
+std::string text(const Pose& pose) {
+    std::string s = "{";
+    for (const double r : pose.rotation) s += text("%a, ", r);
+    const Vec3& t = pose.translation;
+    return s + text("| %a, %a, %a}", t.x, t.y, t.z);
+}
+
+struct Difference {
+    double normal = 0, depth = 0, ray_length = 0, point = 0;
+};
+
+// One ordered pair: every ray of the reference, then what the library has beyond them.
+class Direction {
+public:
+    Direction(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose,
+              VertexBody body, Comparison& sum)
+        : source_(source), target_(target), source_pose_(source_pose), target_pose_(target_pose), body_(body),
+          sum_(sum), size_(std::max(source.diagonal, target.diagonal)) {}
+
+    void run(std::span<const Contact> contacts) {
+        std::map<std::uint32_t, const Contact*> found;
+        for (const Contact& contact : contacts)
+            if (contact.vertex_body == body_ && !found.emplace(contact.vertex, &contact).second)
+                complain("vertex reported twice", contact.vertex, nullptr, &contact);
+        for (const CastRay& ray : cast_all(source_, source_pose_, target_, target_pose_)) {
+            ++sum_.rays;
+            const std::uint32_t vertex = source_.vertex_index[ray.vertex];
+            const auto it = found.find(vertex);
+            if (ray.contact) ++sum_.contacts;
+            if (ray.contact && it == found.end()) judge("missed", ray.vertex, &ray, nullptr);
+            if (!ray.contact && it != found.end()) judge("invented", ray.vertex, nullptr, it->second);
+            if (ray.contact && it != found.end()) both(ray, *it->second);
+            if (it != found.end()) found.erase(it);
+        }
+        for (const auto& [vertex, contact] : found) { // vertices the reference holds to be out of bounds
+            const auto& index = source_.vertex_index;
+            const auto at = std::find(index.begin(), index.end(), vertex);
+            if (at == index.end())
+                complain("no such vertex", vertex, nullptr, contact);
+            else
+                judge("out of bounds", static_cast<std::uint32_t>(at - index.begin()), nullptr, contact);
+        }
+    }
+
+private:
+    void both(const CastRay& ray, const Contact& contact) {
+        const double sign = body_ == VertexBody::a ? -1 : 1;
+        const Vec3 normal{contact.normal[0], contact.normal[1], contact.normal[2]};
+        Difference d;
+        d.normal = length(normal - sign * ray.normal);
+        d.depth = std::fabs(contact.depth - ray.depth) / size_;
+        d.ray_length = std::fabs(contact.ray_length - ray.ray_length) / size_;
+        d.point = length(contact.point - ray.point) / size_;
+        const bool same = contact.triangle == target_.triangle_index[ray.triangle] && d.normal < 1e-4 && d.depth < 1e-5
+                          && d.ray_length < 1e-5 && d.point < 1e-6 && contact.depth > 0;
+        if (!same) return judge("other numbers", ray.vertex, &ray, &contact);
+        ++sum_.agreed;
+        sum_.worst_normal = std::max(sum_.worst_normal, d.normal);
+        sum_.worst_depth = std::max(sum_.worst_depth, d.depth);
+        sum_.worst_ray_length = std::max(sum_.worst_ray_length, d.ray_length);
+    }
+
+    void judge(const char* what, std::uint32_t vertex, const CastRay* ray, const Contact* contact) {
+        const Margins m = ray_margins(source_, source_pose_, target_, target_pose_, vertex);
+        if (m.least() < excuse) {
+            ++sum_.excused;
+            return;
+        }
+        const std::string margins = text(" (margins: edge %.2g, t_max %.2g, surface %.2g, bounds %.2g, exit %.2g)",
+                                         m.edge, m.t_max, m.surface, m.bounds, m.exit);
+        complain(what + margins, source_.vertex_index[vertex], ray, contact);
+    }
+
+    void complain(const std::string& what, std::uint32_t vertex, const CastRay* ray, const Contact* contact) {
+        ++sum_.wrong;
+        if (sum_.complaints.size() >= 5) return;
+        std::string s = what + text(": vertex %u of ", vertex) + source_.name + " (body "
+                        + (body_ == VertexBody::a ? "a" : "b") + ") against " + target_.name;
+        if (ray)
+            s += text("\n  reference: triangle %u, depth %.9g, ray %.9g, face normal %.6g %.6g %.6g",
+                      target_.triangle_index[ray->triangle], ray->depth, ray->ray_length, ray->normal.x, ray->normal.y,
+                      ray->normal.z);
+        if (contact)
+            s += text("\n  library: triangle %u, depth %.9g, ray %.9g, normal %.6g %.6g %.6g", contact->triangle,
+                      static_cast<double>(contact->depth), static_cast<double>(contact->ray_length),
+                      static_cast<double>(contact->normal[0]), static_cast<double>(contact->normal[1]),
+                      static_cast<double>(contact->normal[2]));
+        s += "\n  source pose " + text(source_pose_) + "\n  target pose " + text(target_pose_);
+        sum_.complaints.push_back(s);
+    }
+
+    const Solid& source_;
+    const Solid& target_;
+    const Pose& source_pose_;
+    const Pose& target_pose_;
+    VertexBody body_;
+    Comparison& sum_;
+    double size_;
+};
+
+} // namespace
+
+void compare(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b, std::span<const Contact> contacts,
+             Comparison& sum) {
+    ++sum.pairs;
+    Direction(a, pose_a, b, pose_b, VertexBody::a, sum).run(contacts);
+    Direction(b, pose_b, a, pose_a, VertexBody::b, sum).run(contacts);
+}
+
+std::string Comparison::summary() const {
+    std::string s = text("%llu pairs, %llu rays, %llu contacts: %llu agree (worst normal %.2g, depth %.2g, ray length "
+                         "%.2g), %llu rays excused (%.4f %%), %llu wrong",
+                         static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(rays),
+                         static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(agreed),
+                         worst_normal, worst_depth, worst_ray_length, static_cast<unsigned long long>(excused),
+                         rays ? 100.0 * static_cast<double>(excused) / static_cast<double>(rays) : 0.0,
+                         static_cast<unsigned long long>(wrong));
+    for (const std::string& complaint : complaints) s += "\n" + complaint;
+    return s;
+}
+
+} // namespace raycontact::reference

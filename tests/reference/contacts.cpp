@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reference/contacts.h"
+
+#include "reference/ray.h"
+#include "reference/vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycontact::reference {
+
+namespace {
+
+// From offsets of the source to offsets of the target; the centres are met before anything large is added.
+struct Relative {
+    const Solid& source;
+    const Pose& source_pose;
+    const Solid& target;
+    const Pose& target_pose;
+    Vec3 shift; ///< world: source centre minus target centre
+
+    Relative(const Solid& s, const Pose& sp, const Solid& t, const Pose& tp)
+        : source(s), source_pose(sp), target(t), target_pose(tp),
+          shift((sp.translation - tp.translation) + (rotate(sp, s.centre) - rotate(tp, t.centre))) {}
+    Vec3 point(std::uint32_t v) const {
+        return rotate_back(target_pose, rotate(source_pose, source.vertices[v]) + shift);
+    }
+    Vec3 inward(std::uint32_t v) const {
+        return unit(rotate_back(target_pose, rotate(source_pose, -source.vertex_normals[v])));
+    }
+};
+
+struct Bounds {
+    Vec3 low, high;
+
+    // An open target has no inside: a source vertex beyond its box may still have pushed its surface through it.
+    Bounds(const Solid& source, const Solid& target) : low(target.box_min), high(target.box_max) {
+        if (target.closed) return;
+        const Vec3 by{source.reach, source.reach, source.reach};
+        low = low - by;
+        high = high + by;
+    }
+    bool holds(const Vec3& p) const {
+        return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+    }
+};
+
+} // namespace
+
+std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, const Solid& target,
+                              const Pose& target_pose) {
+    const Relative relative(source, source_pose, target, target_pose);
+    const Bounds bounds(source, target);
+    RayCaster caster(target);
+    std::vector<CastRay> rays;
+    for (std::uint32_t v = 0; v < source.vertices.size(); ++v) {
+        if (source.vertex_normals[v] == Vec3{}) continue;
+        const Vec3 origin = relative.point(v);
+        if (!bounds.holds(origin)) continue;
+        CastRay ray;
+        ray.vertex = v;
+        const Vec3 direction = relative.inward(v);
+        const Hit hit = caster.closest(origin, direction);
+        if (hit.triangle != Hit::none && hit.from_inside && hit.distance <= source.exits[v]) {
+            const Vec3& normal = target.face_normals[hit.triangle];
+            ray.contact = true;
+            ray.triangle = hit.triangle;
+            ray.point = source_pose.translation + rotate(source_pose, source.centre + source.vertices[v]);
+            ray.normal = rotate(target_pose, normal);
+            ray.ray_length = hit.distance;
+            ray.depth = hit.distance * dot(direction, normal);
+        }
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b) {
+    std::vector<ReferenceContact> contacts;
+    const auto add = [&](VertexBody body, const Solid& source, const Solid& target, const std::vector<CastRay>& rays) {
+        for (const CastRay& ray : rays) {
+            if (!ray.contact) continue;
+            ReferenceContact contact;
+            contact.vertex_body = body;
+            contact.vertex = source.vertex_index[ray.vertex];
+            contact.triangle = target.triangle_index[ray.triangle];
+            contact.point = ray.point;
+            contact.normal = body == VertexBody::a ? -ray.normal : ray.normal;
+            contact.depth = ray.depth;
+            contact.ray_length = ray.ray_length;
+            contacts.push_back(contact);
+        }
+    };
+    add(VertexBody::a, a, b, cast_all(a, pose_a, b, pose_b));
+    add(VertexBody::b, b, a, cast_all(b, pose_b, a, pose_a));
+    std::stable_sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
+        return x.vertex_body != y.vertex_body ? x.vertex_body < y.vertex_body : x.vertex < y.vertex;
+    });
+    return contacts;
+}
+
+Margins ray_margins(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose,
+                    std::uint32_t vertex) {
+    const Relative relative(source, source_pose, target, target_pose);
+    const Bounds bounds(source, target);
+    const Vec3 origin = relative.point(vertex);
+    const Vec3 direction = relative.inward(vertex);
+    const double t_max = source.exits[vertex];
+    const Hit hit = RayCaster(target).closest(origin, direction);
+    const double inf = std::numeric_limits<double>::infinity();
+    const double decided = std::min(hit.distance, t_max) + 1e-5 * target.diagonal;
+
+    Margins margins;
+    margins.edge = distance_to_edges(target, origin, direction, decided) / target.diagonal;
+    margins.t_max = hit.distance < inf && t_max < inf ? std::fabs(hit.distance - t_max) / target.diagonal : inf;
+    margins.surface = distance_to_surface(target, origin) / target.diagonal;
+    margins.bounds = distance_to_box(bounds.low, bounds.high, origin) / target.diagonal;
+    margins.exit = source.exit_margins[vertex];
+    return margins;
+}
+
+} // namespace raycontact::reference
