@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// `collide`: what it prints, on two cubes whose contacts are known by hand.
+#include "expect.h"
+
+#include <cmath>
+
+namespace {
+
+using nlohmann::json;
+
+/// Row-major, no rotation.
+json translation(double x, double y, double z) {
+    return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1};
+}
+
+class Collide : public testing::Test {
+protected:
+    Collide() { folder_.write("cube.obj", cube_obj()); }
+
+    ProgramResult run(const json& pairs, std::vector<std::string> options = {"--json"}) const {
+        folder_.write("pairs.json", pairs.dump());
+        options.insert(options.begin(), {"collide", "--pairs", "pairs.json"});
+        return run_program(options, folder_.path());
+    }
+
+    /// A cube at the origin and one at (0.8, 0.7, 0.6): one corner each is inside the other.
+    static json corner_pair() { return {{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.8, 0.7, 0.6)}}; }
+
+    TemporaryFolder folder_;
+};
+
+void expect_vector(const json& vector, double x, double y, double z) {
+    ASSERT_EQ(vector.size(), 3u);
+    EXPECT_NEAR(vector[0].get<double>(), x, 1e-6);
+    EXPECT_NEAR(vector[1].get<double>(), y, 1e-6);
+    EXPECT_NEAR(vector[2].get<double>(), z, 1e-6);
+}
+
+TEST_F(Collide, TwoCorners) {
+    const auto result = run(json::array({corner_pair()}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const auto lines = json_lines(result.out);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "contacts"}));
+    EXPECT_EQ(lines[0]["pair"], 0);
+    EXPECT_EQ(lines[0]["colliding"], true);
+    const json& contacts = lines[0]["contacts"];
+    ASSERT_EQ(contacts.size(), 2u);
+    for (const json& contact : contacts) {
+        EXPECT_EQ(keys_of(contact), (std::set<std::string>{"vertex_body", "vertex", "triangle", "point", "normal",
+                                                           "depth", "ray_length", "key"}));
+        // Either corner is 0.2, 0.3, 0.4 from the faces of the other; the ray runs along the diagonal to the first.
+        EXPECT_NEAR(contact["depth"].get<double>(), 0.2, 1e-6);
+        EXPECT_NEAR(contact["ray_length"].get<double>(), 0.2 * std::sqrt(3.0), 1e-6);
+        expect_vector(contact["normal"], 1, 0, 0);
+    }
+    EXPECT_EQ(contacts[0]["vertex_body"], "a");
+    EXPECT_EQ(contacts[0]["vertex"], 6);
+    expect_vector(contacts[0]["point"], 0.5, 0.5, 0.5);
+    EXPECT_TRUE(contacts[0]["triangle"] == 10 || contacts[0]["triangle"] == 11) << contacts[0];
+    EXPECT_EQ(contacts[1]["vertex_body"], "b");
+    EXPECT_EQ(contacts[1]["vertex"], 0);
+    expect_vector(contacts[1]["point"], 0.3, 0.2, 0.1);
+    EXPECT_TRUE(contacts[1]["triangle"] == 6 || contacts[1]["triangle"] == 7) << contacts[1];
+    EXPECT_NE(contacts[0]["key"], contacts[1]["key"]);
+}
+
+TEST_F(Collide, SwappedPairTurnsTheNormals) {
+    const json swapped{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_a", translation(0.8, 0.7, 0.6)}};
+    const auto lines = json_lines(run(json::array({corner_pair(), swapped})).out);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[1]["pair"], 1);
+    ASSERT_EQ(lines[1]["contacts"].size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const json& contact = lines[1]["contacts"][i];
+        const json& other = lines[0]["contacts"][1 - i]; // the same vertex, now sorted by the other letter
+        EXPECT_NE(contact["vertex_body"], other["vertex_body"]);
+        for (const char* key : {"vertex", "triangle", "point", "depth", "ray_length"})
+            EXPECT_EQ(contact[key], other[key]) << key;
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(contact["normal"][k].get<double>(), -other["normal"][k].get<double>());
+        }
+    }
+}
+
+TEST_F(Collide, ApartIsNotColliding) {
+    const auto lines =
+        json_lines(run(json::array({{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(1.2, 0, 0)}}})).out);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0]["colliding"], false);
+    EXPECT_TRUE(lines[0]["contacts"].is_array());
+    EXPECT_TRUE(lines[0]["contacts"].empty());
+}
+
+TEST_F(Collide, ScaleIsOfTheFileNotOfThePose) {
+    // Half a cube at (0.6, 0.55, 0.5): spans 0.35 .. 0.85 in x, so its corner is 0.15 deep.
+    const json pair{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.6, 0.55, 0.5)}, {"scale_b", 0.5}};
+    const auto lines = json_lines(run(json::array({pair})).out);
+    ASSERT_EQ(lines.size(), 1u);
+    ASSERT_EQ(lines[0]["contacts"].size(), 2u) << lines[0];
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "a");
+    EXPECT_NEAR(lines[0]["contacts"][0]["depth"].get<double>(), 0.15, 1e-6);
+    expect_vector(lines[0]["contacts"][1]["point"], 0.35, 0.3, 0.25);
+}
+
+TEST_F(Collide, ManyPairsAreAnsweredInTheirOrder) {
+    json pairs = json::array();
+    for (int i = 0; i < 5000; ++i) { // more than one batch
+        json pair = corner_pair();
+        if (i % 3 == 1) pair["pose_b"] = translation(5, 0, 0);
+        pairs.push_back(pair);
+    }
+    const auto lines = json_lines(run(pairs).out);
+    ASSERT_EQ(lines.size(), 5000u);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        ASSERT_EQ(lines[i]["pair"], i);
+        ASSERT_EQ(lines[i]["colliding"], i % 3 != 1);
+        ASSERT_EQ(lines[i]["contacts"], i % 3 != 1 ? lines[0]["contacts"] : json::array());
+    }
+}
+
+TEST_F(Collide, EveryCasterAndThreadCountGivesTheSameBits) {
+    json pairs = json::array();
+    for (int i = 0; i < 50; ++i) {
+        json pair = corner_pair();
+        pair["pose_b"] = translation(0.80 - 0.01 * i, 0.7, 0.6);
+        pairs.push_back(pair);
+    }
+    const auto expected = run(pairs).out;
+    EXPECT_FALSE(expected.empty());
+    EXPECT_EQ(run(pairs, {"--json", "--caster", "basic"}).out, expected);
+    EXPECT_EQ(run(pairs, {"--json", "--caster", "bvh", "--method", "standard"}).out, expected);
+    EXPECT_EQ(run(pairs, {"--json", "--threads", "1"}).out, expected);
+    EXPECT_EQ(run(pairs, {"--json", "--threads", "3", "--devices", "cpu"}).out, expected);
+    EXPECT_EQ(run(pairs, {"--json", "--direction", "reprojected"}).out, expected);
+    EXPECT_NE(run(pairs, {"--json", "--direction", "ray"}).out, expected);
+}
+
+TEST_F(Collide, DirectionRayIsTheRayItself) {
+    const auto lines = json_lines(run(json::array({corner_pair()}), {"--json", "--direction", "ray"}).out);
+    ASSERT_EQ(lines.size(), 1u);
+    ASSERT_EQ(lines[0]["contacts"].size(), 2u);
+    for (const json& contact : lines[0]["contacts"]) {
+        EXPECT_EQ(contact["depth"], contact["ray_length"]);
+        const double third = std::sqrt(1.0 / 3);
+        expect_vector(contact["normal"], third, third, third);
+    }
+}
+
+TEST_F(Collide, TenKilometresAwayIsTheSame) {
+    const json far{{"a", "cube.obj"},
+                   {"b", "cube.obj"},
+                   {"pose_a", translation(10000, -10000, 10000)},
+                   {"pose_b", translation(10000.8, -9999.3, 10000.6)}};
+    const auto lines = json_lines(run(json::array({corner_pair(), far})).out);
+    ASSERT_EQ(lines.size(), 2u);
+    ASSERT_EQ(lines[1]["contacts"].size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const json &near_contact = lines[0]["contacts"][i], &far_contact = lines[1]["contacts"][i];
+        EXPECT_EQ(near_contact["key"], far_contact["key"]);
+        EXPECT_NEAR(near_contact["depth"].get<double>(), far_contact["depth"].get<double>(), 1e-6);
+        EXPECT_NEAR(near_contact["point"][0].get<double>() + 10000, far_contact["point"][0].get<double>(), 1e-6);
+    }
+}
+
+TEST_F(Collide, PathsAreRelativeToThePairsFile) {
+    std::filesystem::create_directory(folder_.path() / "sub");
+    folder_.write("sub/inner.obj", cube_obj());
+    folder_.write("sub/pairs.json", json::array({{{"a", "inner.obj"}, {"b", "../cube.obj"}}}).dump());
+    const auto result = run_program({"collide", "--pairs", "sub/pairs.json", "--json"}, folder_.path());
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(json_lines(result.out).size(), 1u);
+}
+
+TEST_F(Collide, TwoFilesAndTheTable) {
+    folder_.write("moved.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    const auto lines = json_lines(run_program({"collide", "cube.obj", "moved.obj", "--json"}, folder_.path()).out);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0]["pair"], 0);
+    ASSERT_EQ(lines[0]["contacts"].size(), 1u) << lines[0]; // the corner of the tetrahedron, half-way in the cube
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "b");
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex"], 0);
+    const auto table = run_program({"collide", "cube.obj", "moved.obj"}, folder_.path());
+    EXPECT_EQ(table.status, 0);
+    EXPECT_NE(table.out.find("1 contact,"), std::string::npos) << table.out;
+    EXPECT_NE(run(json::array({corner_pair()}), {}).out.find("2 contacts"), std::string::npos);
+}
+
+TEST_F(Collide, NoPairsIsNoOutput) {
+    const auto result = run(json::array());
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+}
+
+} // namespace

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the program left behind.
+struct ProgramResult {
+    int status = -1; ///< exit status; 128 + signal when it was killed
+    std::string out, err;
+};
+
+/// Runs the built program (no shell) in `folder` and waits. `out_file`: where stdout goes instead of
+/// ProgramResult::out.
+ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                          const std::string& out_file = {});
+
+/// A folder of its own, gone with the test.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+    void write(const std::string& name, std::string_view text) const;
+
+private:
+    std::filesystem::path path_;
+};
+
+/// A cube of edge 1 about the origin: 8 vertices, 12 triangles, closed, outward.
+std::string cube_obj();
+
+/// The keys of a JSON object.
+std::set<std::string> keys_of(const nlohmann::json& object);
+
+/// Every line as JSON.
+std::vector<nlohmann::json> json_lines(const std::string& text);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Help, version, exit status and the options that every subcommand shares.
+#include "expect.h"
+
+namespace {
+
+class Usage : public testing::Test {
+protected:
+    Usage() { folder_.write("cube.obj", cube_obj()); }
+    ProgramResult run(const std::vector<std::string>& arguments) const {
+        return run_program(arguments, folder_.path());
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Usage, HelpEverywhere) {
+    const auto whole = run({"--help"});
+    EXPECT_EQ(whole.status, 0);
+    for (const char* command : {"devices", "mesh", "collide", "run"}) {
+        EXPECT_NE(whole.out.find(command), std::string::npos) << command;
+        const auto help = run({command, "--help"});
+        EXPECT_EQ(help.status, 0) << command;
+        EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
+        EXPECT_EQ(help.err, "") << command;
+    }
+    for (const char* command : {"collide", "run"}) {
+        const auto help = run({command, "--help"});
+        for (const char* option : {"--method", "--caster", "--direction", "--devices", "--threads"}) {
+            EXPECT_NE(help.out.find(option), std::string::npos) << command << " " << option;
+        }
+    }
+}
+
+TEST_F(Usage, Version) {
+    const auto result = run({"--version"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.out, std::string("raycontact ") + RAYCONTACT_VERSION + "\n");
+}
+
+TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
+    expect_refused(run({}), "subcommand");
+    expect_refused(run({"colide"}), "colide");
+    expect_refused(run({"--jsn"}), "--jsn");
+    expect_refused(run({"devices", "extra"}), "extra");
+    expect_refused(run({"mesh"}), "FILE");
+    expect_refused(run({"mesh", "cube.obj", "--method", "standard"}), "--method");
+    expect_refused(run({"collide"}), "collide");
+    expect_refused(run({"collide", "cube.obj"}), "two mesh files");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--pairs", "pairs.json"}), "--pairs");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--threads", "-1"}), "--threads");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--threads", "two"}), "--threads");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--caster"}), "--caster");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--caster", "bvh", "--caster", "bvh"}), "--caster");
+}
+
+TEST_F(Usage, UnknownWordsNameTheOption) {
+    for (const char* option : {"--method", "--caster", "--direction", "--devices"}) {
+        expect_refused(run({"collide", "cube.obj", "cube.obj", option, "quick"}), option);
+    }
+}
+
+TEST_F(Usage, DeviceLists) {
+    for (const char* list : {"auto", "all", "cpu", "cpu/0"}) {
+        EXPECT_EQ(run({"collide", "cube.obj", "cube.obj", "--devices", list}).status, 0) << list;
+    }
+    for (const char* list : {"", "cpu,", "cpu/", "cpu/x", "cpu/-1", "cpu:0", "opencl", "opencl:", "cuda:0/1", "gpu",
+                             "cpu/0/1", "cpu/99999999999"}) {
+        expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", list}), "--devices");
+    }
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "cpu,cpu"}), "twice");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "opencl:0,opencl:00"}), "twice");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "cpu/0,cpu"}), "beside its whole");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "cpu/9999"}), "cpu/9999");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "opencl:77"}), "opencl:77");
+}
+
+TEST_F(Usage, AFailedRunIsStatusOne) {
+    const auto result = run_program({"devices"}, folder_.path(), "/dev/full");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << result.err;
+}
+
+TEST_F(Usage, DevicesHaveTheirKeys) {
+    const auto result = run({"devices", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto devices = nlohmann::json::parse(result.out);
+    ASSERT_TRUE(devices.is_array());
+    ASSERT_GE(devices.size(), 1u);
+    const std::set<std::string> keys{"id",    "kind",         "name",   "driver", "cores",
+                                     "exact", "memory_bytes", "usable", "why_not"};
+    bool cpu = false;
+    for (const auto& device : devices) {
+        EXPECT_EQ(keys_of(device), keys);
+        EXPECT_EQ(device["usable"].get<bool>(), device["why_not"].get<std::string>().empty());
+        if (device["id"] == "cpu") {
+            cpu = true;
+            EXPECT_EQ(device["kind"], "cpu");
+            EXPECT_TRUE(device["usable"].get<bool>());
+            EXPECT_TRUE(device["exact"].get<bool>());
+            EXPECT_GE(device["cores"].get<int>(), 1);
+            EXPECT_GT(device["memory_bytes"].get<double>(), 1e6);
+        }
+    }
+    EXPECT_TRUE(cpu);
+    EXPECT_NE(run({"devices"}).out.find("cpu"), std::string::npos);
+}
+
+TEST_F(Usage, MeshHasItsKeys) {
+    const auto result = run({"mesh", "cube.obj", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    for (const char* key : {"vertices", "triangles", "closed", "manifold", "oriented", "self_intersecting",
+                            "components", "volume", "area", "box", "repairs"}) {
+        EXPECT_TRUE(report.contains(key)) << key;
+    }
+    EXPECT_EQ(report["vertices"], 8);
+    EXPECT_EQ(report["triangles"], 12);
+    EXPECT_TRUE(report["closed"].get<bool>());
+    EXPECT_DOUBLE_EQ(report["volume"].get<double>(), 1);
+    EXPECT_DOUBLE_EQ(report["area"].get<double>(), 6);
+    EXPECT_TRUE(report["repairs"].empty());
+    const auto text = run({"mesh", "cube.obj"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_NE(text.out.find("12"), std::string::npos);
+}
+
+TEST_F(Usage, MeshRepairsUnlessToldNotTo) {
+    std::string flipped = cube_obj();
+    flipped.replace(flipped.find("f 1 4 3 2"), 9, "f 1 2 3 4");
+    folder_.write("flipped.obj", flipped);
+    const auto repaired = nlohmann::json::parse(run({"mesh", "flipped.obj", "--json"}).out);
+    EXPECT_TRUE(repaired["oriented"].get<bool>());
+    EXPECT_FALSE(repaired["repairs"].empty());
+    const auto as_is = nlohmann::json::parse(run({"mesh", "flipped.obj", "--as-is", "--json"}).out);
+    EXPECT_FALSE(as_is["oriented"].get<bool>());
+    EXPECT_TRUE(as_is["repairs"].empty());
+}
+
+TEST_F(Usage, BadMeshFilesNameTheFile) {
+    folder_.write("short.obj", "v 0 0 0\nf 1 2 3\n");
+    folder_.write("empty.obj", "");
+    folder_.write("what.xyz", "1 2 3\n");
+    std::filesystem::create_directory(folder_.path() / "folder.obj");
+    for (const char* file : {"short.obj", "empty.obj", "what.xyz", "folder.obj", "missing.obj"}) {
+        expect_refused(run({"mesh", file}), file);
+        expect_refused(run({"collide", "cube.obj", file, "--json"}), file);
+        expect_refused(run({"collide", file, "cube.obj"}), file);
+    }
+    expect_refused(run({"mesh", "two\nlines.obj"}), "lines.obj");
+}
+
+} // namespace
