@@ -1,1 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
+# Installs and exports raycontact::raycontact, raycontact::bullet where it is built, and the program.
+option(RAYCONTACT_INSTALL "Make install rules" ${PROJECT_IS_TOP_LEVEL})
+if(NOT RAYCONTACT_INSTALL)
+    return()
+endif()
+include(CMakePackageConfigHelpers)
+
+set(raycontact_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/raycontact)
+install(TARGETS raycontact EXPORT raycontactTargets)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/raycontact DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT raycontactTargets NAMESPACE raycontact:: DESTINATION ${raycontact_config_folder})
+# In an export set of its own: the core is of use where Bullet is not installed.
+set(RAYCONTACT_HAS_BULLET OFF)
+if(TARGET raycontact_bullet)
+    set(RAYCONTACT_HAS_BULLET ON)
+    install(TARGETS raycontact_bullet EXPORT raycontactBulletTargets)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/adapters/bullet/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(EXPORT raycontactBulletTargets NAMESPACE raycontact:: DESTINATION ${raycontact_config_folder})
+endif()
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/raycontactConfig.cmake.in
+    ${PROJECT_BINARY_DIR}/raycontactConfig.cmake INSTALL_DESTINATION ${raycontact_config_folder})
+# 0.x: a new minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/raycontactConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/raycontactConfig.cmake ${PROJECT_BINARY_DIR}/raycontactConfigVersion.cmake
+    DESTINATION ${raycontact_config_folder})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TARGET raycontact_cli)
+    install(TARGETS raycontact_cli)
+endif()

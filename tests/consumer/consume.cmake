@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -DWAY=install|subdirectory ... -P consume.cmake: configures, builds and runs the outside project.
+function(run)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
+    if(NOT status EQUAL 0)
+        string(JOIN " " command ${ARGN})
+        message(FATAL_ERROR "${WAY}: failed (${status}): ${command}")
+    endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+set(options -G ${GENERATOR} -DCMAKE_MAKE_PROGRAM=${MAKE} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS}
+    -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_BUILD_TYPE=Release)
+if(WAY STREQUAL "install")
+    run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/first)
+    # What was installed must not know where: packages are built in one place and used in another.
+    file(RENAME ${WORK}/first ${WORK}/prefix)
+    list(APPEND options -DCMAKE_PREFIX_PATH=${WORK}/prefix -DEXPECT_BULLET=${BULLET})
+else()
+    list(APPEND options -DRAYCONTACT_SOURCE=${SOURCE} -DRAYCONTACT_EXECUTOR=${EXECUTOR})
+endif()
+run(${CMAKE_COMMAND} -S ${PROJECT} -B ${WORK}/build ${options})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/consumer)
+if(EXISTS ${WORK}/build/bullet_consumer)
+    run(${WORK}/build/bullet_consumer)
+elseif(WAY STREQUAL "install" AND BULLET)
+    message(FATAL_ERROR "the installed package lacks raycontact::bullet")
+endif()
+if(EXISTS ${WORK}/prefix/bin/raycontact)
+    run(${WORK}/prefix/bin/raycontact --version)
+endif()

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first program of a user: two cubes, one corner of each inside the other.
+#include <raycontact/scene.h>
+
+#include <cstdio>
+
+int main() {
+    raycontact::Mesh cube;
+    cube.name = "cube";
+    cube.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    cube.triangles = {{0, 3, 2}, {0, 2, 1}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                      {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+    const auto shape = raycontact::Shape::make(cube);
+
+    raycontact::Scene scene;
+    scene.add(shape);
+    scene.add(shape, {.translation = {0.8, 0.7, 0.6}});
+    for (const auto& contact : scene.step()) {
+        std::printf("%s: depth %.3f, normal %.1f %.1f %.1f\n", raycontact::contact_key(contact).c_str(),
+                    static_cast<double>(contact.depth), static_cast<double>(contact.normal[0]),
+                    static_cast<double>(contact.normal[1]), static_cast<double>(contact.normal[2]));
+    }
+    return scene.contacts().size() == 2 ? 0 : 1;
+}
