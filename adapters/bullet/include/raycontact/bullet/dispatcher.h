@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/scene.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+
+#include <cstdint>
+#include <memory>
+
+namespace raycontact::bullet {
+
+/// How contacts become manifold points.
+struct ManifoldSettings {
+    /// A pair's contacts are grouped into patches, one manifold each: normals within this cosine of the patch's ...
+    btScalar patch_cosine = btScalar(0.8);
+    /// ... and points within this part of the smaller body's box diagonal from the patch's centre.
+    btScalar patch_reach = btScalar(0.5);
+    /// A point whose contact is gone lives on for this many steps while its surfaces stay within the manifold's
+    /// breaking threshold: rays see only what penetrates, and a resting body must not lose its support in between.
+    int keep_steps = 8;
+};
+
+/// What the last dispatch did.
+struct DispatcherStats {
+    std::uint64_t pairs = 0;          ///< pairs of objects that RayContact handled
+    std::uint64_t mesh_pairs = 0;     ///< pairs of meshes in its batch (a compound gives several)
+    std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
+    std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nobody here can handle: no contacts
+    std::uint64_t contacts = 0;       ///< mesh and plane contacts found
+    std::uint64_t points = 0;         ///< kept as manifold points
+    std::uint64_t points_matched = 0; ///< of those, points that were there in the step before (same key)
+    std::uint64_t points_held = 0;    ///< points held although their contact is gone (ManifoldSettings::keep_steps)
+    std::uint64_t reduced_away = 0;   ///< contacts that no manifold point stands for
+    std::uint64_t manifolds = 0;      ///< patches
+};
+
+/// Names a manifold point's contact from step to step, unique within its two objects.
+struct PointKey {
+    int child0 = 0, child1 = 0; ///< index of the leaf shape, depth first, when a body is a compound; else 0
+    int vertex_body = 0;        ///< 0: the vertex belongs to the manifold's body 0; 1: to its body 1
+    int vertex = 0;             ///< index in its file, mesh interface or shape
+    friend bool operator==(const PointKey&, const PointKey&) = default;
+};
+
+/// Put in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
+/// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, also inside compounds) go to RayContact in one batch a step;
+/// meshes against planes and height fields are handled here as well; all else falls through to Bullet's near callback.
+/// A mesh changed in place must be made known with refresh(). Not thread-safe, like Bullet's.
+class CollisionDispatcher : public btCollisionDispatcher {
+public:
+    /// Throws InputError when settings name a device this machine cannot use.
+    explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
+                                 const ManifoldSettings& manifolds = {});
+    ~CollisionDispatcher() override;
+
+    /// Throws InputError naming the body when a pose is not finite, or a mesh cannot be converted.
+    void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
+                                   btDispatcher* dispatcher) override;
+
+    /// Optional: gives the object's meshes their place in scene() at once and keeps it when no pair needs it, so body
+    /// ids follow the caller's order; returns the id of its first mesh. The object must be removed by remove_body
+    /// before it is deleted.
+    BodyId add_body(const btCollisionObject& object);
+    void remove_body(const btCollisionObject& object);
+    /// Converts the meshes of an object anew at the next dispatch: its mesh interface has been written to.
+    void refresh(const btCollisionObject& object);
+
+    /// The batch: contacts(), pairs() and stats() of the last dispatch.
+    const Scene& scene() const;
+    const DispatcherStats& stats() const;
+
+    /// For points of RayContact's manifolds.
+    static PointKey key(const btManifoldPoint& point);
+    static bool is_ours(const btManifoldPoint& point);
+
+    struct State;
+
+private:
+    std::unique_ptr<State> state_;
+};
+
+} // namespace raycontact::bullet

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/shape.h>
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+
+#include <memory>
+
+namespace raycontact::bullet {
+
+class MeshTree;
+
+/// A RayContact shape as a Bullet collision shape, moving or not. Bullet takes the body's origin for its centre of
+/// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. Convex shapes, compounds of them, rays
+/// and sweeps meet it through Bullet's own algorithms; meshes, planes and height fields through CollisionDispatcher.
+ATTRIBUTE_ALIGNED16(class) MeshShape : public btConcaveShape {
+public:
+    BT_DECLARE_ALIGNED_ALLOCATOR();
+
+    explicit MeshShape(std::shared_ptr<const Shape> shape);
+    ~MeshShape() override;
+
+    /// With the local scaling applied.
+    const std::shared_ptr<const Shape>& shape() const {
+        return scaled_;
+    }
+    const std::shared_ptr<const MeshTree>& tree() const {
+        return tree_;
+    }
+
+    /// The box of the vertices (of small groups of them for big meshes), not of the rotated local box; plus the margin.
+    void getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const override;
+    void processAllTriangles(btTriangleCallback * callback, const btVector3& aabb_min, const btVector3& aabb_max)
+        const override;
+    /// Diagonal of the true inertia tensor about the centre of mass for a closed mesh; that of its box for an open one.
+    void calculateLocalInertia(btScalar mass, btVector3 & inertia) const override;
+    /// Makes another Shape, which takes time. Throws InputError when a factor is zero or not finite.
+    void setLocalScaling(const btVector3& scaling) override;
+    const btVector3& getLocalScaling() const override {
+        return scaling_;
+    }
+    const char* getName() const override {
+        return "RayContactMesh";
+    }
+
+private:
+    std::shared_ptr<const Shape> original_;
+    std::shared_ptr<const Shape> scaled_;
+    std::shared_ptr<const MeshTree> tree_;
+    btVector3 scaling_;
+};
+
+} // namespace raycontact::bullet

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/bullet/dispatcher.h>
+
+namespace raycontact::bullet {
+
+/// A contact as Bullet wants it, before it has a place in a manifold. World frame, metres.
+struct Candidate {
+    PointKey key;
+    int triangle = 0;    ///< of the other body, index of its file; 0 on a plane
+    btVector3 on0, on1;  ///< the point on either body's surface
+    btVector3 normal;    ///< unit, from body 1 to body 0
+    btScalar distance{}; ///< negative: the depth
+    btScalar reach{};    ///< size of a patch it may join
+};
+
+} // namespace raycontact::bullet

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <convert.h>
+
+#include <raycontact/bullet/mesh_shape.h>
+#include <raycontact/error.h>
+
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace raycontact::bullet {
+
+namespace {
+
+constexpr std::uint64_t keep_dispatches = 600;
+
+/// Locks one part of a mesh interface for as long as it lives.
+struct Part {
+    Part(const btStridingMeshInterface& mesh, int index) : mesh_(mesh), index_(index) {
+        mesh.getLockedReadOnlyVertexIndexBase(&vertices, vertex_count, vertex_type, vertex_stride, &indices,
+                                              index_stride, triangle_count, index_type, index);
+    }
+    ~Part() { mesh_.unLockReadOnlyVertexBase(index_); }
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+
+    std::uint32_t corner(int triangle, int k) const {
+        const unsigned char* row = indices + static_cast<std::ptrdiff_t>(triangle) * index_stride;
+        switch (index_type) {
+        case PHY_INTEGER:
+            return reinterpret_cast<const unsigned int*>(row)[k];
+        case PHY_SHORT:
+            return reinterpret_cast<const unsigned short*>(row)[k];
+        default:
+            return row[k];
+        }
+    }
+    Vec3 vertex(int v) const {
+        const unsigned char* row = vertices + static_cast<std::ptrdiff_t>(v) * vertex_stride;
+        if (vertex_type == PHY_DOUBLE) {
+            const double* p = reinterpret_cast<const double*>(row);
+            return {p[0], p[1], p[2]};
+        }
+        const float* p = reinterpret_cast<const float*>(row);
+        return {p[0], p[1], p[2]};
+    }
+
+    const unsigned char* vertices = nullptr;
+    const unsigned char* indices = nullptr;
+    int vertex_count = 0, vertex_stride = 0, index_stride = 0, triangle_count = 0;
+    PHY_ScalarType vertex_type = PHY_FLOAT, index_type = PHY_INTEGER;
+
+private:
+    const btStridingMeshInterface& mesh_;
+    int index_;
+};
+
+bool mirrors(const btVector3& s) {
+    return s.x() * s.y() * s.z() < 0;
+}
+
+void append(Mesh& mesh, const btStridingMeshInterface& interface, int index, const btVector3& scaling) {
+    const Part part(interface, index);
+    if (part.vertex_type != PHY_FLOAT && part.vertex_type != PHY_DOUBLE)
+        throw InputError(mesh.name + ": part " + std::to_string(index)
+                         + " has vertices that are neither float nor double; convert them");
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int v = 0; v < part.vertex_count; ++v) {
+        const Vec3 p = part.vertex(v);
+        mesh.vertices.push_back({p.x * static_cast<double>(scaling.x()), p.y * static_cast<double>(scaling.y()),
+                                 p.z * static_cast<double>(scaling.z())});
+    }
+    for (int t = 0; t < part.triangle_count; ++t) {
+        std::array<std::uint32_t, 3> corners{};
+        for (int k = 0; k < 3; ++k) {
+            corners[k] = part.corner(t, k);
+            if (corners[k] >= static_cast<std::uint32_t>(part.vertex_count))
+                throw InputError(mesh.name + ": triangle " + std::to_string(t) + " of part " + std::to_string(index)
+                                 + " names vertex " + std::to_string(corners[k]) + " of "
+                                 + std::to_string(part.vertex_count) + "; correct the index");
+            corners[k] += base;
+        }
+        if (mirrors(scaling)) std::swap(corners[1], corners[2]);
+        mesh.triangles.push_back(corners);
+    }
+}
+
+/// A height field is open: its faces must look up, or bodies would be held from below.
+struct FieldTriangles : btTriangleCallback {
+    Mesh* mesh;
+    int up;
+    FieldTriangles(Mesh* m, int u) : mesh(m), up(u) {}
+    void processTriangle(btVector3* t, int, int) override {
+        const auto base = static_cast<std::uint32_t>(mesh->vertices.size());
+        for (int k = 0; k < 3; ++k) mesh->vertices.push_back({double(t[k].x()), double(t[k].y()), double(t[k].z())});
+        const bool looks_up = (t[1] - t[0]).cross(t[2] - t[0])[up] > 0;
+        if (looks_up)
+            mesh->triangles.push_back({base, base + 1, base + 2});
+        else
+            mesh->triangles.push_back({base, base + 2, base + 1});
+    }
+};
+
+const btStridingMeshInterface* interface_of(const btCollisionShape& shape) {
+    switch (shape.getShapeType()) {
+    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
+        return static_cast<const btBvhTriangleMeshShape&>(shape).getMeshInterface();
+    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
+        return static_cast<const btScaledBvhTriangleMeshShape&>(shape).getChildShape()->getMeshInterface();
+    default:
+        return nullptr;
+    }
+}
+
+void append_gimpact(Mesh& mesh, const btGImpactMeshShapePart& part) {
+    const btPrimitiveManagerBase* base = part.getPrimitiveManager();
+    const auto* manager = static_cast<const btGImpactMeshShapePart::TrimeshPrimitiveManager*>(base);
+    append(mesh, *manager->m_meshInterface, part.getPart(), part.getLocalScaling());
+}
+
+Mesh extract(const btCollisionShape& shape) {
+    Mesh mesh;
+    mesh.name = shape.getName();
+    if (shape.getShapeType() == TERRAIN_SHAPE_PROXYTYPE) {
+        const auto& field = static_cast<const btHeightfieldTerrainShape&>(shape);
+        btVector3 low, high;
+        field.getAabb(btTransform::getIdentity(), low, high);
+        FieldTriangles triangles(&mesh, field.getUpAxis());
+        field.processAllTriangles(&triangles, low, high);
+    } else if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
+        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART) {
+            append_gimpact(mesh, static_cast<const btGImpactMeshShapePart&>(g));
+        } else {
+            const auto& whole = static_cast<const btGImpactMeshShape&>(g);
+            for (int i = 0; i < whole.getMeshPartCount(); ++i) append_gimpact(mesh, *whole.getMeshPart(i));
+        }
+    } else if (const btStridingMeshInterface* interface = interface_of(shape)) {
+        const btVector3 scaling = scaling_of(shape);
+        for (int i = 0; i < interface->getNumSubParts(); ++i) append(mesh, *interface, i, scaling);
+    }
+    if (mesh.triangles.empty()) throw InputError(mesh.name + ": the collision shape has no triangles; fill it first");
+    return mesh;
+}
+
+std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+    return hash ^ (hash >> 29);
+}
+
+std::uint64_t content_hash(const Mesh& mesh) {
+    std::uint64_t hash = mesh.vertices.size();
+    for (const Vec3& v : mesh.vertices) {
+        for (const double c : {v.x, v.y, v.z}) hash = mix(hash, std::bit_cast<std::uint64_t>(c));
+    }
+    for (const auto& t : mesh.triangles) hash = mix(mix(hash, t[0] | std::uint64_t{t[1]} << 32), t[2]);
+    return hash;
+}
+
+} // namespace
+
+Kind kind_of(const btCollisionShape& shape) {
+    switch (shape.getShapeType()) {
+    case FAST_CONCAVE_MESH_PROXYTYPE:
+        return dynamic_cast<const MeshShape*>(&shape) ? Kind::mesh : Kind::other;
+    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
+        return Kind::mesh;
+    case GIMPACT_SHAPE_PROXYTYPE:
+        return static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType() == CONST_GIMPACT_COMPOUND_SHAPE
+                   ? Kind::other
+                   : Kind::mesh;
+    case STATIC_PLANE_PROXYTYPE:
+        return Kind::plane;
+    case TERRAIN_SHAPE_PROXYTYPE:
+        return Kind::field;
+    default:
+        return Kind::other;
+    }
+}
+
+btVector3 scaling_of(const btCollisionShape& shape) {
+    switch (shape.getShapeType()) {
+    case GIMPACT_SHAPE_PROXYTYPE: {
+        // The parts scale; the whole shape's own factor stays 1 until it is set.
+        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE) {
+            const auto& whole = static_cast<const btGImpactMeshShape&>(g);
+            if (whole.getMeshPartCount() > 0) return whole.getMeshPart(0)->getLocalScaling();
+        }
+        return g.getLocalScaling();
+    }
+    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
+        return interface_of(shape)->getScaling() * shape.getLocalScaling();
+    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
+    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
+        return interface_of(shape)->getScaling();
+    default:
+        return shape.getLocalScaling();
+    }
+}
+
+Converted ShapeCache::get(const btCollisionShape& shape) {
+    if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
+    Mesh mesh = extract(shape);
+    const std::uint64_t hash = content_hash(mesh);
+    const auto [first, last] = entries_.equal_range(hash);
+    for (auto i = first; i != last; ++i) {
+        if (i->second.mesh.vertices == mesh.vertices && i->second.mesh.triangles == mesh.triangles) {
+            i->second.used = now_;
+            return i->second.converted;
+        }
+    }
+    Entry entry;
+    // A height field's windings are ours; repairs would judge an open sheet by guesswork.
+    const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
+    entry.converted.shape = Shape::make(prepare_mesh(mesh, repair));
+    entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
+    entry.mesh = std::move(mesh);
+    entry.used = now_;
+    return entries_.emplace(hash, std::move(entry))->second.converted;
+}
+
+void ShapeCache::sweep() {
+    ++now_;
+    if (now_ % 64 != 0) return;
+    for (auto i = entries_.begin(); i != entries_.end();) {
+        Entry& entry = i->second;
+        if (entry.converted.shape.use_count() > 1) entry.used = now_;
+        i = entry.used + keep_dispatches < now_ ? entries_.erase(i) : std::next(i);
+    }
+}
+
+std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& scaling) {
+    for (int k = 0; k < 3; ++k) {
+        if (!std::isfinite(scaling[k]) || scaling[k] == btScalar(0))
+            throw InputError(shape.name() + ": local scaling must be finite and not zero in every axis");
+    }
+    PreparedMesh mesh;
+    mesh.name = shape.name();
+    for (const Vec3& v : shape.vertices())
+        mesh.vertices.push_back({v.x * static_cast<double>(scaling.x()), v.y * static_cast<double>(scaling.y()),
+                                 v.z * static_cast<double>(scaling.z())});
+    for (auto t : shape.triangles()) {
+        if (mirrors(scaling)) std::swap(t[1], t[2]);
+        mesh.triangles.push_back(t);
+    }
+    mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
+    mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
+    // Lengths, areas and volumes have changed: check anew, but keep the file's indices.
+    Mesh plain;
+    plain.name = mesh.name;
+    plain.vertices = mesh.vertices;
+    plain.triangles = mesh.triangles;
+    const PreparedMesh checked = prepare_mesh(plain, Repair::as_is);
+    mesh.report = checked.report;
+    return Shape::make(mesh);
+}
+
+} // namespace raycontact::bullet

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/bullet/dispatcher.h>
+
+#include <pair.h>
+#include <plane.h>
+#include <query.h>
+#include <raycontact/error.h>
+
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+namespace {
+
+/// Where the contacts of one pair in the batch belong.
+struct BatchEntry {
+    Pair pair;
+    PairState* state;
+    int child0, child1;
+    bool swapped; ///< the scene's first body is the manifold's body 1
+    btScalar reach;
+};
+
+btScalar diagonal(const Leaf& leaf) {
+    const Vec3 a = leaf.converted.shape->box_min(), b = leaf.converted.shape->box_max();
+    return btVector3(btScalar(b.x - a.x), btScalar(b.y - a.y), btScalar(b.z - a.z)).length();
+}
+
+/// Bullet has only its empty algorithm for two concave shapes.
+bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
+    const auto empty = [](const btCollisionShape& s) { return s.getShapeType() == EMPTY_SHAPE_PROXYTYPE; };
+    return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
+}
+
+/// What can be said of a pair of leaves without looking at positions.
+enum class Work { batch, plane, bullet, nothing };
+
+Work work_for(Kind a, Kind b, const btCollisionShape& shape_a, const btCollisionShape& shape_b) {
+    const bool mesh = a == Kind::mesh || b == Kind::mesh;
+    if (mesh && (a == Kind::plane || b == Kind::plane)) return Work::plane;
+    if (mesh && a != Kind::other && b != Kind::other) return Work::batch;
+    if (unsupported(shape_a, shape_b)) return Work::nothing;
+    return Work::bullet;
+}
+
+/// Whether two shapes give RayContact something to do: the answer costs a look at two types for most pairs.
+bool for_us(const btCollisionShape& a, const btCollisionShape& b) {
+    if (a.isConvex() || b.isConvex()) return false;
+    const bool mesh_a = Objects::holds(a, Kind::mesh), mesh_b = Objects::holds(b, Kind::mesh);
+    const auto partner = [](const btCollisionShape& s) {
+        return Objects::holds(s, Kind::plane) || Objects::holds(s, Kind::field);
+    };
+    return (mesh_a && mesh_b) || (mesh_a && partner(b)) || (mesh_b && partner(a));
+}
+
+} // namespace
+
+struct CollisionDispatcher::State {
+    State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m)
+        : dispatcher(d), manifolds(m), scene(settings), objects(scene), queries(settings, objects.shapes()),
+          create(queries) {}
+
+    bool take(btBroadphasePair& pair, const btDispatcherInfo& info);
+    PairState& pair_state(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
+    void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
+    void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    void hand_out();
+
+    CollisionDispatcher& dispatcher;
+    ManifoldSettings manifolds;
+    Scene scene;
+    Objects objects;
+    Queries queries;
+    QueryCreate create;
+    DispatcherStats stats;
+    std::uint64_t dispatch = 0;
+    std::vector<PairState*> work; ///< this dispatch's pairs, in the broad phase's order
+    std::vector<BatchEntry> batch;
+    std::vector<Pair> pairs;
+    std::vector<PlaneContact> below;
+};
+
+CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
+                                         const ManifoldSettings& manifolds)
+    : btCollisionDispatcher(configuration), state_(std::make_unique<State>(*this, settings, manifolds)) {
+    const int meshes[] = {FAST_CONCAVE_MESH_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE,
+                          SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE, MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE,
+                          GIMPACT_SHAPE_PROXYTYPE};
+    for (const int a : meshes) {
+        for (const int b : meshes) registerClosestPointsCreateFunc(a, b, &state_->create);
+        for (const int b : {STATIC_PLANE_PROXYTYPE, TERRAIN_SHAPE_PROXYTYPE}) {
+            registerClosestPointsCreateFunc(a, b, &state_->create);
+            registerClosestPointsCreateFunc(b, a, &state_->create);
+        }
+    }
+}
+
+CollisionDispatcher::~CollisionDispatcher() = default;
+
+void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
+                                                    btDispatcher* dispatcher) {
+    State& s = *state_;
+    ++s.dispatch;
+    s.stats = {};
+    s.work.clear();
+    s.batch.clear();
+    s.objects.shapes().sweep();
+
+    struct Visit final : btOverlapCallback {
+        State& state;
+        const btDispatcherInfo& info;
+        Visit(State& s_, const btDispatcherInfo& i) : state(s_), info(i) {}
+        bool processOverlap(btBroadphasePair& pair) override {
+            if (!state.take(pair, info)) {
+                ++state.stats.other_pairs;
+                state.dispatcher.getNearCallback()(pair, state.dispatcher, info);
+            }
+            return false;
+        }
+    } visit(s, info);
+    cache->processAllOverlappingPairs(&visit, dispatcher, info);
+
+    s.pairs.clear();
+    for (const BatchEntry& e : s.batch) s.pairs.push_back(e.pair);
+    s.stats.pairs = s.work.size();
+    s.stats.mesh_pairs = s.pairs.size();
+    s.scene.step(s.pairs);
+    s.hand_out();
+    for (PairState* state : s.work) state->patches.update(state->candidates, s.manifolds, s.stats);
+}
+
+bool CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcherInfo& info) {
+    const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+    const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    const btCollisionShape& shape_a = *a->getCollisionShape();
+    const btCollisionShape& shape_b = *b->getCollisionShape();
+    if (!for_us(shape_a, shape_b)) {
+        const bool mesh = Objects::holds(shape_a, Kind::mesh) || Objects::holds(shape_b, Kind::mesh);
+        if (mesh && unsupported(shape_a, shape_b)) ++stats.unsupported;
+        if (pair.m_algorithm && dynamic_cast<PairAlgorithm*>(pair.m_algorithm)) { // its shape was replaced
+            pair.m_algorithm->~btCollisionAlgorithm();
+            dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+            pair.m_algorithm = nullptr;
+        }
+        return false;
+    }
+    // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
+    if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return true;
+    // A record made here has no pair yet; PairState, made next, holds it.
+    const Object& record_a = objects.refresh(*a, dispatch);
+    const Object& record_b = objects.refresh(*b, dispatch);
+    PairState& state = pair_state(pair, *a, *b);
+    state.check_versions(record_a.version, record_b.version);
+    state.candidates.clear();
+    work.push_back(&state);
+    gather(state, record_a, record_b, info);
+    return true;
+}
+
+PairState& CollisionDispatcher::State::pair_state(btBroadphasePair& pair, const btCollisionObject& a,
+                                                  const btCollisionObject& b) {
+    if (auto* ours = dynamic_cast<PairAlgorithm*>(pair.m_algorithm)) return ours->state();
+    if (pair.m_algorithm) {
+        pair.m_algorithm->~btCollisionAlgorithm();
+        dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+    }
+    btCollisionAlgorithmConstructionInfo info(&dispatcher, -1);
+    auto state = std::make_unique<PairState>(dispatcher, objects, &a, &b);
+    auto* made =
+        new (dispatcher.allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info, std::move(state));
+    pair.m_algorithm = made;
+    return made->state();
+}
+
+void CollisionDispatcher::State::gather(PairState& state, const Object& a, const Object& b,
+                                        const btDispatcherInfo& info) {
+    for (int i = 0; i < static_cast<int>(a.leaves.size()); ++i) {
+        for (int j = 0; j < static_cast<int>(b.leaves.size()); ++j) {
+            const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
+            const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
+            switch (work_for(la.kind, lb.kind, *la.shape, *lb.shape)) {
+            case Work::batch: {
+                const bool swapped = la.body > lb.body;
+                const Pair pair = swapped ? Pair{lb.body, la.body} : Pair{la.body, lb.body};
+                const btScalar reach = manifolds.patch_reach * btMin(diagonal(la), diagonal(lb));
+                batch.push_back({pair, &state, i, j, swapped, reach});
+                break;
+            }
+            case Work::plane:
+                add_plane(state, i, j, la, lb);
+                break;
+            case Work::bullet:
+                state.run_child(i, j, la, lb, info);
+                break;
+            case Work::nothing:
+                ++stats.unsupported;
+                break;
+            }
+        }
+    }
+}
+
+void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+    const bool mesh_is_0 = a.kind == Kind::mesh;
+    const Leaf& mesh = mesh_is_0 ? a : b;
+    const Leaf& plane = mesh_is_0 ? b : a;
+    const btTransform pose0 = state.object0->getWorldTransform() * a.local;
+    const btTransform pose1 = state.object1->getWorldTransform() * b.local;
+    btVector3 normal;
+    plane_contacts(mesh.converted, mesh_is_0 ? pose0 : pose1, static_cast<const btStaticPlaneShape&>(*plane.shape),
+                   mesh_is_0 ? pose1 : pose0, normal, below);
+    for (const PlaneContact& c : below) {
+        const btVector3 on_plane = c.point + normal * c.depth;
+        Candidate candidate;
+        candidate.key = {leaf0, leaf1, mesh_is_0 ? 0 : 1,
+                         static_cast<int>(mesh.converted.shape->vertex_index()[c.vertex])};
+        candidate.on0 = mesh_is_0 ? c.point : on_plane;
+        candidate.on1 = mesh_is_0 ? on_plane : c.point;
+        candidate.normal = mesh_is_0 ? normal : -normal;
+        candidate.distance = -c.depth;
+        candidate.reach = diagonal(mesh);
+        state.candidates.push_back(candidate);
+    }
+}
+
+void CollisionDispatcher::State::hand_out() {
+    // Contacts come sorted by pair: sort the batch the same way and walk both once.
+    std::stable_sort(batch.begin(), batch.end(),
+                     [](const BatchEntry& x, const BatchEntry& y) { return x.pair < y.pair; });
+    auto entry = batch.begin();
+    for (const Contact& c : scene.contacts()) {
+        const Pair pair{c.body_a, c.body_b};
+        while (entry != batch.end() && entry->pair < pair) ++entry;
+        if (entry == batch.end() || entry->pair != pair) continue;
+        Candidate candidate;
+        const int source = c.vertex_body == VertexBody::a ? 0 : 1;
+        candidate.key = {entry->child0, entry->child1, entry->swapped ? 1 - source : source,
+                         static_cast<int>(c.vertex)};
+        candidate.triangle = static_cast<int>(c.triangle);
+        if (entry->swapped) {
+            surface_points(c, candidate.on1, candidate.on0);
+            candidate.normal = normal_of(c);
+        } else {
+            surface_points(c, candidate.on0, candidate.on1);
+            candidate.normal = -normal_of(c);
+        }
+        candidate.distance = btScalar(-c.depth);
+        candidate.reach = entry->reach;
+        entry->state->candidates.push_back(candidate);
+    }
+}
+
+BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
+    const Object& record = state_->objects.refresh(object, state_->dispatch);
+    state_->objects.pin(object, true);
+    for (const Leaf& leaf : record.leaves) {
+        if (leaf.body != Leaf::no_body) return leaf.body;
+    }
+    state_->objects.pin(object, false);
+    throw InputError("CollisionDispatcher::add_body: the object has no triangle mesh; only meshes need to be added");
+}
+
+void CollisionDispatcher::remove_body(const btCollisionObject& object) {
+    state_->objects.pin(object, false);
+}
+
+void CollisionDispatcher::refresh(const btCollisionObject& object) {
+    if (Object* record = state_->objects.find(object)) record->stale = true;
+}
+
+const Scene& CollisionDispatcher::scene() const {
+    return state_->scene;
+}
+const DispatcherStats& CollisionDispatcher::stats() const {
+    return state_->stats;
+}
+
+} // namespace raycontact::bullet

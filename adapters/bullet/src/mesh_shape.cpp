@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/bullet/mesh_shape.h>
+
+#include <convert.h>
+#include <mesh_tree.h>
+#include <raycontact/bullet/mass.h>
+#include <raycontact/error.h>
+
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <LinearMath/btTransform.h>
+
+#include <cmath>
+#include <utility>
+
+namespace raycontact::bullet {
+
+MeshShape::MeshShape(std::shared_ptr<const Shape> shape)
+    : original_(std::move(shape)), scaled_(original_), scaling_(1, 1, 1) {
+    if (!original_) throw InputError("MeshShape: no shape given; make one with raycontact::Shape::make");
+    tree_ = std::make_shared<const MeshTree>(*scaled_);
+    // Not CUSTOM_CONCAVE_SHAPE_TYPE: Bullet 3 gave the same number to its signed-distance shape and would cast to that.
+    m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+    m_collisionMargin = 0;
+}
+
+MeshShape::~MeshShape() = default;
+
+void MeshShape::getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
+    tree_->bounds(t, aabb_min, aabb_max);
+    const btVector3 margin(getMargin(), getMargin(), getMargin());
+    aabb_min -= margin;
+    aabb_max += margin;
+}
+
+void MeshShape::processAllTriangles(btTriangleCallback* callback, const btVector3& aabb_min,
+                                    const btVector3& aabb_max) const {
+    tree_->overlapping(aabb_min, aabb_max, [&](std::uint32_t index) {
+        const auto& t = tree_->triangle(index);
+        btVector3 corners[3] = {tree_->vertex(t[0]), tree_->vertex(t[1]), tree_->vertex(t[2])};
+        callback->processTriangle(corners, 0, static_cast<int>(scaled_->triangle_index()[index]));
+    });
+}
+
+void MeshShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
+    const MassProperties p = mass_properties(*scaled_);
+    const double density = p.volume > 0 ? static_cast<double>(mass) / p.volume : 0;
+    inertia.setValue(btScalar(p.inertia[0] * density), btScalar(p.inertia[4] * density),
+                     btScalar(p.inertia[8] * density));
+}
+
+void MeshShape::setLocalScaling(const btVector3& scaling) {
+    if (scaling == scaling_) return;
+    scaled_ = scaling == btVector3(1, 1, 1) ? original_ : scale_shape(*original_, scaling);
+    tree_ = std::make_shared<const MeshTree>(*scaled_);
+    scaling_ = scaling;
+}
+
+} // namespace raycontact::bullet

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/shape.h>
+
+#include <LinearMath/btTransform.h>
+#include <LinearMath/btVector3.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres.
+class MeshTree {
+public:
+    explicit MeshTree(const Shape& shape);
+
+    const btVector3& vertex(std::uint32_t index) const { return vertices_[index]; }
+    const std::array<std::uint32_t, 3>& triangle(std::uint32_t index) const { return triangles_[index]; }
+
+    /// Calls visit(triangle) for each triangle whose own box overlaps [low, high].
+    template <class Visit>
+    void overlapping(const btVector3& low, const btVector3& high, Visit&& visit) const {
+        for (std::uint32_t i = 0; i < nodes_.size();) {
+            const Node& node = nodes_[i];
+            if (!overlap(node.low, node.high, low, high)) {
+                i = node.skip;
+                continue;
+            }
+            for (std::uint32_t k = node.begin; k < node.end; ++k) {
+                if (triangle_overlaps(order_[k], low, high)) visit(order_[k]);
+            }
+            ++i;
+        }
+    }
+
+    /// Vertices with normal . v < offset, ascending, each once. `normal` need not be unit.
+    void vertices_below(const btVector3& normal, btScalar offset, std::vector<std::uint32_t>& out) const;
+
+    /// Box of the mesh in a frame with these axes and origin (rows of a rotation, a translation): exact for up to 1024
+    /// vertices, beyond that of the rotated boxes of small groups of triangles.
+    void bounds(const btTransform& transform, btVector3& low, btVector3& high) const;
+
+private:
+    struct Node {
+        btVector3 low, high;
+        std::uint32_t begin = 0, end = 0; ///< triangles of a leaf, positions in order_; empty in an inner node
+        std::uint32_t skip = 0;           ///< next node when this box is missed
+    };
+    struct Cover {
+        btVector3 centre, half;
+    };
+
+    static bool overlap(const btVector3& a_low, const btVector3& a_high, const btVector3& b_low,
+                        const btVector3& b_high) {
+        return a_low.x() <= b_high.x() && b_low.x() <= a_high.x() && a_low.y() <= b_high.y() && b_low.y() <= a_high.y()
+               && a_low.z() <= b_high.z() && b_low.z() <= a_high.z();
+    }
+    bool triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const;
+    void build(std::uint32_t begin, std::uint32_t end);
+
+    std::vector<btVector3> vertices_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+    std::vector<Cover> cover_;
+};
+
+} // namespace raycontact::bullet

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <objects.h>
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+namespace raycontact::bullet {
+
+namespace {
+
+struct Flat {
+    const btCollisionShape* shape;
+    btTransform local;
+};
+
+void flatten(const btCollisionShape& shape, const btTransform& local, std::vector<Flat>& out) {
+    if (!shape.isCompound()) {
+        out.push_back({&shape, local});
+        return;
+    }
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        flatten(*compound.getChildShape(i), local * compound.getChildTransform(i), out);
+}
+
+bool unchanged(const Object& record, const std::vector<Flat>& flat) {
+    if (record.stale || record.leaves.size() != flat.size()) return false;
+    for (std::size_t i = 0; i < flat.size(); ++i) {
+        const Leaf& leaf = record.leaves[i];
+        if (leaf.shape != flat[i].shape || !(leaf.local == flat[i].local) || leaf.kind != kind_of(*leaf.shape))
+            return false;
+        if ((leaf.kind == Kind::mesh || leaf.kind == Kind::field) && leaf.scaling != scaling_of(*leaf.shape))
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
+Pose to_pose(const btTransform& transform) {
+    Pose pose;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) pose.rotation[3 * i + j] = static_cast<double>(transform.getBasis()[i][j]);
+    }
+    const btVector3& t = transform.getOrigin();
+    pose.translation = {static_cast<double>(t.x()), static_cast<double>(t.y()), static_cast<double>(t.z())};
+    return pose;
+}
+
+bool Objects::holds(const btCollisionShape& shape, Kind kind) {
+    if (!shape.isCompound()) return kind_of(shape) == kind;
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+        if (holds(*compound.getChildShape(i), kind)) return true;
+    }
+    return false;
+}
+
+Object* Objects::find(const btCollisionObject& object) {
+    const auto i = records_.find(&object);
+    return i == records_.end() ? nullptr : &i->second;
+}
+
+Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
+    Object& record = records_[&object];
+    if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
+    std::vector<Flat> flat;
+    flatten(*object.getCollisionShape(), btTransform::getIdentity(), flat);
+    if (record.version == 0 || !unchanged(record, flat)) make_leaves(object, record);
+    for (const Leaf& leaf : record.leaves) {
+        if (leaf.body != Leaf::no_body) scene_.set_pose(leaf.body, to_pose(object.getWorldTransform() * leaf.local));
+    }
+    record.seen = dispatch;
+    return record;
+}
+
+void Objects::make_leaves(const btCollisionObject& object, Object& record) {
+    drop_bodies(record);
+    std::vector<Flat> flat;
+    flatten(*object.getCollisionShape(), btTransform::getIdentity(), flat);
+    for (const Flat& f : flat) {
+        Leaf leaf;
+        leaf.shape = f.shape;
+        leaf.local = f.local;
+        leaf.kind = kind_of(*f.shape);
+        leaf.scaling.setValue(1, 1, 1);
+        if (leaf.kind == Kind::mesh || leaf.kind == Kind::field) {
+            leaf.scaling = scaling_of(*f.shape);
+            leaf.converted = shapes_.get(*f.shape);
+            leaf.body = scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
+        }
+        record.leaves.push_back(leaf);
+    }
+    record.version = ++versions_;
+    record.stale = false;
+}
+
+void Objects::drop_bodies(Object& record) {
+    for (const Leaf& leaf : record.leaves) {
+        if (leaf.body != Leaf::no_body) scene_.remove(leaf.body);
+    }
+    record.leaves.clear();
+}
+
+void Objects::release(const btCollisionObject* object) {
+    const auto i = records_.find(object);
+    if (i == records_.end()) return;
+    if (i->second.uses > 0) --i->second.uses;
+    if (i->second.uses == 0 && !i->second.pinned) {
+        drop_bodies(i->second);
+        records_.erase(i);
+    }
+}
+
+void Objects::pin(const btCollisionObject& object, bool pinned) {
+    const auto i = records_.find(&object);
+    if (i == records_.end()) return;
+    i->second.pinned = pinned;
+    if (!pinned && i->second.uses == 0) {
+        drop_bodies(i->second);
+        records_.erase(i);
+    }
+}
+
+} // namespace raycontact::bullet

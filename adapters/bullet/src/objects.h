@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <convert.h>
+#include <raycontact/scene.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// One shape of an object that is not a compound; an object without compounds has one leaf.
+struct Leaf {
+    const btCollisionShape* shape = nullptr;
+    btTransform local; ///< leaf frame in the object's frame
+    btVector3 scaling; ///< at conversion
+    Kind kind = Kind::other;
+    Converted converted;   ///< mesh or field
+    BodyId body = no_body; ///< in the scene; mesh or field
+    static constexpr BodyId no_body = 0xffffffffu;
+};
+
+/// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.
+struct Object {
+    std::vector<Leaf> leaves;
+    std::uint64_t version = 0; ///< changes when the leaves do
+    std::uint64_t seen = 0;    ///< dispatch in which poses were last handed over
+    std::uint32_t uses = 0;    ///< pairs that refer to it
+    bool pinned = false;       ///< by add_body
+    bool stale = false;        ///< refresh() was called
+};
+
+/// The objects in use and their bodies in the scene. Never iterated, so no address decides an order.
+class Objects {
+public:
+    explicit Objects(Scene& scene) : scene_(scene) {}
+
+    /// The object's record, made when new, its leaves rebuilt when its shape has changed, its poses handed to the
+    /// scene once per `dispatch`.
+    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch);
+    Object* find(const btCollisionObject& object);
+    void acquire(const btCollisionObject& object) { ++records_.at(&object).uses; }
+    void release(const btCollisionObject* object);
+    void pin(const btCollisionObject& object, bool pinned);
+
+    ShapeCache& shapes() { return shapes_; }
+
+    /// Whether the object holds a mesh, directly or in a compound.
+    static bool holds(const btCollisionShape& shape, Kind kind);
+
+private:
+    void make_leaves(const btCollisionObject& object, Object& record);
+    void drop_bodies(Object& record);
+
+    Scene& scene_;
+    ShapeCache shapes_;
+    std::unordered_map<const btCollisionObject*, Object> records_;
+    std::uint64_t versions_ = 0;
+};
+
+Pose to_pose(const btTransform& transform);
+
+} // namespace raycontact::bullet

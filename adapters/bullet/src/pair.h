@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <objects.h>
+#include <patches.h>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+#include <memory>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// A pair of leaves that Bullet's own algorithms serve, inside a pair of objects that is ours (compounds of both).
+struct ChildPair {
+    int leaf0, leaf1;
+    btCollisionAlgorithm* algorithm;
+};
+
+/// All that is kept of a pair of objects from step to step.
+class PairState {
+public:
+    PairState(btCollisionDispatcher& dispatcher, Objects& objects, const btCollisionObject* object0,
+              const btCollisionObject* object1);
+    ~PairState();
+    PairState(const PairState&) = delete;
+    PairState& operator=(const PairState&) = delete;
+
+    /// Lets Bullet's algorithm for two leaves work, or drops it when their boxes are apart.
+    void run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, const btDispatcherInfo& info);
+    /// When an object's leaves have changed, what was kept for the old ones goes.
+    void check_versions(std::uint64_t version0, std::uint64_t version1);
+    void all_manifolds(btManifoldArray& out) const;
+
+    const btCollisionObject* object0;
+    const btCollisionObject* object1;
+    std::vector<Candidate> candidates; ///< of this step
+    Patches patches;
+
+private:
+    void drop_child(const ChildPair& child);
+
+    btCollisionDispatcher& dispatcher_;
+    Objects& objects_;
+    std::vector<ChildPair> children_;
+    std::uint64_t version0_ = 0, version1_ = 0;
+};
+
+/// Hangs on Bullet's broad-phase pair: when that goes, so do the manifolds. Small, because it lives in Bullet's pool of
+/// algorithms, which does not check sizes.
+class PairAlgorithm final : public btCollisionAlgorithm {
+public:
+    PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, std::unique_ptr<PairState> state)
+        : btCollisionAlgorithm(info), state_(std::move(state)) {}
+
+    PairState& state() { return *state_; }
+
+    /// The dispatcher works in a batch; nothing is left to do for one pair.
+    void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
+                          btManifoldResult*) override {}
+    btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                   btManifoldResult*) override {
+        return btScalar(1);
+    }
+    void getAllContactManifolds(btManifoldArray& out) override { state_->all_manifolds(out); }
+
+private:
+    std::unique_ptr<PairState> state_;
+};
+
+} // namespace raycontact::bullet

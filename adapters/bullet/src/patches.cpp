@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <patches.h>
+
+#include <cluster.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+namespace {
+
+// Bullet uses the low bits of m_contactPointFlags; ours travel with the point wherever Bullet copies it.
+constexpr int flag_ours = 1 << 30;
+constexpr int flag_vertex_on_1 = 1 << 29;
+constexpr int absent_shift = 20;
+constexpr int absent_mask = 0xff << absent_shift;
+
+int absent_steps(const btManifoldPoint& p) {
+    return (p.m_contactPointFlags & absent_mask) >> absent_shift;
+}
+
+/// A point of the step before, moved along with its bodies.
+struct Old {
+    btManifoldPoint point;
+    std::size_t patch;
+    PointKey key;
+    btVector3 on0, on1;
+    btScalar distance;
+    bool matched = false; ///< its contact is there again
+};
+
+struct Patch {
+    btPersistentManifold* manifold = nullptr;
+    btVector3 normal, centre;
+    std::vector<std::size_t> members; ///< candidates
+    std::vector<std::size_t> held;    ///< old points without a contact
+};
+
+btVector3 middle(const btVector3& a, const btVector3& b) {
+    return (a + b) * btScalar(0.5);
+}
+
+void combine_materials(btManifoldPoint& p, const btCollisionObject* a, const btCollisionObject* b) {
+    p.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
+    p.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
+    p.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
+    p.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
+    const int flags = a->getCollisionFlags() | b->getCollisionFlags();
+    if (flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) {
+        p.m_combinedContactDamping1 = btManifoldResult::calculateCombinedContactDamping(a, b);
+        p.m_combinedContactStiffness1 = btManifoldResult::calculateCombinedContactStiffness(a, b);
+        p.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+    }
+    if (flags & btCollisionObject::CF_HAS_FRICTION_ANCHOR) p.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
+    btPlaneSpace1(p.m_normalWorldOnB, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
+}
+
+btManifoldPoint to_point(const Candidate& c, const btCollisionObject* a, const btCollisionObject* b) {
+    btManifoldPoint p(a->getWorldTransform().invXform(c.on0), b->getWorldTransform().invXform(c.on1), c.normal,
+                      c.distance);
+    p.m_positionWorldOnA = c.on0;
+    p.m_positionWorldOnB = c.on1;
+    p.m_partId0 = c.key.child0;
+    p.m_partId1 = c.key.child1;
+    p.m_index0 = c.key.vertex_body == 0 ? c.key.vertex : c.triangle;
+    p.m_index1 = c.key.vertex_body == 0 ? c.triangle : c.key.vertex;
+    p.m_contactPointFlags = flag_ours | (c.key.vertex_body == 0 ? 0 : flag_vertex_on_1);
+    combine_materials(p, a, b);
+    return p;
+}
+
+/// What the solver remembered of a point goes over to its successor.
+void inherit(btManifoldPoint& p, const btManifoldPoint& old) {
+    p.m_appliedImpulse = old.m_appliedImpulse;
+    p.m_prevRHS = old.m_prevRHS;
+    p.m_appliedImpulseLateral1 = old.m_appliedImpulseLateral1;
+    p.m_appliedImpulseLateral2 = old.m_appliedImpulseLateral2;
+    p.m_lifeTime = old.m_lifeTime + 1;
+}
+
+int index_of(const btPersistentManifold& manifold, const PointKey& key) {
+    for (int i = 0; i < manifold.getNumContacts(); ++i) {
+        if (CollisionDispatcher::is_ours(manifold.getContactPoint(i))
+            && CollisionDispatcher::key(manifold.getContactPoint(i)) == key)
+            return i;
+    }
+    return -1;
+}
+
+void call_added(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
+    if (!gContactAddedCallback
+        || !((a->getCollisionFlags() | b->getCollisionFlags()) & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK))
+        return;
+    const btCollisionObjectWrapper wrap0(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1, -1);
+    const btCollisionObjectWrapper wrap1(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
+    (*gContactAddedCallback)(point, &wrap0, point.m_partId0, point.m_index0, &wrap1, point.m_partId1, point.m_index1);
+}
+
+/// The patch that suits a contact best, among those that suit at all; patches.size() when none does.
+std::size_t suitable(const std::vector<Patch>& patches, const Candidate& c, const ManifoldSettings& settings) {
+    std::size_t found = patches.size();
+    btScalar top = settings.patch_cosine;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        const btScalar cosine = patches[i].normal.dot(c.normal);
+        const btScalar away = (patches[i].centre - middle(c.on0, c.on1)).length2();
+        if (cosine >= top && away <= c.reach * c.reach) {
+            top = cosine;
+            found = i;
+        }
+    }
+    return found;
+}
+
+} // namespace
+
+void Patches::clear() {
+    for (btPersistentManifold* m : manifolds_) dispatcher_.releaseManifold(m);
+    manifolds_.clear();
+}
+
+void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings,
+                     DispatcherStats& stats) {
+    stats.contacts += candidates.size();
+    if (candidates.empty() && manifolds_.empty()) return;
+
+    // What was there, where it is now.
+    std::vector<Patch> patches;
+    std::vector<Old> old;
+    for (btPersistentManifold* m : manifolds_) {
+        Patch patch;
+        patch.manifold = m;
+        patch.normal.setZero();
+        patch.centre.setZero();
+        const int count = m->getNumContacts();
+        for (int i = 0; i < count; ++i) {
+            const btManifoldPoint& p = m->getContactPoint(i);
+            Old o{p,
+                  patches.size(),
+                  CollisionDispatcher::key(p),
+                  object0_->getWorldTransform()(p.m_localPointA),
+                  object1_->getWorldTransform()(p.m_localPointB),
+                  0};
+            o.distance = (o.on0 - o.on1).dot(p.m_normalWorldOnB);
+            patch.normal += p.m_normalWorldOnB;
+            patch.centre += middle(o.on0, o.on1);
+            old.push_back(o);
+        }
+        if (count > 0) {
+            patch.normal.safeNormalize();
+            patch.centre /= btScalar(count);
+        }
+        patches.push_back(patch);
+    }
+
+    // Each contact goes to the patch its key was in, else to the most suitable, else it opens a new one.
+    std::vector<const Old*> before(candidates.size(), nullptr);
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        const Candidate& contact = candidates[c];
+        std::size_t home = patches.size();
+        for (Old& o : old) {
+            if (!o.matched && o.key == contact.key) {
+                o.matched = true;
+                before[c] = &o;
+                // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
+                if (patches[o.patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
+                    home = o.patch;
+                break;
+            }
+        }
+        if (home == patches.size()) home = suitable(patches, contact, settings);
+        if (home == patches.size()) {
+            Patch patch;
+            patch.normal = contact.normal;
+            patch.centre = middle(contact.on0, contact.on1);
+            patches.push_back(patch);
+        }
+        patches[home].members.push_back(c);
+    }
+    for (std::size_t i = 0; i < old.size(); ++i) {
+        const Old& o = old[i];
+        if (o.matched || absent_steps(o.point) >= settings.keep_steps) continue;
+        const btScalar limit = patches[o.patch].manifold->getContactBreakingThreshold();
+        const btVector3 drift = o.on0 - o.on1 - o.distance * o.point.m_normalWorldOnB;
+        if (o.distance <= limit && drift.length2() <= limit * limit) patches[o.patch].held.push_back(i);
+    }
+
+    manifolds_.clear();
+    for (Patch& patch : patches) {
+        std::vector<Applicant> applicants;
+        for (const std::size_t c : patch.members) {
+            const Old* o = before[c];
+            applicants.push_back({middle(candidates[c].on0, candidates[c].on1), -candidates[c].distance, o != nullptr});
+        }
+        const std::vector<int> chosen = choose_points(applicants);
+        stats.reduced_away += applicants.size() - chosen.size();
+        const std::size_t room = 4 - chosen.size();
+        if (patch.held.size() > room) {
+            std::stable_sort(patch.held.begin(), patch.held.end(),
+                             [&](std::size_t a, std::size_t b) { return old[a].distance < old[b].distance; });
+            patch.held.resize(room);
+        }
+        if (chosen.empty() && patch.held.empty()) {
+            if (patch.manifold) dispatcher_.releaseManifold(patch.manifold);
+            continue;
+        }
+        if (!patch.manifold) patch.manifold = dispatcher_.getNewManifold(object0_, object1_);
+        btPersistentManifold& m = *patch.manifold;
+        const bool was_empty = m.getNumContacts() == 0;
+
+        std::vector<PointKey> wanted;
+        for (const int i : chosen) wanted.push_back(candidates[patch.members[static_cast<std::size_t>(i)]].key);
+        for (const std::size_t i : patch.held) wanted.push_back(old[i].key);
+        // Survivors are written first so that the manifold never runs empty in between: that would be an "ended" event.
+        for (const int i : chosen) {
+            const std::size_t c = patch.members[static_cast<std::size_t>(i)];
+            const int at = index_of(m, candidates[c].key);
+            if (at < 0) continue;
+            btManifoldPoint p = to_point(candidates[c], object0_, object1_);
+            inherit(p, m.getContactPoint(at));
+            p.m_userPersistentData = m.getContactPoint(at).m_userPersistentData;
+            m.getContactPoint(at) = p;
+            ++stats.points_matched;
+        }
+        for (const std::size_t i : patch.held) {
+            btManifoldPoint& p = m.getContactPoint(index_of(m, old[i].key));
+            p.m_positionWorldOnA = old[i].on0;
+            p.m_positionWorldOnB = old[i].on1;
+            p.m_distance1 = old[i].distance;
+            ++p.m_lifeTime;
+            p.m_contactPointFlags += 1 << absent_shift;
+            ++stats.points_held;
+        }
+        std::vector<std::size_t> arriving;
+        for (const int i : chosen) {
+            const std::size_t c = patch.members[static_cast<std::size_t>(i)];
+            if (index_of(m, candidates[c].key) < 0) arriving.push_back(c);
+        }
+        const auto leave = [&](bool down_to_one) {
+            for (int i = m.getNumContacts() - 1; i >= 0; --i) {
+                if (down_to_one && m.getNumContacts() == 1) return;
+                const PointKey k = CollisionDispatcher::key(m.getContactPoint(i));
+                if (std::find(wanted.begin(), wanted.end(), k) == wanted.end()) m.removeContactPoint(i);
+            }
+        };
+        leave(!arriving.empty());
+        for (const std::size_t c : arriving) {
+            btManifoldPoint p = to_point(candidates[c], object0_, object1_);
+            if (before[c]) {
+                inherit(p, before[c]->point);
+                ++stats.points_matched;
+            }
+            if (m.getNumContacts() == 4) leave(false);
+            m.addManifoldPoint(p, true);
+        }
+        leave(false);
+        for (int i = 0; i < m.getNumContacts(); ++i) {
+            if (absent_steps(m.getContactPoint(i)) == 0) call_added(m.getContactPoint(i), object0_, object1_);
+        }
+        if (was_empty && gContactStartedCallback) gContactStartedCallback(patch.manifold);
+        stats.points += static_cast<std::uint64_t>(m.getNumContacts());
+        ++stats.manifolds;
+        manifolds_.push_back(patch.manifold);
+    }
+}
+
+PointKey CollisionDispatcher::key(const btManifoldPoint& p) {
+    const bool on1 = (p.m_contactPointFlags & flag_vertex_on_1) != 0;
+    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, on1 ? p.m_index1 : p.m_index0};
+}
+
+bool CollisionDispatcher::is_ours(const btManifoldPoint& p) {
+    return (p.m_contactPointFlags & flag_ours) != 0;
+}
+
+} // namespace raycontact::bullet

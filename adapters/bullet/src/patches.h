@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <candidate.h>
+
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// The manifolds of one pair: one for each patch of contacts with like normals, so that a pair that touches in several
+/// places is held in all of them.
+class Patches {
+public:
+    Patches(btCollisionDispatcher& dispatcher, const btCollisionObject* object0, const btCollisionObject* object1)
+        : dispatcher_(dispatcher), object0_(object0), object1_(object1) {}
+    ~Patches() { clear(); }
+    Patches(const Patches&) = delete;
+    Patches& operator=(const Patches&) = delete;
+
+    /// This step's contacts, in the order of their keys. Points whose key is there again keep their impulses.
+    void update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings, DispatcherStats& stats);
+    void clear();
+    const std::vector<btPersistentManifold*>& manifolds() const { return manifolds_; }
+
+private:
+    btCollisionDispatcher& dispatcher_;
+    const btCollisionObject* object0_;
+    const btCollisionObject* object1_;
+    std::vector<btPersistentManifold*> manifolds_;
+};
+
+} // namespace raycontact::bullet

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <plane.h>
+
+#include <objects.h>
+
+#include <cmath>
+
+namespace raycontact::bullet {
+
+void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const btStaticPlaneShape& plane,
+                    const btTransform& plane_pose, btVector3& normal, std::vector<PlaneContact>& out) {
+    out.clear();
+    normal = (plane_pose.getBasis() * plane.getPlaneNormal()).normalized();
+    const double nx = double(normal.x()), ny = double(normal.y()), nz = double(normal.z());
+    const btVector3& origin = plane_pose.getOrigin();
+    const double height =
+        nx * double(origin.x()) + ny * double(origin.y()) + nz * double(origin.z()) + double(plane.getPlaneConstant());
+
+    // The tree rules out in the mesh's frame with slack; the depth is decided in double, in the world.
+    const btVector3 local = normal * mesh_pose.getBasis(); // row vector: the inverse rotation
+    const double at = nx * double(mesh_pose.getOrigin().x()) + ny * double(mesh_pose.getOrigin().y())
+                      + nz * double(mesh_pose.getOrigin().z());
+    const double slack = 1e-5 * (mesh.shape->radius() + std::fabs(height - at));
+    static thread_local std::vector<std::uint32_t> below;
+    mesh.tree->vertices_below(local, btScalar(height - at + slack), below);
+    const Pose pose = to_pose(mesh_pose);
+    for (const std::uint32_t v : below) {
+        const Vec3 p = transform_point(pose, mesh.shape->vertices()[v]);
+        const double depth = height - (nx * p.x + ny * p.y + nz * p.z);
+        if (depth > 0) out.push_back({v, btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z)), btScalar(depth)});
+    }
+}
+
+} // namespace raycontact::bullet
