@@ -48,11 +48,11 @@ SideIndex::Axis SideIndex::make_axis(int axis) const {
     index.per_v = cells / (component(solid_.box_max, kv) - index.low_v);
     std::vector<std::vector<std::uint32_t>> lists(cells * cells);
     for (std::uint32_t t = 0; t < solid_.triangles.size(); ++t) {
-        const auto [a, b, c] = solid_.triangles[t];
+        const auto& corners = solid_.triangles[t];
         const auto range = [&](int k, double low, double per) {
-            const double pa = component(solid_.vertices[a], k);
-            const double pb = component(solid_.vertices[b], k);
-            const double pc = component(solid_.vertices[c], k);
+            const double pa = component(solid_.vertices[corners[0]], k);
+            const double pb = component(solid_.vertices[corners[1]], k);
+            const double pc = component(solid_.vertices[corners[2]], k);
             const double slack = 1e-9 * solid_.diagonal;
             return std::array{cell_of(std::min({pa, pb, pc}) - slack, low, per),
                               cell_of(std::max({pa, pb, pc}) + slack, low, per)};

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hash of a small fixed scene, stored here: procedural meshes, no libm, so one number for every machine.
+#include "property/shapes.h"
+#include "reference/meshes.h"
+#include "reference/vector.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+struct Result {
+    std::string hash;
+    std::uint64_t contacts = 0, rays = 0;
+};
+
+Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spread, std::uint32_t steps) {
+    Scene scene(settings);
+    Random random(2013);
+    std::vector<Pose> poses;
+    for (std::uint32_t i = 0; i < 24; ++i) {
+        Pose pose = random.rotation();
+        pose.translation = spread * random.in_ball();
+        scene.add(Shape::make(meshes[i % meshes.size()]), pose);
+        poses.push_back(pose);
+    }
+    Result result;
+    ContactHash hash;
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        const auto contacts = scene.step();
+        hash.add(step, contacts);
+        result.contacts += contacts.size();
+        result.rays += scene.stats().rays;
+        for (BodyId body = 0; body < poses.size(); ++body) {
+            poses[body].translation = poses[body].translation + 0.02 * random.in_ball();
+            scene.set_pose(body, poses[body]);
+        }
+    }
+    result.hash = hash.hex();
+    return result;
+}
+
+void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t steps, const char* golden,
+                   std::uint64_t contacts) {
+    for (const Caster caster : {Caster::bvh, Caster::basic})
+        for (const std::uint32_t threads : {1u, 2u, 3u}) {
+            Settings settings;
+            settings.caster = caster;
+            settings.threads = threads;
+            const Result result = run(settings, meshes, spread, steps);
+            if (caster == Caster::bvh && threads == 1)
+                std::printf("[ counts   ] %u steps, %llu rays, %llu contacts, hash %s\n", steps,
+                            static_cast<unsigned long long>(result.rays),
+                            static_cast<unsigned long long>(result.contacts), result.hash.c_str());
+            EXPECT_EQ(result.hash, golden) << to_string(caster) << ", " << threads << " threads";
+            EXPECT_EQ(result.contacts, contacts) << to_string(caster) << ", " << threads << " threads";
+        }
+}
+
+// The meshes of this folder alone: a change here is a change of the library.
+TEST(golden, plain_meshes) {
+    expect_golden({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8)}, 1.5, 6,
+                  "0000000000000000", 0);
+}
+
+// The procedural meshes of the scenes: changes with them too.
+TEST(golden, scene_meshes) {
+    expect_golden({model_mesh("knot"), model_mesh("gear"), model_mesh("torus"), model_mesh("sphere")}, 1.0, 6,
+                  "0000000000000000", 0);
+}
+
+} // namespace

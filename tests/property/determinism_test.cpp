@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Equal input, equal bits: whatever the threads, the order of the pairs, or what happened in the scene before.
+#include "property/shapes.h"
+#include "reference/vector.h"
+
+#include <raycontact/error.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+// Forty bodies in a crowd that turn and drift a little each step.
+class Crowd {
+public:
+    explicit Crowd(const Settings& settings) : scene(settings), random_(99) {
+        const auto& subjects = closed_subjects();
+        for (std::uint32_t i = 0; i < 40; ++i) {
+            const Subject& subject = subjects[i % subjects.size()];
+            Pose pose = random_.rotation();
+            pose.translation = 1.75 * random_.in_ball();
+            scene.add(subject.shape, pose);
+            poses.push_back(pose);
+        }
+    }
+    void move() {
+        for (BodyId body = 0; body < poses.size(); ++body) {
+            const Vec3 by = 0.01 * random_.in_ball();
+            poses[body].translation = poses[body].translation + by;
+            scene.set_pose(body, poses[body]);
+        }
+    }
+    Scene scene;
+    std::vector<Pose> poses;
+
+private:
+    Random random_;
+};
+
+Settings threads(std::uint32_t count) {
+    Settings settings;
+    settings.threads = count;
+    return settings;
+}
+
+std::vector<Contact> copy(std::span<const Contact> contacts) {
+    return {contacts.begin(), contacts.end()};
+}
+
+struct Trace {
+    std::vector<std::vector<Contact>> steps;
+    std::string hash;
+};
+
+Trace run(const Settings& settings) {
+    Trace result;
+    Crowd crowd(settings);
+    ContactHash hash;
+    for (std::uint32_t step = 0; step < 5; ++step) {
+        result.steps.push_back(copy(crowd.scene.step()));
+        hash.add(step, result.steps.back());
+        crowd.move();
+    }
+    result.hash = hash.hex();
+    return result;
+}
+
+TEST(determinism, threads_and_reruns_change_nothing) {
+    const Trace first = run(threads(1));
+    std::size_t contacts = 0;
+    for (const auto& step : first.steps) contacts += step.size();
+    EXPECT_EQ(first.hash.size(), 16u);
+    std::size_t runs = 1;
+    for (const std::uint32_t count : {1u, 2u, 3u, 5u, 0u}) {
+        const Trace other = run(threads(count));
+        EXPECT_EQ(other.hash, first.hash) << count << " threads";
+        for (std::size_t i = 0; i < first.steps.size(); ++i)
+            EXPECT_TRUE(same_bits(first.steps[i], other.steps[i])) << count << " threads, step " << i;
+        ++runs;
+    }
+    std::printf("[ counts   ] %zu runs of %zu steps, %zu contacts each, hash %s\n", runs, first.steps.size(), contacts,
+                first.hash.c_str());
+    EXPECT_GE(contacts, 10000u);
+}
+
+TEST(determinism, hash_sees_every_field_and_the_step) {
+    const std::vector<Contact> contacts = run(threads(1)).steps[0];
+    const auto hash_of = [](std::uint32_t step, std::span<const Contact> list) {
+        ContactHash hash;
+        hash.add(step, list);
+        return hash.hex();
+    };
+    const std::string plain = hash_of(0, contacts);
+    EXPECT_EQ(plain, hash_of(0, contacts));
+    EXPECT_NE(plain, hash_of(1, contacts));
+    const auto changed = [&](auto change) {
+        std::vector<Contact> other = contacts;
+        change(other[other.size() / 2]);
+        return hash_of(0, other);
+    };
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_a; }));
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_b; }));
+    EXPECT_NE(plain, changed([](Contact& c) {
+                  c.vertex_body = c.vertex_body == VertexBody::a ? VertexBody::b : VertexBody::a;
+              }));
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.vertex; }));
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.triangle; }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.point.z = std::nextafter(c.point.z, 1e9); }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.normal[1] = std::nextafter(c.normal[1], 9.0f); }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.depth = std::nextafter(c.depth, 9.0f); }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.ray_length = std::nextafter(c.ray_length, 9.0f); }));
+}
+
+TEST(determinism, pairs_given_twice_or_in_any_order) {
+    Crowd crowd({});
+    const std::vector<Contact> expected = copy(crowd.scene.step());
+    std::vector<Pair> pairs(crowd.scene.pairs().begin(), crowd.scene.pairs().end());
+    ASSERT_GE(pairs.size(), 100u);
+    EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step(pairs)));
+    std::vector<Pair> mixed(pairs.rbegin(), pairs.rend());
+    mixed.insert(mixed.end(), pairs.begin(), pairs.end());
+    for (std::size_t i = 0; i < mixed.size(); i += 2) std::swap(mixed[i].first, mixed[i].second);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step(mixed)));
+    EXPECT_EQ(crowd.scene.stats().pairs, pairs.size());
+    EXPECT_TRUE(std::equal(pairs.begin(), pairs.end(), crowd.scene.pairs().begin(), crowd.scene.pairs().end()));
+    EXPECT_TRUE(crowd.scene.step(std::span<const Pair>{}).empty());
+    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{3, 3}}), InputError);
+    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{0, 4000}}), InputError);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step(pairs))); // a refused call left nothing behind
+}
+
+TEST(determinism, the_broad_phase_misses_no_contact) {
+    Crowd crowd({});
+    for (int step = 0; step < 3; ++step) {
+        const std::vector<Contact> found = copy(crowd.scene.step());
+        std::vector<Pair> all;
+        for (BodyId a = 0; a < crowd.poses.size(); ++a)
+            for (BodyId b = a + 1; b < crowd.poses.size(); ++b) all.emplace_back(a, b);
+        EXPECT_TRUE(same_bits(found, crowd.scene.step(all))) << "step " << step;
+        EXPECT_GE(found.size(), 1000u);
+        crowd.move();
+    }
+}
+
+TEST(determinism, bodies_that_come_and_go_leave_no_trace) {
+    Crowd plain({});
+    Crowd eventful({});
+    const Pose middle;
+    for (int step = 0; step < 4; ++step) {
+        const BodyId guest = eventful.scene.add(closed_subjects()[0].shape, middle);
+        EXPECT_GE(eventful.scene.step().size(), plain.scene.step().size());
+        eventful.scene.remove(guest);
+        const BodyId other = eventful.scene.add(closed_subjects()[1].shape, middle);
+        EXPECT_GT(other, guest) << "an id was given twice";
+        eventful.scene.remove(other);
+        EXPECT_THROW(eventful.scene.set_pose(other, middle), InputError);
+        EXPECT_TRUE(same_bits(plain.scene.step(), eventful.scene.step()));
+        EXPECT_EQ(eventful.scene.body_count(), plain.scene.body_count());
+        plain.move();
+        eventful.move();
+    }
+}
+
+TEST(determinism, removing_a_body_removes_its_contacts_and_no_others) {
+    Crowd crowd({});
+    std::vector<Contact> expected = copy(crowd.scene.step());
+    std::erase_if(expected, [](const Contact& c) { return c.body_a == 7 || c.body_b == 7; });
+    crowd.scene.remove(7);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
+    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{6, 7}}), InputError);
+}
+
+TEST(determinism, a_teleport_there_and_back_leaves_no_trace) {
+    Crowd crowd({});
+    const std::vector<Contact> expected = copy(crowd.scene.step());
+    Pose far = crowd.poses[5];
+    far.translation = {1e6, -1e6, 1e6};
+    crowd.scene.set_pose(5, far);
+    for (const Contact& c : crowd.scene.step()) EXPECT_TRUE(c.body_a != 5 && c.body_b != 5);
+    crowd.scene.set_pose(5, crowd.poses[5]);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
+}
+
+TEST(determinism, a_bad_pose_is_refused_by_name_and_the_old_one_stays) {
+    Crowd crowd({});
+    const std::vector<Contact> expected = copy(crowd.scene.step());
+    const Pose good = crowd.poses[13];
+    std::vector<Pose> bad(6, good);
+    bad[0].translation.y = std::numeric_limits<double>::quiet_NaN();
+    bad[1].rotation[4] = std::numeric_limits<double>::infinity();
+    for (double& r : bad[2].rotation) r *= 1.01;                                           // scaled
+    for (std::size_t i = 0; i < 3; ++i) bad[3].rotation[i] = -bad[3].rotation[i];          // mirrored
+    for (std::size_t i = 0; i < 3; ++i) bad[4].rotation[i] += 0.01 * good.rotation[i + 3]; // sheared
+    bad[5].rotation.fill(0);
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+        try {
+            crowd.scene.set_pose(13, bad[i]);
+            ADD_FAILURE() << "bad pose " << i << " was taken";
+        } catch (const InputError& error) {
+            const std::string text = error.what();
+            EXPECT_NE(text.find("13"), std::string::npos) << text;
+            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        }
+        EXPECT_EQ(crowd.scene.pose(13), good);
+        EXPECT_THROW(crowd.scene.add(closed_subjects()[0].shape, bad[i]), InputError);
+    }
+    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
+}
+
+} // namespace

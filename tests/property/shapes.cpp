@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "property/shapes.h"
+
+#include "reference/meshes.h"
+#include "reference/vector.h"
+
+#include "scenes/models/model.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace raycontact::reference {
+
+Subject::Subject(const Mesh& mesh) : shape(Shape::make(mesh)), solid(make_solid(*shape)) {}
+
+Mesh model_mesh(const char* kind) {
+    Mesh mesh = scenes::scene_model(kind, 902).mesh;
+    mesh.name = kind;
+    return mesh;
+}
+
+const std::vector<Subject>& closed_subjects() {
+    static const std::vector<Subject> subjects = [] {
+        std::vector<Subject> list;
+        for (const char* kind : {"knot", "gear", "torus", "sphere"}) list.emplace_back(model_mesh(kind));
+        for (const Mesh& mesh : {bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()})
+            list.emplace_back(mesh);
+        return list;
+    }();
+    return subjects;
+}
+
+const std::vector<Subject>& open_subjects() {
+    static const std::vector<Subject> subjects = [] {
+        std::vector<Subject> list;
+        for (const Mesh& mesh : {bowl_mesh(8), sheet_mesh(8)}) list.emplace_back(mesh);
+        return list;
+    }();
+    return subjects;
+}
+
+std::vector<const Subject*> pointers(const std::vector<Subject>& subjects) {
+    std::vector<const Subject*> list;
+    for (const Subject& subject : subjects) list.push_back(&subject);
+    return list;
+}
+
+Placement random_placement(const std::vector<const Subject*>& subjects, Random& random) {
+    const auto count = static_cast<std::uint32_t>(subjects.size());
+    Placement p;
+    p.a = subjects[random.below(count)];
+    p.b = subjects[random.below(count)];
+    p.pose_a = random.rotation();
+    p.pose_b = random.rotation();
+    const Vec3 middle = 5 * random.in_ball();
+    const double apart = 0.35 * (p.a->solid.diagonal + p.b->solid.diagonal);
+    p.pose_a.translation = middle - rotate(p.pose_a, p.a->solid.centre);
+    p.pose_b.translation = middle + apart * random.in_ball() - rotate(p.pose_b, p.b->solid.centre);
+    return p;
+}
+
+std::vector<Pair> add_all(Scene& scene, const std::vector<Placement>& placements, bool swapped) {
+    std::vector<Pair> pairs;
+    for (const Placement& p : placements) {
+        const BodyId first = swapped ? scene.add(p.b->shape, p.pose_b) : scene.add(p.a->shape, p.pose_a);
+        const BodyId second = swapped ? scene.add(p.a->shape, p.pose_a) : scene.add(p.b->shape, p.pose_b);
+        pairs.emplace_back(first, second);
+    }
+    return pairs;
+}
+
+std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts, std::size_t pairs) {
+    std::vector<std::span<const Contact>> parts;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < pairs; ++i) {
+        const std::size_t first = at;
+        while (at < contacts.size() && contacts[at].body_a == 2 * i) ++at;
+        parts.push_back(contacts.subspan(first, at - first));
+    }
+    return parts;
+}
+
+bool same_bits(std::span<const Contact> x, std::span<const Contact> y) {
+    // Field by field: a struct's padding has no meaning.
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const Contact& c, const Contact& d) {
+        const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
+        const auto wide = [](double f) { return std::bit_cast<std::uint64_t>(f); };
+        return c.body_a == d.body_a && c.body_b == d.body_b && c.vertex_body == d.vertex_body && c.vertex == d.vertex
+               && c.triangle == d.triangle && wide(c.point.x) == wide(d.point.x) && wide(c.point.y) == wide(d.point.y)
+               && wide(c.point.z) == wide(d.point.z) && bits(c.normal[0]) == bits(d.normal[0])
+               && bits(c.normal[1]) == bits(d.normal[1]) && bits(c.normal[2]) == bits(d.normal[2])
+               && bits(c.depth) == bits(d.depth) && bits(c.ray_length) == bits(d.ray_length);
+    });
+}
+
+} // namespace raycontact::reference
