@@ -84,6 +84,7 @@ private:
         const Margins m = ray_margins(source_, source_pose_, target_, target_pose_, vertex);
         if (m.least() < excuse) {
             ++sum_.excused;
+            ++sum_.excuses[m.name_of_least()];
             return;
         }
         const std::string margins = text(" (margins: edge %.2g, t_max %.2g, surface %.2g, bounds %.2g, exit %.2g)",
@@ -135,6 +136,8 @@ std::string Comparison::summary() const {
                          worst_normal, worst_depth, worst_ray_length, static_cast<unsigned long long>(excused),
                          rays ? 100.0 * static_cast<double>(excused) / static_cast<double>(rays) : 0.0,
                          static_cast<unsigned long long>(wrong));
+    for (const auto& [name, count] : excuses)
+        s += text("; by %s %llu", name.c_str(), static_cast<unsigned long long>(count));
     for (const std::string& complaint : complaints) s += "\n" + complaint;
     return s;
 }
