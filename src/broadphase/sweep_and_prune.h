@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/scene.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace raycontact {
+
+/// World box of a body, metres.
+struct WorldBox {
+    BodyId body = 0;
+    Vec3 low, high;
+};
+
+/// The box around a body-frame box placed by a pose, widened by `grow` metres.
+WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow);
+
+/// Sweep and prune along the axis on which the boxes lie farthest apart: O(n log n) plus the overlaps on that axis.
+/// Touching boxes count. The result is sorted and does not depend on the order of the input.
+class SweepAndPrune {
+public:
+    void find_pairs(std::vector<WorldBox>& boxes, std::vector<Pair>& pairs) const;
+};
+
+} // namespace raycontact

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pairs/ordered_pairs.h"
+
+#include <vector>
+
+namespace raycontact {
+
+/// Contacts of the target's frame to world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points in double.
+void place_contacts(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
+                    std::span<const Pair> pairs, std::span<kernels::LocalContact> local,
+                    std::vector<Contact>& contacts);
+
+} // namespace raycontact

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/device.h"
+
+#include <algorithm>
+#include <span>
+
+namespace raycontact {
+
+/// A typed device buffer that only ever grows, so that steps allocate nothing once they have seen the worst.
+template <typename T>
+class Array {
+public:
+    std::size_t size() const { return size_; }
+    std::size_t bytes() const { return buffer_ ? buffer_->bytes() : 0; }
+    Buffer* buffer() const { return buffer_.get(); }
+
+    /// Contents are lost when the array must grow.
+    void resize(Device& device, std::size_t size) {
+        if (size > capacity_) {
+            capacity_ = std::max<std::size_t>(size + size / 2, 16);
+            buffer_ = device.make_buffer(capacity_ * sizeof(T));
+        }
+        size_ = size;
+    }
+
+    void write(Device& device, std::span<const T> values) {
+        resize(device, values.size());
+        if (!values.empty()) device.queue().write(*buffer_, 0, values.data(), values.size_bytes());
+    }
+
+    /// Keeps what is there.
+    void append(Device& device, std::span<const T> values) {
+        const std::size_t old_size = size_;
+        if (old_size + values.size() > capacity_) {
+            Array grown;
+            grown.resize(device, old_size + values.size());
+            if (old_size > 0) device.queue().copy(*grown.buffer_, *buffer_, old_size * sizeof(T));
+            *this = std::move(grown);
+        }
+        size_ = old_size + values.size();
+        if (!values.empty()) device.queue().write(*buffer_, old_size * sizeof(T), values.data(), values.size_bytes());
+    }
+
+    void read(Device& device, std::span<T> values) const {
+        if (!values.empty()) device.queue().read(values.data(), *buffer_, 0, values.size_bytes());
+    }
+
+    T read_one(Device& device, std::size_t index) const {
+        T value;
+        device.queue().read(&value, *buffer_, index * sizeof(T), sizeof(T));
+        return value;
+    }
+
+private:
+    std::unique_ptr<Buffer> buffer_;
+    std::size_t size_ = 0;
+    std::size_t capacity_ = 0;
+};
+
+} // namespace raycontact

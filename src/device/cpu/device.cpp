@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/cpu/device.h"
+#include "device/cpu/float_environment.h"
+#include "device/cpu/kernel_table.h"
+
+#include <raycontact/error.h>
+
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <string>
+#include <unistd.h>
+
+namespace raycontact::cpu {
+
+namespace {
+
+constexpr std::align_val_t line{64};
+
+class HostBuffer : public Buffer {
+public:
+    explicit HostBuffer(std::size_t bytes) : data_(::operator new(bytes, line)), bytes_(bytes) {}
+    ~HostBuffer() override { ::operator delete(data_, line); }
+    HostBuffer(const HostBuffer&) = delete;
+    HostBuffer& operator=(const HostBuffer&) = delete;
+    std::size_t bytes() const override { return bytes_; }
+    std::byte* data() const { return static_cast<std::byte*>(data_); }
+
+private:
+    void* data_;
+    std::size_t bytes_;
+};
+
+std::byte* bytes_of(const Buffer& buffer) {
+    return static_cast<const HostBuffer&>(buffer).data();
+}
+
+// How many items make a slice worth a thread's while; a ray costs a hundred times what an element of a scan does.
+kernels::uint grain_of(KernelId kernel) {
+    switch (kernel) {
+    case KernelId::cast_rays_basic:
+        return 4;
+    case KernelId::cast_rays_bvh:
+        return 128;
+    case KernelId::count_clusters:
+    case KernelId::write_clusters:
+    case KernelId::count_rays:
+        return 256;
+    case KernelId::scan_sums:
+    case KernelId::scan_write:
+        return 16;
+    default:
+        return 4096;
+    }
+}
+
+class HostDevice : public Device, private Queue {
+public:
+    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table) {}
+
+    const DeviceInfo& info() const override { return info_; }
+    std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
+    Queue& queue() override { return *this; }
+
+private:
+    void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
+        std::memcpy(bytes_of(to) + offset, from, bytes);
+    }
+    void read(void* to, const Buffer& from, std::size_t offset, std::size_t bytes) override {
+        std::memcpy(to, bytes_of(from) + offset, bytes);
+    }
+    void copy(Buffer& to, const Buffer& from, std::size_t bytes) override {
+        std::memcpy(bytes_of(to), bytes_of(from), bytes);
+    }
+    void launch(KernelId kernel, kernels::uint count, std::span<const Argument> arguments) override {
+        const Entry entry = table_.entries[static_cast<std::size_t>(kernel)];
+        executor_.run(count, grain_of(kernel), [&](kernels::uint begin, kernels::uint end) {
+            const FloatEnvironment environment;
+            entry({begin, end}, count, arguments.data());
+        });
+    }
+    void finish() override {}
+
+    DeviceInfo info_;
+    Executor& executor_;
+    const KernelTable& table_;
+};
+
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string text; std::getline(file, text);)
+        if (text.starts_with("model name"))
+            if (const auto colon = text.find(": "); colon != std::string::npos) return text.substr(colon + 2);
+    return "processor";
+}
+
+} // namespace
+
+void* address_of(const Argument& argument) {
+    return argument.buffer ? bytes_of(*argument.buffer) : nullptr;
+}
+
+DeviceInfo describe() {
+    DeviceInfo info;
+    info.id = "cpu";
+    info.kind = "cpu";
+    info.name = processor_name();
+    info.driver = "native, " + std::string(usable_tables().front()->instruction_set);
+    info.cores = usable_cores();
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
+    info.memory_bytes =
+        pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page) : 0;
+    info.exact = true;
+    info.usable = true;
+    return info;
+}
+
+std::unique_ptr<Device> open(Executor& executor, std::string_view instruction_set) {
+    std::string known;
+    for (const KernelTable* table : usable_tables()) {
+        if (instruction_set.empty() || table->instruction_set == instruction_set)
+            return std::make_unique<HostDevice>(executor, *table);
+        known += (known.empty() ? "" : ", ") + std::string(table->instruction_set);
+    }
+    throw InputError("instruction set '" + std::string(instruction_set)
+                     + "' is unknown or not this processor's; use one of: " + known);
+}
+
+} // namespace raycontact::cpu

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+// The kernels' words in C++. FOR_EACH walks the slice that a thread was given; FOR_LANES promises that lanes do not
+// depend on each other.
+namespace raycontact::kernels {
+using uint = std::uint32_t;
+using ulong = std::uint64_t;
+struct Range {
+    uint begin, end;
+};
+} // namespace raycontact::kernels
+
+#define KERNEL inline
+#define DEVICE [[maybe_unused]] static inline
+#define GLOBAL
+#define RESTRICT __restrict__
+#define RANGE [[maybe_unused]] Range range,
+#define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
+#ifdef __clang__
+#define FOR_LANES(k, n) _Pragma("clang loop vectorize(assume_safety)") for (int k = 0; k < (n); ++k)
+#else
+#define FOR_LANES(k, n) _Pragma("GCC ivdep") for (int k = 0; k < (n); ++k)
+#endif
+
+namespace raycontact::kernels {
+DEVICE uint lowest_bit(uint bits) {
+    return static_cast<uint>(__builtin_ctz(bits));
+}
+DEVICE uint bit_count(uint bits) {
+    return static_cast<uint>(__builtin_popcount(bits));
+}
+} // namespace raycontact::kernels

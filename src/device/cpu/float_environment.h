@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#if defined(__x86_64__) || defined(__i386__)
+#include <xmmintrin.h>
+#else
+#include <cfenv>
+#endif
+
+namespace raycontact::cpu {
+
+/// Round to nearest, denormals kept, for as long as it lives: a caller may have set its own rules, and one flushed
+/// denormal would change a hash.
+class FloatEnvironment {
+public:
+#if defined(__x86_64__) || defined(__i386__)
+    FloatEnvironment() : saved_(_mm_getcsr()) {
+        _mm_setcsr(0x1f80u);
+    }
+    ~FloatEnvironment() {
+        _mm_setcsr(saved_);
+    }
+#else
+    FloatEnvironment() {
+        std::fegetenv(&saved_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~FloatEnvironment() {
+        std::fesetenv(&saved_);
+    }
+#endif
+    FloatEnvironment(const FloatEnvironment&) = delete;
+    FloatEnvironment& operator=(const FloatEnvironment&) = delete;
+
+private:
+#if defined(__x86_64__) || defined(__i386__)
+    unsigned saved_;
+#else
+    std::fenv_t saved_;
+#endif
+};
+
+} // namespace raycontact::cpu

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels as one instruction set sees them; CMake compiles this file once for each, with its flags.
+#include "device/cpu/kernel_table.h"
+
+namespace raycontact::kernels::RAYCONTACT_ISA {
+#include "device/cpu/product_error.h"
+
+#include "kernels/kernels.h"
+} // namespace raycontact::kernels::RAYCONTACT_ISA
+
+#define RAYCONTACT_STRING_(x) #x
+#define RAYCONTACT_STRING(x) RAYCONTACT_STRING_(x)
+
+namespace raycontact::cpu {
+
+extern const KernelTable RAYCONTACT_ISA;
+const KernelTable RAYCONTACT_ISA = {RAYCONTACT_STRING(RAYCONTACT_ISA),
+                                    {
+#define RAYCONTACT_KERNEL(name) &Unpacked<&kernels::RAYCONTACT_ISA::name>::run,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+                                    }};
+
+} // namespace raycontact::cpu

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The kernels' types and prototypes as the host sees them. A launch is typed by these prototypes on every device.
+#include "device/cpu/dialect.h"
+
+namespace raycontact::kernels {
+#include "kernels/types.h"
+namespace prototype {
+#include "device/cpu/product_error.h"
+
+#include "kernels/kernels.h"
+} // namespace prototype
+} // namespace raycontact::kernels
+
+namespace raycontact {
+
+enum class KernelId : unsigned {
+#define RAYCONTACT_KERNEL(name) name,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+    count
+};
+
+template <KernelId id>
+struct Prototype;
+#define RAYCONTACT_KERNEL(name)                                                                                        \
+    template <>                                                                                                        \
+    struct Prototype<KernelId::name> {                                                                                 \
+        using type = decltype(&kernels::prototype::name);                                                              \
+    };
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+
+} // namespace raycontact

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/launch.h"
+
+namespace raycontact {
+
+/// Exclusive prefix sum on a device; keeps its scratch memory between calls.
+class Scan {
+public:
+    /// firsts[i] = values[0] + ... + values[i - 1]; returns the total.
+    kernels::uint run(Device& device, const Array<kernels::uint>& values, Array<kernels::uint>& firsts);
+
+private:
+    Array<kernels::uint> sums_;
+};
+
+} // namespace raycontact

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace raycontact {
+
+/// Runs slices of an index range on a fixed number of threads. Which thread takes a slice never decides a result.
+/// Built on oneTBB, or on plain std::thread where a sanitizer must see every lock (RAYCONTACT_EXECUTOR=std).
+class Executor {
+public:
+    /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core.
+    explicit Executor(std::uint32_t threads, int core = -1);
+    ~Executor();
+    Executor(const Executor&) = delete;
+    Executor& operator=(const Executor&) = delete;
+
+    std::uint32_t threads() const;
+    /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, and returns when all are done. The first
+    /// exception of a slice is thrown here.
+    void run(std::uint32_t count, std::uint32_t grain, const std::function<void(std::uint32_t, std::uint32_t)>& slice);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+std::uint32_t usable_cores();
+
+} // namespace raycontact

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays from the vertices of one mesh along their inward normals into the other (Hermann et al. 2008; paper
+// section 2.1).
+
+#define SIDE_DIRECTIONS 4
+#define CASTER_BASIC 0
+#define CASTER_BVH 1
+
+// Directions unrelated to each other and to any axis, for the rare ray whose own direction cannot tell.
+DEVICE float side_direction(uint i, uint axis) {
+    const float table[3 * SIDE_DIRECTIONS] = {0.5402f,  0.3173f,  0.7794f, -0.6311f, 0.7213f,  0.2856f,
+                                              -0.2917f, -0.8349f, 0.4667f, 0.8123f,  -0.4461f, -0.3758f};
+    return table[3u * i + axis];
+}
+
+typedef struct {
+    float position[3]; // target frame
+    float direction[3];
+    float reach;
+} SourceRay;
+
+DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
+                            uint lane) {
+    SourceRay ray;
+    GLOBAL const float* r = pair->rotation;
+    const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
+    const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];
+    for (int i = 0; i < 3; ++i) {
+        ray.position[i] = ((r[3 * i] * x + r[3 * i + 1] * y) + r[3 * i + 2] * z) + pair->translation[i];
+        ray.direction[i] = (r[3 * i] * dx + r[3 * i + 1] * dy) + r[3 * i + 2] * dz;
+    }
+    ray.reach = block->exit[lane];
+    return ray;
+}
+
+// -1: a face met from outside comes first, or nothing is hit; 1: one met from inside; 0: within rounding of each other.
+DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
+    if (closest->back >= UNBOUNDED || closest->back > reach) return -1;
+    if (closest->front + tolerance < closest->back) return -1;
+    return closest->back + tolerance < closest->front ? 1 : 0;
+}
+
+DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, const ShapeHeader* shape,
+                        GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    if (caster == CASTER_BASIC) return traverse_basic(ray, reach, shape, blocks);
+    return traverse_bvh(ray, reach, shape, nodes, blocks);
+}
+
+// In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
+// faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
+// contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
+// An open mesh has no inside, so there such a ray is no contact.
+DEVICE Hit cast_ray(const uint caster, const SourceRay ray, const ShapeHeader* shape, GLOBAL const Node* RESTRICT nodes,
+                    GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+    RayFrame frame = frame_ray(ray.position, ray.direction);
+    const Closest own = traverse(caster, &frame, ray.reach, shape, nodes, blocks);
+    int decided = verdict(&own, ray.reach, shape->tolerance);
+    uint sides = 0u;
+    while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
+        const float direction[3] = {side_direction(sides, 0u), side_direction(sides, 1u), side_direction(sides, 2u)};
+        frame = frame_ray(ray.position, direction);
+        const Closest side = traverse(caster, &frame, UNBOUNDED, shape, nodes, blocks);
+        decided = verdict(&side, UNBOUNDED, shape->tolerance);
+        ++sides;
+    }
+    Hit hit;
+    hit.triangle = NONE;
+    hit.distance = 0.0f;
+    hit.facing = 0.0f;
+    hit.sides = sides;
+    if (decided > 0) {
+        const Packed3 n = normals[shape->normal_first + own.back_triangle];
+        hit.triangle = own.back_triangle;
+        hit.distance = own.back;
+        hit.facing = (ray.direction[0] * n.x + ray.direction[1] * n.y) + ray.direction[2] * n.z;
+    }
+    return hit;
+}
+
+KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+                          GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                          GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                          GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
+                          GLOBAL Hit* RESTRICT hits) {
+    FOR_EACH(i, count) {
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        const ShapeHeader shape = shapes[pair->target];
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        hits[i] = cast_ray(CASTER_BVH, ray, &shape, nodes, blocks, normals);
+    }
+}
+
+KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                            GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
+                            GLOBAL Hit* RESTRICT hits) {
+    FOR_EACH(i, count) {
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        const ShapeHeader shape = shapes[pair->target];
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        hits[i] = cast_ray(CASTER_BASIC, ray, &shape, nodes, blocks, normals);
+    }
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every kernel, in the order of the pipeline; included after one dialect.h and types.h. No include guards: the CPU
+// device compiles this text once per instruction set.
+#include "kernels/triangle.h"
+
+#include "kernels/traverse.h"
+
+#include "kernels/find_vertices.h"
+
+#include "kernels/cast_rays.h"
+
+#include "kernels/emit_contacts.h"
+
+#include "kernels/scan.h"

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two casters (paper section 5.1). Both end with the same closest hits: the boxes hold every hit that counts.
+
+DEVICE Closest nothing_hit(float reach, float tolerance) {
+    Closest closest;
+    closest.back = UNBOUNDED;
+    closest.front = UNBOUNDED;
+    closest.back_triangle = NONE;
+    closest.limit = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED;
+    return closest;
+}
+
+DEVICE Closest traverse_basic(const RayFrame* ray, float reach, const ShapeHeader* shape,
+                              GLOBAL const TriangleBlock* RESTRICT blocks) {
+    Closest closest = nothing_hit(reach, shape->tolerance);
+    for (uint b = 0u; b < shape->triangle_block_count; ++b)
+        hit_block(&closest, ray, blocks + shape->triangle_block_first + b, shape->tolerance, shape->volume_tolerance);
+    return closest;
+}
+
+// A bit for each child box that the ray meets no farther than the limit.
+DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, float limit, float tolerance) {
+    GLOBAL const float* RESTRICT near_x = node->bounds[ray->near_plane[0]];
+    GLOBAL const float* RESTRICT near_y = node->bounds[ray->near_plane[1]];
+    GLOBAL const float* RESTRICT near_z = node->bounds[ray->near_plane[2]];
+    GLOBAL const float* RESTRICT far_x = node->bounds[ray->far_plane[0]];
+    GLOBAL const float* RESTRICT far_y = node->bounds[ray->far_plane[1]];
+    GLOBAL const float* RESTRICT far_z = node->bounds[ray->far_plane[2]];
+    const float px = ray->raw_origin[0], py = ray->raw_origin[1], pz = ray->raw_origin[2];
+    const float ix = ray->inverse[0], iy = ray->inverse[1], iz = ray->inverse[2];
+    uint children = 0u;
+    FOR_LANES(k, NODE_LANES) {
+        const float nx = (near_x[k] - px) * ix, ny = (near_y[k] - py) * iy, nz = (near_z[k] - pz) * iz;
+        const float fx = (far_x[k] - px) * ix, fy = (far_y[k] - py) * iy, fz = (far_z[k] - pz) * iz;
+        const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
+        const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
+        const float enter = nxy > nzt ? nxy : nzt;
+        const float leave = fxy < fzt ? fxy : fzt;
+        children |= (uint)(enter <= leave) << k;
+    }
+    return children;
+}
+
+// Stackless: eight bits a level remember the children still to visit, parents are linked (after Barringer and
+// Akenine-Moeller 2013). Going up tests nothing again.
+DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, const ShapeHeader* shape,
+                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    Closest closest = nothing_hit(reach, shape->tolerance);
+    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
+    ulong trail = 0u;
+    uint at = 0u;
+    uint children = hit_children(ray, tree, closest.limit, shape->tolerance);
+    for (;;) {
+        while (children != 0u) {
+            const uint lane = lowest_bit(children);
+            const uint child = tree[at].child[lane];
+            children &= children - 1u;
+            if ((child & LEAF) != 0u) {
+                hit_block(&closest, ray, blocks + shape->triangle_block_first + (child & ~LEAF), shape->tolerance,
+                          shape->volume_tolerance);
+            } else {
+                trail = (trail << NODE_LANES) | (ulong)children;
+                at = child;
+                children = hit_children(ray, tree + at, closest.limit, shape->tolerance);
+            }
+        }
+        if (at == 0u) return closest;
+        at = tree[at].parent;
+        children = (uint)(trail & 0xffu);
+        trail >>= NODE_LANES;
+    }
+}

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray against triangle after Woop, Benthin and Wald 2013: shear so that the ray is the z axis, then three 2D edge
+// functions. Two facts make it exact in float32, given the sheared coordinates, which neighbours share:
+// rounding is monotone, so fl(a) - fl(b) has the sign of a - b unless it is 0; and product_error() gives what the
+// rounding of a product lost, which decides the rest.
+
+typedef struct {
+    float origin[3]; // permuted: x, y, z with z the largest component of the direction
+    float shear[3];  // x / z, y / z, 1 / z
+    uint axis[3];
+    float raw_origin[3];
+    float inverse[3];   // 1 / direction, huge instead of infinite
+    uint near_plane[3]; // rows of Node.bounds
+    uint far_plane[3];
+} RayFrame;
+
+// Closest hits so far. `limit` bounds what can still change the outcome.
+typedef struct {
+    float back, front; // distances of the closest face met from inside, from outside
+    uint back_triangle;
+    float limit;
+} Closest;
+
+DEVICE float magnitude_of(float x) {
+    return x < 0.0f ? -x : x;
+}
+
+DEVICE float safe_inverse(float d) {
+    const float huge = 1.0e20f;
+    return magnitude_of(d) < 1.0e-20f ? (d < 0.0f ? -huge : huge) : 1.0f / d;
+}
+
+DEVICE RayFrame frame_ray(const float* p, const float* d) {
+    RayFrame ray;
+    const float ax = magnitude_of(d[0]), ay = magnitude_of(d[1]), az = magnitude_of(d[2]);
+    const uint z = ax > ay ? (ax > az ? 0u : 2u) : (ay > az ? 1u : 2u);
+    uint x = z == 2u ? 0u : z + 1u;
+    uint y = x == 2u ? 0u : x + 1u;
+    if (d[z] < 0.0f) { // keeps the winding
+        const uint swap = x;
+        x = y;
+        y = swap;
+    }
+    ray.axis[0] = x;
+    ray.axis[1] = y;
+    ray.axis[2] = z;
+    ray.shear[2] = 1.0f / d[z];
+    ray.shear[0] = d[x] / d[z];
+    ray.shear[1] = d[y] / d[z];
+    for (int i = 0; i < 3; ++i) {
+        ray.origin[i] = p[ray.axis[i]];
+        ray.raw_origin[i] = p[i];
+        ray.inverse[i] = safe_inverse(d[i]);
+        ray.near_plane[i] = ray.inverse[i] < 0.0f ? 3u + (uint)i : (uint)i;
+        ray.far_plane[i] = ray.inverse[i] < 0.0f ? (uint)i : 3u + (uint)i;
+    }
+    return ray;
+}
+
+DEVICE void consider(Closest* closest, float t, bool back, uint triangle, float tolerance) {
+    if (back) {
+        if (t < closest->back || (t == closest->back && triangle < closest->back_triangle)) {
+            closest->back = t;
+            closest->back_triangle = triangle;
+        }
+    } else if (t < closest->front) {
+        closest->front = t;
+    }
+    const float nearer = closest->back < closest->front ? closest->back : closest->front;
+    if (nearer + tolerance < closest->limit) closest->limit = nearer + tolerance;
+}
+
+// a * b - c * d, relative error of a few units in the last place, sign exact.
+DEVICE float cross_accurate(float a, float b, float c, float d) {
+    const float p = a * b, q = c * d;
+    return (p - q) + (product_error(a, b, p) - product_error(c, d, q));
+}
+
+// One lane again, with accurate barycentrics, so that the distance found lies in every box that holds the triangle.
+DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
+                     float tolerance) {
+    float x[3], y[3], z[3];
+    for (int c = 0; c < 3; ++c) {
+        z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+        x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * z[c];
+        y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * z[c];
+    }
+    const float u = cross_accurate(x[2], y[1], y[2], x[1]);
+    const float v = cross_accurate(x[0], y[2], y[0], x[2]);
+    const float w = cross_accurate(x[1], y[0], y[1], x[0]);
+    const bool front_side = u >= 0.0f && v >= 0.0f && w >= 0.0f;
+    const bool back_side = u <= 0.0f && v <= 0.0f && w <= 0.0f;
+    const float area = (u + v) + w;
+    if (!(front_side || back_side) || area == 0.0f) return; // edge-on: the neighbours take the hit
+    const float t = ((u * z[0] + v * z[1] + w * z[2]) / area) * ray->shear[2];
+    // A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does
+    // not.
+    if (t < (back_side ? 0.0f : -tolerance) || t > closest->limit) return;
+    consider(closest, t, back_side, block->triangle[lane], tolerance);
+}
+
+// Sixteen triangles at once: which lanes may be hit no farther than the limit? Lanes let through in excess are
+// harmless.
+DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
+                      float tolerance, float volume_tolerance) {
+    GLOBAL const float* RESTRICT ax = block->corner[0 + ray->axis[0]];
+    GLOBAL const float* RESTRICT ay = block->corner[0 + ray->axis[1]];
+    GLOBAL const float* RESTRICT az = block->corner[0 + ray->axis[2]];
+    GLOBAL const float* RESTRICT bx = block->corner[3 + ray->axis[0]];
+    GLOBAL const float* RESTRICT by = block->corner[3 + ray->axis[1]];
+    GLOBAL const float* RESTRICT bz = block->corner[3 + ray->axis[2]];
+    GLOBAL const float* RESTRICT cx = block->corner[6 + ray->axis[0]];
+    GLOBAL const float* RESTRICT cy = block->corner[6 + ray->axis[1]];
+    GLOBAL const float* RESTRICT cz = block->corner[6 + ray->axis[2]];
+    const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
+    const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
+    const float limit = closest->limit;
+    uint lanes = 0u;
+    FOR_LANES(k, TRIANGLE_LANES) {
+        const float z0 = az[k] - oz, z1 = bz[k] - oz, z2 = cz[k] - oz;
+        const float x0 = (ax[k] - ox) - sx * z0, y0 = (ay[k] - oy) - sy * z0;
+        const float x1 = (bx[k] - ox) - sx * z1, y1 = (by[k] - oy) - sy * z1;
+        const float x2 = (cx[k] - ox) - sx * z2, y2 = (cy[k] - oy) - sy * z2;
+        const float u = x2 * y1 - y2 * x1;
+        const float v = x0 * y2 - y0 * x2;
+        const float w = x1 * y0 - y1 * x0;
+        const float least = u < v ? (u < w ? u : w) : (v < w ? v : w);
+        const float most = u > v ? (u > w ? u : w) : (v > w ? v : w);
+        const float area = (u + v) + w;
+        const float reach = (u * z0 + v * z1 + w * z2) * sz;
+        const float size = area < 0.0f ? -area : area;
+        const float far = area < 0.0f ? -reach : reach;
+        const uint inside = (least >= 0.0f) | (most <= 0.0f);
+        const uint ahead = far >= -tolerance * size - volume_tolerance;
+        const uint within = far <= limit * size + volume_tolerance;
+        lanes |= (inside & ahead & within) << k;
+    }
+    while (lanes != 0u) {
+        const uint lane = lowest_bit(lanes);
+        lanes &= lanes - 1u;
+        hit_lane(closest, ray, block, lane, tolerance);
+    }
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
+#define TRIANGLE_LANES 16
+#define NODE_LANES 8
+#define VERTEX_LANES 16
+#define CLUSTER_LEVELS 4
+#define NODE_LEVELS 8
+#define NONE 0xffffffffu
+#define LEAF 0x80000000u
+#define UNBOUNDED 3.0e38f
+
+#define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
+
+// Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which no test passes.
+typedef struct {
+    float corner[9][TRIANGLE_LANES];
+    uint triangle[TRIANGLE_LANES];
+} TriangleBlock;
+WIRE_SIZE(TriangleBlock, 640);
+
+// Eight child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
+// lower, bounds[3 + axis] the upper planes. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
+typedef struct {
+    float bounds[6][NODE_LANES];
+    uint child[NODE_LANES];
+    uint parent;
+    uint unused[7];
+} Node;
+WIRE_SIZE(Node, 256);
+
+// Sixteen vertices that cast rays. direction is the inward normal; exit the distance at which it leaves its own mesh.
+typedef struct {
+    float position[3][VERTEX_LANES];
+    float direction[3][VERTEX_LANES];
+    float exit[VERTEX_LANES];
+    uint vertex[VERTEX_LANES];
+} VertexBlock;
+WIRE_SIZE(VertexBlock, 512);
+
+// Boxes of sixteen blocks of the level below: centre and half size. Empty lanes hold NaN.
+typedef struct {
+    float centre[3][VERTEX_LANES];
+    float half_size[3][VERTEX_LANES];
+} ClusterBlock;
+WIRE_SIZE(ClusterBlock, 384);
+
+// Where a shape's arrays begin in the device's buffers, and the rounding it allows for.
+typedef struct {
+    uint node_first;
+    uint triangle_block_first;
+    uint triangle_block_count;
+    uint vertex_block_first;
+    uint vertex_block_count;
+    uint cluster_first[CLUSTER_LEVELS]; // level 0 bounds vertex blocks, level l + 1 bounds clusters of level l
+    uint cluster_count[CLUSTER_LEVELS];
+    uint cluster_levels;
+    uint normal_first;
+    uint closed;
+    float tolerance;        // metres: distances of two hits closer than this are not told apart
+    float volume_tolerance; // metres^3: slack of the division-free distance test
+    float unused;
+} ShapeHeader;
+WIRE_SIZE(ShapeHeader, 76);
+
+// Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
+typedef struct {
+    float rotation[9];
+    float translation[3];
+    float bounds[6]; // lower x y z, upper x y z
+    uint source;     // shapes
+    uint target;
+} OrderedPair;
+WIRE_SIZE(OrderedPair, 80);
+
+typedef struct {
+    uint pair;
+    uint vertex_block; // absolute
+    uint lanes;        // a bit for each vertex inside the bounds
+} Cluster;
+WIRE_SIZE(Cluster, 12);
+
+typedef struct {
+    uint pair;
+    uint slot; // absolute: VERTEX_LANES * vertex block + lane
+} Ray;
+WIRE_SIZE(Ray, 8);
+
+// triangle: of the target shape, NONE without contact. facing: ray direction . face normal, so that the re-projected
+// depth is distance * facing (paper section 3.2). sides: extra directions cast to tell inside from outside.
+typedef struct {
+    uint triangle;
+    float distance;
+    float facing;
+    uint sides;
+} Hit;
+WIRE_SIZE(Hit, 16);
+
+typedef struct {
+    float x, y, z;
+} Packed3;
+WIRE_SIZE(Packed3, 12);
+
+typedef struct {
+    uint pair;
+    uint vertex;   // of the source shape
+    uint triangle; // of the target shape
+    float distance;
+    float facing;
+    Packed3 normal; // of the face, target frame
+} LocalContact;
+WIRE_SIZE(LocalContact, 32);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pairs/ordered_pairs.h"
+
+#include "shape/shape_data.h"
+
+namespace raycontact {
+
+namespace {
+
+// An open mesh has no inside that its box could bound: vertices that far beyond the box may still reach it.
+float reach_into(const ShapeData& target, const ShapeData& source) {
+    if (target.header.closed) return 0;
+    return source.exit_max > 0 ? source.exit_max : static_cast<float>(source.diagonal);
+}
+
+kernels::OrderedPair order(const PlacedBody& source, const PlacedBody& target) {
+    const Pose relative = relative_pose(target.centred, source.centred);
+    const ShapeData& shape = target.shape->data();
+    const float grow = reach_into(shape, source.shape->data());
+    kernels::OrderedPair pair{};
+    for (int i = 0; i < 9; ++i) pair.rotation[i] = static_cast<float>(relative.rotation[i]);
+    pair.translation[0] = static_cast<float>(relative.translation.x);
+    pair.translation[1] = static_cast<float>(relative.translation.y);
+    pair.translation[2] = static_cast<float>(relative.translation.z);
+    pair.bounds[0] = shape.low.x - grow;
+    pair.bounds[1] = shape.low.y - grow;
+    pair.bounds[2] = shape.low.z - grow;
+    pair.bounds[3] = shape.high.x + grow;
+    pair.bounds[4] = shape.high.y + grow;
+    pair.bounds[5] = shape.high.z + grow;
+    pair.source = source.shape_index;
+    pair.target = target.shape_index;
+    return pair;
+}
+
+} // namespace
+
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                 std::vector<kernels::OrderedPair>& ordered) {
+    ordered.resize(2 * pairs.size());
+    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t p = begin; p < end; ++p) {
+            const PlacedBody& a = bodies[pairs[p].first];
+            const PlacedBody& b = bodies[pairs[p].second];
+            ordered[2 * p] = order(a, b);
+            ordered[2 * p + 1] = order(b, a);
+        }
+    });
+}
+
+} // namespace raycontact

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/host_kernels.h"
+#include "executor/executor.h"
+
+#include <raycontact/scene.h>
+
+#include <vector>
+
+namespace raycontact {
+
+/// A body as the pipeline sees it.
+struct PlacedBody {
+    const Shape* shape = nullptr;
+    kernels::uint shape_index = 0; ///< in the shape store
+    Pose pose;                     ///< of the body frame
+    Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
+};
+
+/// Each pair twice, a into b and b into a, in the order of `pairs`: relative poses are formed in double and only then
+/// rounded, so that nothing is lost far from the origin.
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                 std::vector<kernels::OrderedPair>& ordered);
+
+} // namespace raycontact

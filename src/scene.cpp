@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/scene.h>
+
+#include "broadphase/sweep_and_prune.h"
+#include "pose_fault.h"
+#include "shape/shape_data.h"
+#include "step.h"
+
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace raycontact {
+
+namespace {
+
+void refuse_faulty(const Pose& pose, BodyId body) {
+    if (const char* fault = pose_fault(pose)) throw InputError("body " + std::to_string(body) + ": " + fault);
+}
+
+} // namespace
+
+struct Scene::State {
+    struct Body {
+        std::shared_ptr<const Shape> shape; ///< empty once removed
+        Pose pose;
+    };
+
+    explicit State(const Settings& settings) : narrow(settings) {}
+
+    const Body& existing(BodyId body) const {
+        if (body >= bodies.size() || !bodies[body].shape)
+            throw InputError("body " + std::to_string(body) + " is not in the scene; add() gives the ids that are");
+        return bodies[body];
+    }
+
+    void place_bodies() {
+        if (narrow.shapes().pack()) {
+            for (BodyId id = 0; id < bodies.size(); ++id)
+                if (bodies[id].shape) placed[id].shape_index = narrow.shapes().index_of(bodies[id].shape.get());
+        }
+        for (BodyId id = 0; id < bodies.size(); ++id) {
+            if (!bodies[id].shape) continue;
+            placed[id].pose = placed[id].centred = bodies[id].pose;
+            placed[id].centred.translation = transform_point(bodies[id].pose, bodies[id].shape->centre());
+        }
+    }
+
+    // How far beyond its box an open mesh can be reached: the farthest any ray of this scene goes.
+    double reach_into_open() const {
+        double reach = 0;
+        for (const Body& body : bodies) {
+            if (!body.shape) continue;
+            const ShapeData& shape = body.shape->data();
+            reach = std::max(reach, shape.exit_max > 0 ? double(shape.exit_max) : shape.diagonal);
+        }
+        return reach;
+    }
+
+    void find_pairs() {
+        double reach = -1;
+        boxes.clear();
+        for (BodyId id = 0; id < bodies.size(); ++id) {
+            if (!bodies[id].shape) continue;
+            const Shape& shape = *bodies[id].shape;
+            const bool open = shape.data().header.closed == 0;
+            if (open && reach < 0) reach = reach_into_open();
+            boxes.push_back(world_box(id, shape.box_min(), shape.box_max(), bodies[id].pose, open ? reach : 0));
+        }
+        broad.find_pairs(boxes, pairs);
+    }
+
+    NarrowPhase narrow;
+    SweepAndPrune broad;
+    std::vector<Body> bodies;
+    std::vector<PlacedBody> placed;
+    std::vector<WorldBox> boxes;
+    std::vector<Pair> pairs;
+    std::vector<Contact> contacts;
+    StepStats stats;
+};
+
+Scene::Scene(const Settings& settings) : state_(std::make_unique<State>(settings)) {}
+Scene::~Scene() = default;
+
+BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
+    const auto id = static_cast<BodyId>(state_->bodies.size());
+    if (!shape) throw InputError("body " + std::to_string(id) + ": the shape is null");
+    refuse_faulty(pose, id);
+    state_->narrow.shapes().add(shape);
+    state_->placed.push_back({shape.get(), state_->narrow.shapes().index_of(shape.get()), pose, pose});
+    state_->bodies.push_back({std::move(shape), pose});
+    return id;
+}
+
+void Scene::remove(BodyId body) {
+    state_->existing(body);
+    state_->narrow.shapes().remove(state_->bodies[body].shape.get());
+    state_->bodies[body].shape.reset();
+    state_->placed[body].shape = nullptr;
+}
+
+void Scene::set_pose(BodyId body, const Pose& pose) {
+    state_->existing(body);
+    refuse_faulty(pose, body);
+    state_->bodies[body].pose = pose;
+}
+
+const Pose& Scene::pose(BodyId body) const {
+    return state_->existing(body).pose;
+}
+const Shape& Scene::shape(BodyId body) const {
+    return *state_->existing(body).shape;
+}
+
+std::uint32_t Scene::body_count() const {
+    return static_cast<std::uint32_t>(std::count_if(state_->bodies.begin(), state_->bodies.end(),
+                                                    [](const auto& body) { return body.shape != nullptr; }));
+}
+
+std::span<const Contact> Scene::step() {
+    const auto start = std::chrono::steady_clock::now();
+    state_->find_pairs();
+    const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    state_->place_bodies();
+    state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
+    state_->stats.broad_ms = broad;
+    return state_->contacts;
+}
+
+std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
+    for (const Pair& pair : pairs) {
+        state_->existing(pair.first);
+        state_->existing(pair.second);
+        if (pair.first == pair.second)
+            throw InputError("body " + std::to_string(pair.first) + " is paired with itself; pairs need two bodies");
+    }
+    state_->pairs.assign(pairs.begin(), pairs.end());
+    for (Pair& pair : state_->pairs)
+        if (pair.first > pair.second) std::swap(pair.first, pair.second);
+    std::sort(state_->pairs.begin(), state_->pairs.end());
+    state_->pairs.erase(std::unique(state_->pairs.begin(), state_->pairs.end()), state_->pairs.end());
+    state_->place_bodies();
+    state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
+    state_->stats.broad_ms = 0;
+    return state_->contacts;
+}
+
+std::span<const Contact> Scene::contacts() const {
+    return state_->contacts;
+}
+const StepStats& Scene::stats() const {
+    return state_->stats;
+}
+std::span<const Pair> Scene::pairs() const {
+    return state_->pairs;
+}
+
+} // namespace raycontact

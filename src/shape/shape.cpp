@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/shape.h>
+
+#include "mesh/adjacency.h"
+#include "shape/bvh.h"
+#include "shape/clusters.h"
+#include "shape/exit_distances.h"
+#include "shape/shape_data.h"
+#include "shape/vector.h"
+#include "shape/vertex_normals.h"
+
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycontact {
+
+namespace {
+
+constexpr double rounding = 1.1920929e-7; // 2^-23
+
+void place_box(ShapeData& shape) {
+    Vec3 low = shape.mesh.vertices[0], high = low;
+    for (const Vec3& v : shape.mesh.vertices) {
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    shape.centre = 0.5 * (low + high);
+}
+
+// From here on the shape is what float32 says: the double positions follow, so that every user sees one geometry.
+void round_vertices(ShapeData& shape) {
+    shape.points.reserve(shape.mesh.vertices.size());
+    Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (Vec3& v : shape.mesh.vertices) {
+        const Vec3 offset = v - shape.centre;
+        const Point3f p{static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)};
+        shape.points.push_back(p);
+        v = shape.centre + Vec3{p.x, p.y, p.z};
+        shape.radius = std::max(shape.radius, length(v));
+        low = {std::min(low.x, double(p.x)), std::min(low.y, double(p.y)), std::min(low.z, double(p.z))};
+        high = {std::max(high.x, double(p.x)), std::max(high.y, double(p.y)), std::max(high.z, double(p.z))};
+    }
+    shape.diagonal = length(high - low);
+    shape.low = {static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
+    shape.high = {static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
+    shape.box_min = shape.centre + low;
+    shape.box_max = shape.centre + high;
+}
+
+double longest_edge(const ShapeData& shape, std::span<const Vec3> offsets) {
+    double longest = 0;
+    for (const auto& t : shape.mesh.triangles)
+        for (int c = 0; c < 3; ++c) longest = std::max(longest, length(offsets[t[c]] - offsets[t[(c + 1) % 3]]));
+    return longest;
+}
+
+} // namespace
+
+Shape::Shape(std::unique_ptr<ShapeData> data) : data_(std::move(data)) {}
+Shape::~Shape() = default;
+
+std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
+    return make(prepare_mesh(mesh));
+}
+
+std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
+    if (mesh.triangles.empty())
+        throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
+    auto data = std::make_unique<ShapeData>();
+    ShapeData& shape = *data;
+    shape.mesh = mesh;
+    place_box(shape);
+    round_vertices(shape);
+
+    std::vector<Vec3> offsets;
+    offsets.reserve(shape.points.size());
+    for (const Point3f& p : shape.points) offsets.push_back({p.x, p.y, p.z});
+    const std::vector<Vec3> normals = face_normals(offsets, shape.mesh.triangles);
+    shape.neighbours = triangle_neighbours(shape.mesh.triangles);
+    shape.vertex_normals = angle_weighted_normals(offsets, shape.mesh.triangles, normals);
+    for (const Vec3& n : normals)
+        shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
+
+    // How far float32 may err in a ray test, with a margin: docs/design.md derives these. Into an open mesh rays may
+    // start well outside its box.
+    const double edge = longest_edge(shape, offsets);
+    shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
+    shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
+    shape.header.volume_tolerance = static_cast<float>(64 * rounding * edge * edge * shape.diagonal);
+    build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
+    if (shape.nodes.empty()) throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
+    shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
+
+    shape.exit_distances = measure_exits(shape, normals);
+    for (const float exit : shape.exit_distances)
+        if (std::isfinite(exit)) shape.exit_max = std::max(shape.exit_max, exit);
+    build_clusters(shape);
+    return std::shared_ptr<const Shape>(new Shape(std::move(data)));
+}
+
+const std::string& Shape::name() const {
+    return data_->mesh.name;
+}
+const MeshReport& Shape::report() const {
+    return data_->mesh.report;
+}
+std::span<const Vec3> Shape::vertices() const {
+    return data_->mesh.vertices;
+}
+std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const {
+    return data_->mesh.triangles;
+}
+std::span<const std::uint32_t> Shape::vertex_index() const {
+    return data_->mesh.vertex_index;
+}
+std::span<const std::uint32_t> Shape::triangle_index() const {
+    return data_->mesh.triangle_index;
+}
+Vec3 Shape::centre() const {
+    return data_->centre;
+}
+Vec3 Shape::box_min() const {
+    return data_->box_min;
+}
+Vec3 Shape::box_max() const {
+    return data_->box_max;
+}
+double Shape::radius() const {
+    return data_->radius;
+}
+std::span<const Vec3> Shape::vertex_normals() const {
+    return data_->vertex_normals;
+}
+std::span<const float> Shape::exit_distances() const {
+    return data_->exit_distances;
+}
+std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const {
+    return data_->neighbours;
+}
+
+std::uint64_t Shape::memory_bytes() const {
+    const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    const ShapeData& d = *data_;
+    return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
+           + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.exit_distances)
+           + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.nodes) + bytes(d.vertex_blocks)
+           + bytes(d.clusters) + bytes(d.face_normals);
+}
+
+} // namespace raycontact

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/host_kernels.h"
+
+#include <raycontact/shape.h>
+
+#include <vector>
+
+namespace raycontact {
+
+/// A vertex or box corner as the kernels see it: float32, relative to the shape's centre.
+using Point3f = kernels::Packed3;
+
+/// Everything a shape is made of. The kernel arrays use offsets from their own beginning; ShapeStore shifts them.
+struct ShapeData {
+    PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
+    Vec3 centre;
+    std::vector<Point3f> points; ///< float32 offsets from centre
+    std::vector<Vec3> vertex_normals;
+    std::vector<float> exit_distances;
+    std::vector<std::array<std::uint32_t, 3>> neighbours;
+    Vec3 box_min, box_max; ///< body frame
+    Point3f low, high;     ///< the same box about centre, exactly that of points
+    double diagonal = 0;   ///< of the box, metres
+    double radius = 0;
+    float exit_max = 0; ///< largest finite exit distance, metres
+
+    std::vector<kernels::TriangleBlock> triangle_blocks;
+    std::vector<kernels::Node> nodes;
+    std::vector<kernels::VertexBlock> vertex_blocks;
+    std::vector<kernels::ClusterBlock> clusters;
+    std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
+    kernels::ShapeHeader header{};
+};
+
+} // namespace raycontact

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/array.h"
+
+#include <raycontact/shape.h>
+
+#include <unordered_map>
+#include <vector>
+
+namespace raycontact {
+
+/// The shapes in use by one scene, concatenated in one device's memory. Counts its users; a shape nobody uses any more
+/// is dropped when the store is next packed.
+class ShapeStore {
+public:
+    struct Arrays {
+        Array<kernels::ShapeHeader> headers;
+        Array<kernels::TriangleBlock> triangle_blocks;
+        Array<kernels::Node> nodes;
+        Array<kernels::VertexBlock> vertex_blocks;
+        Array<kernels::ClusterBlock> clusters;
+        Array<kernels::Packed3> face_normals;
+    };
+
+    explicit ShapeStore(Device& device) : device_(device) {}
+
+    void add(const std::shared_ptr<const Shape>& shape);
+    void remove(const Shape* shape);
+    /// Index of a shape in the arrays. Valid until the next add or pack.
+    kernels::uint index_of(const Shape* shape) const { return entries_.at(shape).index; }
+    /// Frees the memory of dropped shapes once they outweigh the rest. Indices change when it returns true.
+    bool pack();
+    const Arrays& arrays() const { return arrays_; }
+
+private:
+    struct Entry {
+        std::shared_ptr<const Shape> shape;
+        kernels::uint index = 0;
+        std::uint32_t users = 0;
+    };
+    void upload(Entry& entry);
+
+    Device& device_;
+    std::unordered_map<const Shape*, Entry> entries_;
+    std::vector<const Shape*> order_; ///< of upload, so that no result depends on addresses
+    Arrays arrays_;
+    std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
+};
+
+} // namespace raycontact

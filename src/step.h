@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contacts/gather.h"
+#include "contacts/place.h"
+#include "rays/ray_queue.h"
+
+#include <raycontact/scene.h>
+
+namespace raycontact {
+
+/// The narrow phase, one step at a time, on one device. Keeps every array between steps, so that a step allocates
+/// nothing once it has seen the worst.
+class NarrowPhase {
+public:
+    explicit NarrowPhase(const Settings& settings);
+
+    Device& device() { return *opened_.device; }
+    Executor& executor() { return *opened_.executor; }
+    ShapeStore& shapes() { return shapes_; }
+
+    /// pairs: sorted, each once, indices into bodies. Fills contacts and stats except broad_ms.
+    void step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
+              StepStats& stats);
+
+private:
+    Settings settings_;
+    OpenDevice opened_;
+    ShapeStore shapes_;
+    std::vector<kernels::OrderedPair> ordered_;
+    Array<kernels::OrderedPair> device_pairs_;
+    RayQueue queue_;
+    Array<kernels::Hit> hits_;
+    Gather gather_;
+    std::vector<kernels::LocalContact> local_;
+};
+
+} // namespace raycontact
