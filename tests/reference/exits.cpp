@@ -60,7 +60,6 @@ void add_exits(Solid& solid) {
 
     RayCaster caster(solid);
     double reach = 0;
-    bool any_finite = false;
     for (std::uint32_t v = 0; v < solid.vertices.size(); ++v) {
         const Vec3 inward = -solid.vertex_normals[v];
         if (inward == Vec3{}) { // casts no ray
@@ -77,12 +76,9 @@ void add_exits(Solid& solid) {
         }
         solid.exits.push_back(exit);
         solid.exit_margins.push_back(margin);
-        if (exit < std::numeric_limits<double>::infinity()) {
-            any_finite = true;
-            reach = std::max(reach, exit);
-        }
+        if (exit < std::numeric_limits<double>::infinity()) reach = std::max(reach, exit);
     }
-    solid.reach = any_finite ? reach : solid.diagonal;
+    solid.reach = reach > 0 ? reach : solid.diagonal;
 }
 
 } // namespace raycontact::reference

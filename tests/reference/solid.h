@@ -28,8 +28,8 @@ struct Solid {
     std::vector<double> exit_margins;                ///< how safe that is, relative to the diagonal (see exits.h)
     Vec3 box_min, box_max;                           ///< minus centre
     double diagonal = 0;                             ///< of the box, metres
-    double reach = 0;                                ///< largest finite exit distance, else the diagonal
-    bool closed = false;                             ///< every edge met an even number of times
+    double reach = 0;    ///< largest finite exit distance; the diagonal where none is above 0
+    bool closed = false; ///< every edge met an even number of times
 };
 
 /// Everything but exits, exit_margins and reach. `centre` is subtracted from the positions.
