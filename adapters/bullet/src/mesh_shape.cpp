@@ -7,15 +7,15 @@
 #include <raycontact/error.h>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
-#include <LinearMath/btTransform.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include <cmath>
 #include <utility>
 
 namespace raycontact::bullet {
 
-MeshShape::MeshShape(std::shared_ptr<const Shape> shape)
-    : original_(std::move(shape)), scaled_(original_), scaling_(1, 1, 1) {
+MeshShape::MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds)
+    : original_(std::move(shape)), scaled_(original_), scaling_(1, 1, 1), bounds_(bounds) {
     if (!original_) throw InputError("MeshShape: no shape given; make one with raycontact::Shape::make");
     tree_ = std::make_shared<const MeshTree>(*scaled_);
     // Not CUSTOM_CONCAVE_SHAPE_TYPE: Bullet 3 gave the same number to its signed-distance shape and would cast to that.
@@ -26,6 +26,13 @@ MeshShape::MeshShape(std::shared_ptr<const Shape> shape)
 MeshShape::~MeshShape() = default;
 
 void MeshShape::getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
+    if (bounds_ == Bounds::box) {
+        const Vec3 low = scaled_->box_min(), high = scaled_->box_max();
+        btTransformAabb(btVector3(btScalar(low.x), btScalar(low.y), btScalar(low.z)),
+                        btVector3(btScalar(high.x), btScalar(high.y), btScalar(high.z)), getMargin(), t, aabb_min,
+                        aabb_max);
+        return;
+    }
     tree_->bounds(t, aabb_min, aabb_max);
     const btVector3 margin(getMargin(), getMargin(), getMargin());
     aabb_min -= margin;

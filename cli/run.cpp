@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run.h"
+
+#include "cli/common_options.h"
+#include "cli/progress.h"
+
+#include <raycontact/error.h>
+#include <report/report.h>
+#include <scenes/avalanche.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using raycontact::InputError;
+using namespace raycontact::scenes;
+
+struct RunOptions {
+    std::string scene, out;
+    std::uint32_t steps = 600, bodies = 512;
+    std::uint64_t seed = 1;
+    bool json = false;
+    raycontact::Settings settings;
+};
+
+/// The value that this part of the rows does not exceed.
+template <class Value>
+double quantile(const std::vector<StepRow>& rows, double part, Value value) {
+    std::vector<double> all;
+    for (const StepRow& row : rows) all.push_back(value(row));
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(all.size() - 1));
+    std::nth_element(all.begin(), at, all.end());
+    return *at;
+}
+
+template <class Value>
+Json median_and_p95(const std::vector<StepRow>& rows, Value value) {
+    return {{"median", quantile(rows, 0.5, value)}, {"p95", quantile(rows, 0.95, value)}};
+}
+
+Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) {
+    using raycontact::to_string;
+    const AvalancheHealth health = scene.health();
+    const RunLog& log = scene.log();
+    const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(60, log.rows.size()));
+    const std::vector<StepRow> last_second(log.rows.end() - second, log.rows.end());
+    return {
+        {"scene", "avalanche"},
+        {"seed", options.seed},
+        {"steps", scene.steps()},
+        {"bodies", scene.body_count()},
+        {"pairs_max", scene.pairs_max()},
+        {"rays", scene.rays_total()},
+        {"contacts", scene.contacts_total()},
+        {"ray_length", scene.ray_length_total()},
+        {"penetration_max", health.penetration_max},
+        {"wall_ms", wall_ms},
+        {"step_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.step_ms; })},
+        {"narrow_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.narrow_ms; })},
+        {"method", to_string(options.settings.method)},
+        {"caster", to_string(options.settings.caster)},
+        {"direction", to_string(options.settings.direction)},
+        {"devices", Json::array({options.settings.device == "auto" ? "cpu" : options.settings.device})},
+        {"hash", scene.hash()},
+        {"mesh_source", log.mesh_source},
+        {"pairs_last_second", quantile(last_second, 0.5, [](const StepRow& r) { return double(r.pairs); })},
+        {"median_speed_last_second", health.median_speed_last_second},
+        {"penetration_max_last_second", quantile(last_second, 1, [](const StepRow& r) { return r.penetration_max; })},
+        {"depth_limit", health.depth_limit},
+        {"deep_contacts", health.deep_contacts},
+        {"deep_steps_longest", health.deep_steps_longest},
+        {"deep_steps_last_second", health.deep_steps_last_second},
+        {"below_ground", health.below_ground},
+        {"flown_off", health.flown_off}};
+}
+
+std::string for_a_person(const Json& s) {
+    return fmt::format(
+        "avalanche: {} bodies, {} steps, seed {}; {}\n"
+        "pairs      {} at most, {} in the last second\n"
+        "rays       {}, of them {} contacts, {:.1f} m in all\n"
+        "depth      {:.4f} m at most, {:.4f} m in the last second\n"
+        "speed      median {:.4f} m/s in the last second; {} bodies below ground, {} flown off\n"
+        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n"
+        "hash       {}\n",
+        s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(), s["seed"].get<std::uint64_t>(),
+        s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(), s["pairs_last_second"].get<double>(),
+        s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(),
+        s["penetration_max"].get<double>(), s["penetration_max_last_second"].get<double>(),
+        s["median_speed_last_second"].get<double>(), s["below_ground"].get<std::uint64_t>(),
+        s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(),
+        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(), s["hash"].get<std::string>());
+}
+
+/// Before the run, which takes minutes: a report that cannot be written should be known at once.
+void make_folder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder))
+        throw InputError("--out " + folder + ": cannot be made a folder; name another");
+    const auto probe = std::filesystem::path(folder) / "steps.csv";
+    if (!std::ofstream(probe)) throw InputError(probe.string() + ": cannot be written; name another folder");
+}
+
+void write_steps(const std::string& folder, const std::vector<StepRow>& rows) {
+    const auto file = std::filesystem::path(folder) / "steps.csv";
+    std::ofstream out(file);
+    out << "step,pairs,rays,contacts,step_ms,narrow_ms,ray_length_m,penetration_max_m,median_speed_m_s\n";
+    for (const StepRow& r : rows)
+        out << fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}\n", r.step, r.pairs, r.rays, r.contacts, r.step_ms,
+                           r.narrow_ms, r.ray_length, r.penetration_max, r.median_speed);
+    if (!out.flush()) throw InputError(file.string() + ": cannot be written; is the disk full?");
+}
+
+void run(const RunOptions& options) {
+    if (options.scene != "avalanche")
+        throw InputError("SCENE: \"" + options.scene + "\" is not known; scenes are: avalanche");
+    if (!options.out.empty()) make_folder(options.out);
+    AvalancheOptions how;
+    how.bodies = options.bodies;
+    how.seed = options.seed;
+    how.settings = options.settings;
+    how.expected_steps = options.steps;
+    const auto start = std::chrono::steady_clock::now();
+    Avalanche scene(how);
+    Progress progress("avalanche", options.steps);
+    for (std::uint32_t i = 0; i < options.steps; ++i) {
+        scene.step();
+        progress.show(i + 1);
+    }
+    progress.done();
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+
+    const Json result = summary(options, scene, wall.count());
+    if (!options.out.empty()) {
+        RunLog log = scene.log();
+        log.summary_json = result.dump();
+        write_steps(options.out, log.rows);
+        std::cerr << "drawing the report\n";
+        raycontact::report::write_report(options.out, log);
+        std::cerr << "report: " << (std::filesystem::path(options.out) / "report.html").string() << '\n';
+    }
+    std::cout << (options.json ? result.dump() + "\n" : for_a_person(result));
+}
+
+} // namespace
+
+void add_run(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("run", "Simulate a scene: Bullet's response to RayContact's contacts");
+    auto options = std::make_shared<RunOptions>();
+    command->add_option("SCENE", options->scene, "avalanche: concave meshes in a cubic grid fall on a slab")
+        ->required();
+    command->add_option("--steps", options->steps, "steps of 1/60 s")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, 10'000'000u));
+    command->add_option("--bodies", options->bodies, "moving bodies")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, 1'000'000u));
+    command->add_option("--seed", options->seed, "of the bodies' small offsets and tilts; same seed, same hash")
+        ->type_name("S")
+        ->capture_default_str();
+    command->add_option("--out", options->out, "write report.html, pictures and steps.csv there")->type_name("DIR");
+    command->add_flag("--json", options->json, "print one JSON object on stdout");
+    add_common_options(*command, options->settings);
+    command->callback([options] { run(*options); });
+}

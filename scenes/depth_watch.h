@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/contact.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace raycontact::scenes {
+
+/// Watches how long contacts stay deeper than a limit: a solver needs a few steps to push a body out, but no more.
+class DepthWatch {
+public:
+    explicit DepthWatch(double limit) : limit_(limit) {}
+
+    /// The contacts of one step; steps follow each other.
+    void add(std::uint32_t step, std::span<const Contact> contacts);
+
+    double limit() const { return limit_; }                ///< metres
+    std::uint64_t contacts() const { return contacts_; }   ///< deeper than the limit, all steps
+    std::uint32_t longest() const { return longest_; }     ///< most steps in a row for one key
+    std::uint32_t longest_since(std::uint32_t step) const; ///< the same, of runs that end in `step` or later
+
+private:
+    using Key = std::array<std::uint32_t, 4>; ///< body_a, body_b, vertex_body, vertex
+    struct Run {
+        Key key;
+        std::uint32_t steps;
+    };
+
+    double limit_;
+    std::uint64_t contacts_ = 0;
+    std::uint32_t longest_ = 0;
+    std::vector<Run> runs_;              ///< of the last step, sorted by key
+    std::vector<std::uint32_t> by_step_; ///< longest run that was alive in each step
+};
+
+} // namespace raycontact::scenes
