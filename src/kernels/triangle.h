@@ -124,16 +124,16 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
         const float u = x2 * y1 - y2 * x1;
         const float v = x0 * y2 - y0 * x2;
         const float w = x1 * y0 - y1 * x0;
-        const float least = u < v ? (u < w ? u : w) : (v < w ? v : w);
-        const float most = u > v ? (u > w ? u : w) : (v > w ? v : w);
+        const float least_uv = u < v ? u : v, most_uv = u > v ? u : v;
+        const float least = least_uv < w ? least_uv : w, most = most_uv > w ? most_uv : w;
         const float area = (u + v) + w;
         const float reach = (u * z0 + v * z1 + w * z2) * sz;
-        const float size = area < 0.0f ? -area : area;
+        const float size = magnitude_of(area);
         const float far = area < 0.0f ? -reach : reach;
         const uint inside = (least >= 0.0f) | (most <= 0.0f);
         const uint ahead = far >= -tolerance * size - volume_tolerance;
         const uint within = far <= limit * size + volume_tolerance;
-        lanes |= (inside & ahead & within) << k;
+        lanes |= (inside & ahead & within) != 0u ? lane_bit(k) : 0u;
     }
     while (lanes != 0u) {
         const uint lane = lowest_bit(lanes);

@@ -56,7 +56,10 @@ kernels::uint grain_of(KernelId kernel) {
 
 class HostDevice : public Device, private Queue {
 public:
-    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table) {}
+    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table)
+    {
+        info_.driver = "native, " + std::string(table.instruction_set);
+    }
 
     const DeviceInfo& info() const override { return info_; }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
