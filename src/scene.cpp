@@ -4,6 +4,7 @@
 #include "broadphase/sweep_and_prune.h"
 #include "pose_fault.h"
 #include "shape/shape_data.h"
+#include "executor/float_environment.h"
 #include "step.h"
 
 #include <raycontact/error.h>
@@ -120,6 +121,7 @@ std::uint32_t Scene::body_count() const {
 }
 
 std::span<const Contact> Scene::step() {
+    const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
     state_->find_pairs();
     const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -130,6 +132,7 @@ std::span<const Contact> Scene::step() {
 }
 
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
+    const FloatEnvironment environment;
     for (const Pair& pair : pairs) {
         state_->existing(pair.first);
         state_->existing(pair.second);

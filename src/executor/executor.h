@@ -18,8 +18,8 @@ public:
     Executor& operator=(const Executor&) = delete;
 
     std::uint32_t threads() const;
-    /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, and returns when all are done. The first
-    /// exception of a slice is thrown here.
+    /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, under FloatEnvironment, and returns when
+    /// all are done. The first exception of a slice is thrown here.
     void run(std::uint32_t count, std::uint32_t grain, const std::function<void(std::uint32_t, std::uint32_t)>& slice);
 
 private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor/executor.h"
+#include "executor/float_environment.h"
 #include "executor/pin.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ struct Executor::State {
             lock.unlock();
             std::exception_ptr thrown;
             try {
+                const FloatEnvironment environment;
                 (*run)(begin, end);
             } catch (...) {
                 thrown = std::current_exception();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor/executor.h"
+#include "executor/float_environment.h"
 #include "executor/pin.h"
 
 #include <oneapi/tbb/blocked_range.h>
@@ -48,12 +49,16 @@ void Executor::run(std::uint32_t count, std::uint32_t grain,
                    const std::function<void(std::uint32_t, std::uint32_t)>& slice) {
     if (count == 0) return;
     if (!state_->pinner && (state_->threads == 1 || count <= grain)) {
+        const FloatEnvironment environment;
         slice(0, count);
         return;
     }
     state_->arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, grain),
-                          [&](const tbb::blocked_range<std::uint32_t>& r) { slice(r.begin(), r.end()); });
+                          [&](const tbb::blocked_range<std::uint32_t>& r) {
+            const FloatEnvironment environment;
+            slice(r.begin(), r.end());
+        });
     });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shape/vector.h"
+#include "mesh/vector.h"
 
 namespace raycontact {
 

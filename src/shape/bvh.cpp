@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/bvh.h"
 
-#include "shape/vector.h"
+#include "mesh/vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "shape/exit_distances.h"
 
 #include "mesh/adjacency.h"
-#include "shape/vector.h"
+#include "mesh/vector.h"
 
 #include <algorithm>
 #include <cmath>

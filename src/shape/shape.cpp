@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/shape.h>
 
+#include "executor/float_environment.h"
 #include "mesh/adjacency.h"
+#include "mesh/vector.h"
 #include "shape/bvh.h"
 #include "shape/clusters.h"
 #include "shape/exit_distances.h"
 #include "shape/shape_data.h"
-#include "shape/vector.h"
 #include "shape/vertex_normals.h"
 
 #include <raycontact/error.h>
@@ -66,6 +67,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
 }
 
 std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
+    const FloatEnvironment environment;
     if (mesh.triangles.empty())
         throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
     auto data = std::make_unique<ShapeData>();

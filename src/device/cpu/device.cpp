@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
-#include "device/cpu/float_environment.h"
 #include "device/cpu/kernel_table.h"
 
 #include <raycontact/error.h>
@@ -78,7 +77,6 @@ private:
     void launch(KernelId kernel, kernels::uint count, std::span<const Argument> arguments) override {
         const Entry entry = table_.entries[static_cast<std::size_t>(kernel)];
         executor_.run(count, grain_of(kernel), [&](kernels::uint begin, kernels::uint end) {
-            const FloatEnvironment environment;
             entry({begin, end}, count, arguments.data());
         });
     }

@@ -7,7 +7,7 @@
 #include <cfenv>
 #endif
 
-namespace raycontact::cpu {
+namespace raycontact {
 
 /// Round to nearest, denormals kept, for as long as it lives: a caller may have set its own rules, and one flushed
 /// denormal would change a hash.
@@ -40,4 +40,4 @@ private:
 #endif
 };
 
-} // namespace raycontact::cpu
+} // namespace raycontact

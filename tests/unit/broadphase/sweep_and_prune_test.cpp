@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "broadphase/sweep_and_prune.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace raycontact {
+namespace {
+
+bool overlap(const WorldBox& a, const WorldBox& b) {
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y
+           && a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
+std::vector<Pair> all_pairs(const std::vector<WorldBox>& boxes) {
+    std::vector<Pair> pairs;
+    for (const WorldBox& a : boxes)
+        for (const WorldBox& b : boxes)
+            if (a.body < b.body && overlap(a, b)) pairs.emplace_back(a.body, b.body);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+TEST(SweepAndPrune, AgreesWithEveryPairTested) {
+    std::mt19937 random(5);
+    std::size_t found = 0;
+    for (int round = 0; round < 60; ++round) {
+        // Integer corners, so that many boxes only touch.
+        std::uniform_int_distribution<int> place(0, round % 2 ? 40 : 8), size(0, 4);
+        std::vector<WorldBox> boxes;
+        for (BodyId body = 0; body < 80; ++body) {
+            const Vec3 low{double(place(random)), double(place(random)), double(round % 3 ? place(random) : 0)};
+            boxes.push_back({body, low, {low.x + size(random), low.y + size(random), low.z + size(random)}});
+        }
+        const std::vector<Pair> expected = all_pairs(boxes);
+        std::vector<Pair> pairs, again;
+        SweepAndPrune().find_pairs(boxes, pairs);
+        EXPECT_EQ(pairs, expected);
+        std::shuffle(boxes.begin(), boxes.end(), random);
+        SweepAndPrune().find_pairs(boxes, again);
+        EXPECT_EQ(again, expected) << "the order of the bodies decides nothing";
+        found += pairs.size();
+    }
+    EXPECT_GT(found, 5000u);
+}
+
+TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int round = 0; round < 1000; ++round) {
+        const Pose pose = pose_from_quaternion({1e4 * any(random), any(random), any(random)}, any(random), any(random),
+                                               any(random), any(random));
+        const Vec3 low{-1, -0.2, 0.3}, high{0.5, 0.1, 2};
+        const WorldBox box = world_box(3, low, high, pose, 0);
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 p = transform_point(
+                pose, {corner & 1 ? low.x : high.x, corner & 2 ? low.y : high.y, corner & 4 ? low.z : high.z});
+            ASSERT_TRUE(overlap(box, {0, p, p}));
+        }
+    }
+}
+
+} // namespace
+} // namespace raycontact

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/error.h>
+#include <raycontact/pose.h>
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace raycontact {
+namespace {
+
+using Matrix = std::array<double, 16>;
+
+TEST(Pose, MatrixIsRowMajor) {
+    const Pose pose = pose_from_matrix(Matrix{0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
+    EXPECT_EQ(transform_point(pose, {1, 0, 0}), (Vec3{5, 7, 7}));
+}
+
+TEST(Pose, NearlyRigidBecomesRigid) {
+    const Pose pose = pose_from_matrix(Matrix{1, 3e-5, 0, 0, 0, 1, 0, 0, 0, 0, 1.00002, 0, 0, 0, 0, 1});
+    const auto& r = pose.rotation;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) EXPECT_NEAR(r[i] * r[j] + r[3 + i] * r[3 + j] + r[6 + i] * r[6 + j], i == j, 1e-14);
+    EXPECT_NEAR(r[1], 1.5e-5, 1e-9);
+}
+
+TEST(Pose, RefusesWhatIsNotRigid) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Matrix bad[] = {{1, 1e-3, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, // sheared
+                          {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1},    // scaled
+                          {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},   // mirrored
+                          {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1},    // projective
+                          {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1},    // transposed
+                          {1, 0, 0, nan, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},  // not a number
+                          {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}};   // flat
+    for (const Matrix& m : bad) EXPECT_THROW(pose_from_matrix(m), InputError);
+    EXPECT_THROW(pose_from_quaternion({}, 0, 0, 0, 0), InputError);
+    EXPECT_THROW(pose_from_quaternion({nan, 0, 0}, 1, 0, 0, 0), InputError);
+}
+
+TEST(Pose, RelativePoseUndoesTheOuter) {
+    const Pose a = pose_from_quaternion({1, 2, 3}, 1, 2, 3, 4), b = pose_from_quaternion({-4, 0, 9}, 4, -3, 2, 1);
+    const Vec3 p{0.3, -0.7, 0.2};
+    const Vec3 there = transform_point(a, transform_point(relative_pose(a, b), p)), here = transform_point(b, p);
+    EXPECT_NEAR(there.x, here.x, 1e-14);
+    EXPECT_NEAR(there.y, here.y, 1e-14);
+    EXPECT_NEAR(there.z, here.z, 1e-14);
+}
+
+} // namespace
+} // namespace raycontact
