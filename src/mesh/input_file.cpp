@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/input_file.h"
+
+#include <raycontact/error.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+namespace raycontact {
+
+std::string printable(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    }
+    return out;
+}
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t longest = 24;
+    std::string out;
+    for (const char c : text.substr(0, longest)) {
+        // Bytes of a damaged file need not be UTF-8, and JSON or a terminal would trip over them.
+        out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
+    }
+    return "'" + out + (text.size() > longest ? "...'" : "'");
+}
+
+void InputFile::fail(const std::string& what) const {
+    throw InputError(shown + ": " + what);
+}
+
+void InputFile::fail_at(std::size_t line, const std::string& what) const {
+    fail("line " + std::to_string(line) + ": " + what);
+}
+
+InputFile InputFile::read(const std::filesystem::path& path) {
+    InputFile file{path, printable(path.string()), {}};
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) file.fail("no such file; check the path");
+    if (error) file.fail("cannot be read: " + error.message());
+    if (status.type() == std::filesystem::file_type::directory) file.fail("is a folder; name a mesh file in it");
+    // A pipe or device could block for ever or never end.
+    if (status.type() != std::filesystem::file_type::regular) file.fail("is not an ordinary file; copy it to one");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) file.fail("cannot be read: " + error.message());
+    if (size == 0) file.fail("is empty; export the mesh again");
+
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (!stream) file.fail(std::string("cannot be read: ") + std::strerror(errno));
+    try {
+        file.bytes.resize(size);
+    } catch (const std::exception&) {
+        file.fail("is too large for memory (" + std::to_string(size) + " bytes)");
+    }
+    if (std::fread(file.bytes.data(), 1, file.bytes.size(), stream.get()) != file.bytes.size()) {
+        file.fail("could not be read to its end; is it still being written?");
+    }
+    return file;
+}
+
+} // namespace raycontact

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/mesh.h>
+
+#include "mesh/input_file.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace raycontact {
+namespace {
+
+using Reader = Mesh (*)(const InputFile&);
+
+struct Format {
+    std::string_view ending;
+    Reader read;
+};
+
+constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
+                             Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
+
+} // namespace
+
+Mesh load_mesh(const std::filesystem::path& path) {
+    std::string ending = path.extension().string();
+    for (char& c : ending) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    const InputFile file = InputFile::read(path);
+    for (const Format& format : formats) {
+        if (ending != format.ending) continue;
+        Mesh mesh = format.read(file);
+        if (mesh.triangles.empty()) file.fail("has no triangles; export a triangle mesh");
+        // Three corners of every triangle are counted in 32 bits.
+        constexpr std::size_t most = 0xffffffffu / 3;
+        if (mesh.triangles.size() >= most || mesh.vertices.size() >= 0xffffffffu) {
+            file.fail("has more than " + std::to_string(most) + " triangles; split or reduce it");
+        }
+        mesh.name = printable(path.filename().string());
+        return mesh;
+    }
+    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
+}
+
+} // namespace raycontact

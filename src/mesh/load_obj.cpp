@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Our own reader: tinyobjloader reads `v 1 abc nan` as 1 0 0 without a word, and names no line for a damaged face. The
+// tests compare with it on sound files.
+#include "mesh/text_scanner.h"
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+namespace raycontact {
+namespace {
+
+// What the format knows besides `v` and `f`. A word outside it is damage: a lost `v` would shift every index after it.
+constexpr std::array other_statements{
+    "vt",   "vn",    "vp",       "cstype",   "deg",  "bmat",       "step",      "p",      "l",      "curv", "curv2",
+    "surf", "parm",  "trim",     "hole",     "scrv", "sp",         "end",       "con",    "g",      "s",    "mg",
+    "o",    "bevel", "c_interp", "d_interp", "lod",  "usemtl",     "mtllib",    "usemap", "maplib", "call", "csh",
+    "res",  "bsp",   "bzp",      "cdc",      "cdp",  "shadow_obj", "trace_obj", "ctech",  "stech"};
+
+bool is_other(std::string_view word) {
+    for (const std::string_view known : other_statements) {
+        if (word == known) return true;
+    }
+    return false;
+}
+
+/// A face that named a vertex not yet seen; legal when the vertex comes later in the file.
+struct Forward {
+    std::uint64_t vertex;
+    std::size_t line;
+};
+
+class ObjReader {
+public:
+    explicit ObjReader(const InputFile& file) : file_(file), scanner_(file, 0, 1) {
+        scanner_.comment = '#';
+        scanner_.joiner = '\\';
+    }
+
+    Mesh read() {
+        do {
+            const std::string_view statement = scanner_.word_on_line();
+            if (statement == "v") {
+                read_vertex();
+            } else if (statement == "f" || statement == "fo") {
+                read_face();
+            } else if (!statement.empty() && !is_other(statement)) {
+                scanner_.fail(in_quotes(statement) + " is no OBJ statement; the file is damaged or of another format");
+            }
+        } while (scanner_.next_line());
+        for (const Forward& forward : forward_) {
+            if (forward.vertex >= mesh_.vertices.size()) {
+                file_.fail_at(forward.line, "vertex " + std::to_string(forward.vertex + 1)
+                                                + " does not exist; the file has "
+                                                + std::to_string(mesh_.vertices.size()));
+            }
+        }
+        return std::move(mesh_);
+    }
+
+private:
+    // x y z, then perhaps w, or a colour, or both.
+    void read_vertex() {
+        mesh_.vertices.push_back(scanner_.point_on_line("coordinate"));
+        std::size_t more = 0;
+        for (std::string_view word = scanner_.word_on_line(); !word.empty(); word = scanner_.word_on_line()) {
+            scanner_.number(word, "vertex weight or colour");
+            if (++more > 5) scanner_.fail("too many numbers for a vertex");
+        }
+    }
+
+    void read_face() {
+        corners_.clear();
+        for (std::string_view word = scanner_.word_on_line(); !word.empty(); word = scanner_.word_on_line()) {
+            const std::size_t slash = word.find('/');
+            corners_.push_back(resolve(scanner_.integer(word.substr(0, slash), "vertex index")));
+            if (slash != std::string_view::npos) check_others(word.substr(slash + 1));
+        }
+        if (corners_.size() < 3) scanner_.fail("a face needs at least 3 vertices");
+        append_fan(mesh_, corners_);
+    }
+
+    std::uint32_t resolve(std::int64_t index) {
+        const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
+        if (index == 0) scanner_.fail("vertex index 0; OBJ counts from 1");
+        if (index < -count) {
+            scanner_.fail("vertex index " + std::to_string(index) + " reaches before the first of "
+                          + std::to_string(count));
+        }
+        const std::int64_t vertex = index > 0 ? index - 1 : count + index;
+        if (vertex >= 0xffffffffll) scanner_.fail("vertex index " + std::to_string(index) + " is out of range");
+        if (vertex >= count) forward_.push_back({static_cast<std::uint64_t>(vertex), scanner_.line()});
+        return static_cast<std::uint32_t>(vertex);
+    }
+
+    // Texture and normal indices are not used, but one that is no number is damage.
+    void check_others(std::string_view rest) {
+        const std::size_t slash = rest.find('/');
+        const std::string_view texture = rest.substr(0, slash);
+        if (!texture.empty()) scanner_.integer(texture, "texture index");
+        if (slash != std::string_view::npos) scanner_.integer(rest.substr(slash + 1), "normal index");
+    }
+
+    const InputFile& file_;
+    TextScanner scanner_;
+    Mesh mesh_;
+    std::vector<std::uint32_t> corners_;
+    std::vector<Forward> forward_;
+};
+
+} // namespace
+
+Mesh read_obj(const InputFile& file) {
+    return ObjReader(file).read();
+}
+
+} // namespace raycontact

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/triangle_bvh.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace raycontact {
+namespace {
+
+constexpr std::uint32_t leaf_size = 4;
+
+Vec3 least(const Vec3& a, const Vec3& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+Vec3 most(const Vec3& a, const Vec3& b) {
+    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+
+} // namespace
+
+TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                         std::vector<std::uint32_t> chosen)
+    : vertices_(vertices), triangles_(triangles), order_(std::move(chosen)) {
+    if (order_.empty()) return;
+    nodes_.reserve(order_.size());
+    build(0, static_cast<std::uint32_t>(order_.size()));
+    boxes_.reserve(order_.size());
+    for (const std::uint32_t triangle : order_) boxes_.push_back(box_of(triangle));
+}
+
+TriangleBvh::Box TriangleBvh::box_of(std::uint32_t triangle) const {
+    const Triangle& t = triangles_[triangle];
+    const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
+    return {least(least(a, b), c), most(most(a, b), c)};
+}
+
+std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t last) {
+    Box box = box_of(order_[first]);
+    for (std::uint32_t i = first + 1; i < last; ++i) {
+        const Box more = box_of(order_[i]);
+        box = {least(box.low, more.low), most(box.high, more.high)};
+    }
+    const auto node = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({box, first, last, 0});
+    if (last - first <= leaf_size) return node;
+
+    const Vec3 size = box.high - box.low;
+    const std::size_t k = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto key = [&](std::uint32_t triangle) {
+        const Triangle& t = triangles_[triangle];
+        return axis(vertices_[t[0]], k) + axis(vertices_[t[1]], k) + axis(vertices_[t[2]], k);
+    };
+    const std::uint32_t middle = first + (last - first) / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
+                     [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
+    build(first, middle);
+    const std::uint32_t right = build(middle, last);
+    nodes_[node].right = right;
+    return node;
+}
+
+bool TriangleBvh::meets(const Box& box, const Vec3& origin, const Vec3& direction) {
+    double enter = 0, leave = 1e300;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double o = axis(origin, k), inverse = 1 / axis(direction, k);
+        const double t1 = (axis(box.low, k) - o) * inverse, t2 = (axis(box.high, k) - o) * inverse;
+        enter = std::max(enter, std::min(t1, t2));
+        leave = std::min(leave, std::max(t1, t2));
+    }
+    // Wide enough for the rounding above; a box too many costs little.
+    return enter <= leave + 1e-9 * std::fabs(leave);
+}
+
+} // namespace raycontact
