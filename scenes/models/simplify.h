@@ -8,10 +8,12 @@
 
 namespace raycontact::scenes {
 
+/// What a scene asks of its meshes: closed, manifold, oriented, outward, one piece, free of self-intersections.
+bool sound(const MeshReport& report);
+
 /// A closed mesh reduced to exactly `triangles` (even): meshoptimizer's edge collapses to that count or a little below,
 /// flaps removed, then the longest edges split at their middles, which changes no surface. Every try is checked by
-/// prepare_mesh: closed, manifold, oriented, outward, in one piece, free of self-intersections. Nothing when none
-/// passes.
+/// prepare_mesh; nothing when none is sound.
 std::optional<Mesh> simplify_to(const PreparedMesh& mesh, std::uint32_t triangles);
 
 } // namespace raycontact::scenes

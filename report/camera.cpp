@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <report/camera.h>
+
+#include <algorithm>
+
+namespace raycontact::report {
+namespace {
+
+/// The 97 % of the balls nearest to their middle: one that rolled away must not make the pile small.
+std::vector<Ball> without_strays(std::vector<Ball> balls) {
+    Float3 middle;
+    for (const Ball& ball : balls) middle += (1 / static_cast<float>(balls.size())) * ball.centre;
+    std::sort(balls.begin(), balls.end(),
+              [&](const Ball& a, const Ball& b) { return length(a.centre - middle) < length(b.centre - middle); });
+    balls.resize(balls.size() - balls.size() * 3 / 100);
+    return balls;
+}
+
+} // namespace
+
+Camera frame_balls(const std::vector<Ball>& all, float ground, std::uint32_t width, std::uint32_t height) {
+    Camera camera;
+    camera.half_height = 0.25f; // a vertical field of view of 28 degrees
+    camera.half_width = camera.half_height * static_cast<float>(width) / static_cast<float>(height);
+    camera.forward = unit({-0.50f, 0.80f, -0.42f});
+    camera.right = unit(cross(camera.forward, {0, 0, 1}));
+    camera.up = cross(camera.right, camera.forward);
+    const std::vector<Ball> balls = all.empty() ? std::vector<Ball>{{{0, 0, ground}, 1}} : without_strays(all);
+
+    // Aim and distance by turns until the balls' extent on the picture is centred and fills it to 88 %.
+    Float3 aim = balls.front().centre;
+    float distance = 10;
+    for (int turn = 0; turn < 40; ++turn) {
+        camera.eye = aim - distance * camera.forward;
+        float left = 1e9f, rightmost = -1e9f, low = 1e9f, high = -1e9f;
+        for (const Ball& ball : balls) {
+            const Float3 d = ball.centre - camera.eye;
+            const float depth = std::max(dot(d, camera.forward), 0.1f * distance);
+            const float reach = 0.75f * ball.radius; // the ball around a box is larger than what is in it
+            left = std::min(left, (dot(d, camera.right) - reach) / depth);
+            rightmost = std::max(rightmost, (dot(d, camera.right) + reach) / depth);
+            low = std::min(low, (dot(d, camera.up) - reach) / depth);
+            high = std::max(high, (dot(d, camera.up) + reach) / depth);
+        }
+        aim += (0.5f * (left + rightmost) * distance) * camera.right + (0.5f * (low + high) * distance) * camera.up;
+        const float fill = std::max((rightmost - left) / camera.half_width, (high - low) / camera.half_height) / 2;
+        distance *= 0.3f + 0.7f * fill / 0.88f;
+    }
+    camera.eye = aim - distance * camera.forward;
+    camera.eye.z = std::max(camera.eye.z, ground + 0.2f);
+    return camera;
+}
+
+} // namespace raycontact::report

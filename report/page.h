@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <report/plot.h>
+
+#include <string>
+#include <vector>
+
+namespace raycontact::report {
+
+/// A picture of the film strip, already encoded.
+struct Still {
+    std::string jpeg;    ///< the bytes of the file
+    std::string caption; ///< step and time
+};
+
+/// A figure of the table: what it is, its value, its unit, and what it means in a few words.
+struct Row {
+    std::string name, value, unit, meaning;
+};
+
+/// All that goes on the page; every text is made safe by make_page.
+struct Page {
+    std::string title;
+    std::string summary;
+    std::vector<Still> stills;
+    std::vector<Plot> plots;
+    std::vector<double> steps;
+    double step_seconds = 0;
+    std::vector<Row> rows;
+    std::string command; ///< that makes the same run again
+    std::string footer;
+};
+
+/// One HTML document with everything inside: no link, no font, no script from elsewhere.
+std::string make_page(const Page& page);
+
+} // namespace raycontact::report

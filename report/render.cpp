@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <report/render.h>
+
+#include <report/camera.h>
+#include <report/colour.h>
+#include <report/denoise.h>
+#include <report/stage.h>
+
+#include <embree3/rtcore.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace raycontact::report {
+namespace {
+
+constexpr std::uint32_t side = 2;         ///< side x side primary rays a pixel
+constexpr std::uint32_t ambient_rays = 3; ///< per primary ray
+const Float3 sun_direction = unit({-0.62f, -0.38f, 0.84f});
+constexpr Float3 sun_light{3.0f, 2.75f, 2.35f}; // linear, warm against the blue of the sky
+constexpr float sun_radius = 0.05f;             // of its disc at distance 1: the softness of the shadows
+constexpr Float3 ground_albedo{0.62f, 0.61f, 0.59f};
+constexpr Float3 backdrop{0.86f, 0.90f, 0.96f};
+
+struct Point2 {
+    float x = 0, y = 0;
+};
+
+/// A point of the R2 sequence (Roberts 2018), turned by a hash of the pixel.
+class Sampler {
+public:
+    explicit Sampler(std::uint32_t pixel, std::uint32_t stream)
+        : turn_x_(hash(pixel * 4 + stream)), turn_y_(hash(turn_x_ ^ 0x9e3779b9u)) {}
+    Point2 operator()(std::uint32_t k) const {
+        return {fraction(turn_x_ + k * 3242174889u), fraction(turn_y_ + k * 2447445414u)};
+    }
+
+private:
+    static std::uint32_t hash(std::uint32_t v) { // PCG's output permutation
+        v = v * 747796405u + 2891336453u;
+        v = ((v >> ((v >> 28) + 4)) ^ v) * 277803737u;
+        return (v >> 22) ^ v;
+    }
+    static float fraction(std::uint32_t v) { return static_cast<float>(v >> 8) / 16777216.0f; }
+    std::uint32_t turn_x_, turn_y_;
+};
+
+/// Uniform in the unit disc.
+Point2 in_disc(Point2 u) {
+    const float radius = std::sqrt(u.x), angle = 2 * std::numbers::pi_v<float> * u.y;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// Two directions that make a right-handed frame with a unit normal (Duff et al. 2017).
+void frame_of(Float3 n, Float3& a, Float3& b) {
+    const float sign = std::copysign(1.0f, n.z), p = -1 / (sign + n.z), q = n.x * n.y * p;
+    a = {1 + sign * n.x * n.x * p, sign * q, -sign * n.x};
+    b = {q, sign + n.y * n.y * p, -n.y};
+}
+
+struct Hit {
+    float distance = std::numeric_limits<float>::infinity();
+    Float3 normal, albedo;
+    bool ground = false;
+};
+
+/// Everything one picture needs, shared by its rows.
+struct View {
+    RTCScene scene = nullptr;
+    Stage stage;
+    Camera camera;
+    std::vector<Float3> colours; ///< per body
+    std::vector<Pose> poses;     ///< per body
+    float reach = 1;             ///< radius about the pile within which the ground is drawn in full, metres
+    Point2 middle;               ///< of the pile
+    float pixel = 0;             ///< width at distance 1
+};
+
+RTCRayHit ray_from(Float3 origin, Float3 direction, float near) {
+    RTCRayHit ray{};
+    ray.ray = {origin.x,    origin.y,    origin.z,
+               near,        direction.x, direction.y,
+               direction.z, 0,           std::numeric_limits<float>::infinity(),
+               ~0u,         0,           0};
+    ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return ray;
+}
+
+/// The body normal, from the body's to the picture's frame.
+Float3 turned(const View& view, const Pose& pose, Float3 n) {
+    const auto& r = pose.rotation;
+    float world[3];
+    for (std::size_t i = 0; i < 3; ++i)
+        world[i] = static_cast<float>(r[3 * i] * n.x + r[3 * i + 1] * n.y + r[3 * i + 2] * n.z);
+    return unit({world[view.stage.axes[0]], world[view.stage.axes[1]], world[view.stage.axes[2]]});
+}
+
+bool occluded(const View& view, Float3 origin, Float3 direction) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray = ray_from(origin, direction, 0).ray;
+    rtcOccluded1(view.scene, &context, &ray);
+    return ray.tfar < 0;
+}
+
+/// The ground's grid: a line every metre, a stronger one every five, as wide as a pixel at least.
+float grid(Float3 p, float footprint) {
+    const auto line = [&](float coordinate, float spacing, float half_width) {
+        const float away = std::fabs(coordinate - spacing * std::floor(coordinate / spacing + 0.5f));
+        const float blur = std::max(footprint, 1e-4f);
+        const float cover = std::clamp((half_width - away) / blur + 0.5f, 0.0f, 1.0f);
+        return cover * std::min(1.0f, 2 * half_width / blur);
+    };
+    const float fine = std::max(line(p.x, 1, 0.012f), line(p.y, 1, 0.012f));
+    const float coarse = std::max(line(p.x, 5, 0.022f), line(p.y, 5, 0.022f));
+    return std::max(0.16f * fine, 0.26f * coarse);
+}
+
+Hit cast(const View& view, Float3 direction) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRayHit ray = ray_from(view.camera.eye, direction, 0.01f);
+    rtcIntersect1(view.scene, &context, &ray);
+    Hit hit;
+    if (direction.z < 0) hit.distance = (view.stage.ground - view.camera.eye.z) / direction.z;
+    if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID && ray.ray.tfar < hit.distance) {
+        const std::uint32_t body = ray.hit.instID[0];
+        hit.distance = ray.ray.tfar;
+        hit.albedo = view.colours[body];
+        hit.normal = turned(view, view.poses[body], {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z});
+        if (dot(hit.normal, direction) > 0) hit.normal = -1.0f * hit.normal;
+    } else if (std::isfinite(hit.distance)) {
+        const Float3 p = view.camera.eye + hit.distance * direction;
+        const float footprint = view.pixel * hit.distance / std::sqrt(std::max(0.05f, -direction.z));
+        hit.ground = true;
+        hit.normal = {0, 0, 1};
+        hit.albedo = (1 - grid(p, footprint)) * ground_albedo;
+    }
+    return hit;
+}
+
+struct Shade {
+    Float3 albedo, light, extra, normal, position;
+};
+
+Shade shade(const View& view, Float3 direction, std::uint32_t pixel, std::uint32_t sample) {
+    const Hit hit = cast(view, direction);
+    Shade result;
+    if (!std::isfinite(hit.distance)) {
+        result.extra = backdrop;
+        return result;
+    }
+    const Float3 p = view.camera.eye + hit.distance * direction, n = hit.normal;
+    const Float3 origin = p + (1e-4f * (1 + hit.distance)) * n;
+
+    Float3 a, b;
+    frame_of(sun_direction, a, b);
+    const Point2 on_sun = in_disc(Sampler(pixel, 0)(sample));
+    const Float3 to_sun = unit(sun_direction + (sun_radius * on_sun.x) * a + (sun_radius * on_sun.y) * b);
+    const float facing = dot(n, to_sun);
+    const bool lit = facing > 0 && !occluded(view, origin, to_sun);
+    Float3 light;
+    if (lit) light = facing * sun_light;
+
+    frame_of(n, a, b);
+    const Sampler ambient(pixel, 1);
+    for (std::uint32_t k = 0; k < ambient_rays; ++k) {
+        const Point2 u = in_disc(ambient(sample * ambient_rays + k)); // cosine-weighted
+        const Float3 d = u.x * a + u.y * b + std::sqrt(std::max(0.0f, 1 - u.x * u.x - u.y * u.y)) * n;
+        const Float3 open = sky(d);
+        // A ray that meets a body brings what that body, of about this colour, reflects: light after the first bounce.
+        const Float3 seen = occluded(view, origin, d) ? 0.38f * (hit.albedo * open) : open;
+        light += (1.0f / ambient_rays) * seen;
+    }
+
+    Float3 extra;
+    if (!hit.ground) {
+        const Float3 half = unit(to_sun - direction);
+        const float gloss = std::pow(std::max(0.0f, dot(n, half)), 48.0f);
+        const float rim = std::pow(1 + std::min(0.0f, dot(n, direction)), 5.0f);
+        if (lit) extra += (0.22f * gloss) * sun_light;
+        extra += (0.10f * rim) * (light * sky({0, 0, 0.3f}));
+    }
+    result = {hit.albedo, light, extra, n, p};
+    if (hit.ground) {
+        const float x = p.x - view.middle.x, y = p.y - view.middle.y;
+        const float t = std::clamp((std::sqrt(x * x + y * y) / view.reach - 1.1f) / 2.2f, 0.0f, 1.0f);
+        const float fade = t * t * (3 - 2 * t);
+        result.albedo = (1 - fade) * result.albedo;
+        result.extra = fade * backdrop;
+    }
+    return result;
+}
+
+Image develop_layers(const Layers& layers) {
+    Image image{layers.width, layers.height, std::vector<std::uint8_t>(3 * layers.light.size())};
+    for (std::size_t k = 0; k < layers.light.size(); ++k)
+        develop(layers.albedo[k] * layers.light[k] + layers.extra[k], image.rgb.data() + 3 * k);
+    return image;
+}
+
+} // namespace
+
+struct Renderer::State {
+    explicit State(const scenes::RunLog& run) : log(run), device(rtcNewDevice(nullptr)) {
+        if (!device) throw std::runtime_error("Embree does not start on this machine; no pictures");
+        for (const auto& shape : log.shapes) {
+            const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+            const auto vertices = shape->vertices();
+            auto* out = static_cast<float*>(rtcSetNewGeometryBuffer(
+                geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+            const Vec3 centre = shape->centre();
+            for (const Vec3& v : vertices) {
+                *out++ = static_cast<float>(v.x - centre.x);
+                *out++ = static_cast<float>(v.y - centre.y);
+                *out++ = static_cast<float>(v.z - centre.z);
+            }
+            const auto triangles = shape->triangles();
+            auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+                geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+            for (const auto& t : triangles) index = std::copy(t.begin(), t.end(), index);
+            rtcCommitGeometry(geometry);
+            const RTCScene scene = rtcNewScene(device);
+            rtcAttachGeometry(scene, geometry);
+            rtcReleaseGeometry(geometry);
+            rtcCommitScene(scene);
+            shapes.push_back(scene);
+        }
+    }
+    ~State() {
+        for (const RTCScene scene : shapes) rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    /// One instance a body, its id the body's; the ground is left to the plane.
+    RTCScene scene_of(const scenes::Frame& frame, const Stage& stage) const {
+        const RTCScene scene = rtcNewScene(device);
+        for (std::size_t body = 0; body < frame.poses.size(); ++body) {
+            if (stage.is_ground[body]) continue;
+            const std::uint32_t shape = log.body_shape[body];
+            const Pose& pose = frame.poses[body];
+            const Float3 at = place(stage, transform_point(pose, log.shapes[shape]->centre()));
+            float matrix[12]; // 3 x 4, column-major, rows exchanged as the stage says
+            for (std::size_t row = 0; row < 3; ++row)
+                for (std::size_t column = 0; column < 3; ++column)
+                    matrix[3 * column + row] = static_cast<float>(pose.rotation[3 * stage.axes[row] + column]);
+            matrix[9] = at.x, matrix[10] = at.y, matrix[11] = at.z;
+            const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+            rtcSetGeometryInstancedScene(instance, shapes[shape]);
+            rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, matrix);
+            rtcCommitGeometry(instance);
+            rtcAttachGeometryByID(scene, instance, static_cast<unsigned>(body));
+            rtcReleaseGeometry(instance);
+        }
+        rtcCommitScene(scene);
+        return scene;
+    }
+
+    const scenes::RunLog& log;
+    RTCDevice device;
+    std::vector<RTCScene> shapes;
+};
+
+Renderer::Renderer(const scenes::RunLog& log) : state_(std::make_unique<State>(log)) {}
+Renderer::~Renderer() = default;
+
+Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const {
+    View view;
+    view.stage = make_stage(state_->log, frame);
+    view.poses = frame.poses;
+    const auto balls = moving_balls(view.stage, state_->log, frame);
+    view.camera = frame_balls(balls, view.stage.ground, width, height);
+    view.pixel = 2 * view.camera.half_height / static_cast<float>(height);
+    for (const Ball& ball : balls) {
+        view.middle.x += ball.centre.x / static_cast<float>(balls.size());
+        view.middle.y += ball.centre.y / static_cast<float>(balls.size());
+    }
+    for (const Ball& ball : balls)
+        view.reach = std::max({view.reach, std::fabs(ball.centre.x - view.middle.x) + ball.radius,
+                               std::fabs(ball.centre.y - view.middle.y) + ball.radius});
+    for (std::size_t body = 0; body < frame.poses.size(); ++body)
+        view.colours.push_back(state_->log.body_moves[body] ? body_colour(body) : Float3{0.5f, 0.5f, 0.5f});
+    view.scene = state_->scene_of(frame, view.stage);
+
+    const std::size_t pixels = std::size_t{width} * height;
+    Layers layers{width,
+                  height,
+                  std::vector<Float3>(pixels),
+                  std::vector<Float3>(pixels),
+                  std::vector<Float3>(pixels),
+                  std::vector<Float3>(pixels),
+                  std::vector<Float3>(pixels)};
+    tbb::parallel_for(tbb::blocked_range2d<std::uint32_t>(0, height, 16, 0, width, 16), [&](const auto& tile) {
+        for (std::uint32_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
+            for (std::uint32_t x = tile.cols().begin(); x < tile.cols().end(); ++x) {
+                const std::uint32_t here = y * width + x;
+                const Sampler inside(here, 2);
+                Shade sum;
+                float hits = 0;
+                for (std::uint32_t k = 0; k < side * side; ++k) {
+                    const Point2 jitter = inside(k);
+                    const float u = static_cast<float>(x) + (static_cast<float>(k % side) + jitter.x) / side;
+                    const float v = static_cast<float>(y) + (static_cast<float>(k / side) + jitter.y) / side;
+                    const Float3 direction =
+                        view.camera.direction(u / static_cast<float>(width), v / static_cast<float>(height));
+                    const Shade s = shade(view, direction, here, k);
+                    sum.albedo += s.albedo;
+                    sum.light += s.light;
+                    sum.extra += s.extra;
+                    sum.normal += s.normal;
+                    sum.position += s.position;
+                    if (dot(s.normal, s.normal) > 0) ++hits;
+                }
+                constexpr float share = 1.0f / (side * side);
+                layers.albedo[here] = share * sum.albedo;
+                layers.extra[here] = share * sum.extra;
+                if (hits > 0) {
+                    layers.light[here] = (1 / hits) * sum.light;
+                    layers.normal[here] = unit(sum.normal);
+                    layers.position[here] = (1 / hits) * sum.position;
+                }
+            }
+    });
+    rtcReleaseScene(view.scene);
+    smooth_light(layers, view.camera.eye, view.pixel);
+    return develop_layers(layers);
+}
+
+} // namespace raycontact::report

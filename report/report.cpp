@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <report/report.h>
+
+#include <raycontact/error.h>
+#include <report/image.h>
+#include <report/page.h>
+#include <report/render.h>
+#include <report/summary.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace raycontact::report {
+namespace {
+
+constexpr std::uint32_t picture_width = 960, picture_height = 540;
+constexpr std::size_t most_pictures = 8;
+constexpr int jpeg_quality = 90; // in the page; the files beside it are PNG
+
+void write_file(const std::filesystem::path& file, const std::string& bytes) {
+    std::ofstream out(file, std::ios::binary | std::ios::trunc);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) throw InputError(file.string() + ": cannot be written; is the folder writable, is the disk full?");
+}
+
+/// A log that would index out of its own lists must not reach the renderer.
+void check(const scenes::RunLog& log) {
+    if (log.rows.empty() || log.frames.empty())
+        throw InputError("report: the run has no " + std::string(log.rows.empty() ? "steps" : "frames")
+                         + ", nothing to show");
+    if (log.body_moves.size() != log.body_shape.size())
+        throw InputError("report: the run has " + std::to_string(log.body_shape.size()) + " bodies but says of "
+                         + std::to_string(log.body_moves.size()) + " whether they move");
+    for (const std::uint32_t shape : log.body_shape)
+        if (shape >= log.shapes.size())
+            throw InputError("report: a body has shape " + std::to_string(shape) + ", which the run lacks");
+    for (const scenes::Frame& frame : log.frames)
+        if (frame.poses.size() != log.body_shape.size())
+            throw InputError("report: the frame of step " + std::to_string(frame.step)
+                             + " has not one pose for each body");
+}
+
+/// The first, the last, and as many as fit evenly between.
+std::vector<std::size_t> chosen_frames(std::size_t count) {
+    std::vector<std::size_t> chosen;
+    const std::size_t wanted = std::min(count, most_pictures);
+    for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(wanted > 1 ? k * (count - 1) / (wanted - 1) : 0);
+    return chosen;
+}
+
+template <class Value>
+std::vector<double> column(const scenes::RunLog& log, Value value) {
+    std::vector<double> values;
+    for (const scenes::StepRow& row : log.rows) values.push_back(static_cast<double>(value(row)));
+    return values;
+}
+
+std::vector<Plot> plots_of(const scenes::RunLog& log) {
+    using scenes::StepRow;
+    return {
+        {"Pairs",
+         "pairs",
+         "Pairs of bodies whose boxes overlap, as the broad phase hands them to the narrow phase.",
+         {{"pairs", column(log, [](const StepRow& r) { return r.pairs; })}}},
+        {"Rays",
+         "rays",
+         "Rays cast: vertices inside the other body's bounds, both ways round.",
+         {{"rays", column(log, [](const StepRow& r) { return r.rays; })}}},
+        {"Contacts",
+         "contacts",
+         "Rays that met the other mesh from inside before they left their own.",
+         {{"contacts", column(log, [](const StepRow& r) { return r.contacts; })}}},
+        {"Time",
+         "ms",
+         "Wall clock of a whole step (with the response) and of the narrow phase in it, on this machine.",
+         {{"step", column(log, [](const StepRow& r) { return r.step_ms; })},
+          {"narrow phase", column(log, [](const StepRow& r) { return r.narrow_ms; })}}},
+        {"Penetration",
+         "mm",
+         "Depth of the deepest contact of the step, along the contact's normal.",
+         {{"penetration", column(log, [](const StepRow& r) { return 1000 * r.penetration_max; })}}},
+        {"Ray length",
+         "m",
+         "Lengths of all rays that are contacts, added up.",
+         {{"ray length", column(log, [](const StepRow& r) { return r.ray_length; })}}},
+        {"Median speed",
+         "m/s",
+         "Half of the moving bodies are slower than this at the end of the step.",
+         {{"speed", column(log, [](const StepRow& r) { return r.median_speed; })}}},
+    };
+}
+
+} // namespace
+
+void write_report(const std::filesystem::path& folder, const scenes::RunLog& log) {
+    check(log);
+    const std::filesystem::path pictures = folder / "pictures";
+    std::error_code error;
+    std::filesystem::create_directories(pictures, error);
+    if (error) throw InputError(pictures.string() + ": the folder cannot be made (" + error.message() + ")");
+
+    Page page;
+    describe(log, page);
+    page.plots = plots_of(log);
+    page.steps = column(log, [](const scenes::StepRow& row) { return row.step; });
+    page.step_seconds = log.dt;
+    const Renderer renderer(log);
+    for (const std::size_t k : chosen_frames(log.frames.size())) {
+        const scenes::Frame& frame = log.frames[k];
+        const Image image = renderer.render(frame, picture_width, picture_height);
+        write_file(pictures / fmt::format("step-{:03}.png", frame.step), encode_png(image));
+        page.stills.push_back({encode_jpeg(image, jpeg_quality),
+                               fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
+    }
+    write_file(folder / "report.html", make_page(page));
+}
+
+std::string picture_png(const scenes::RunLog& log, std::size_t frame, std::uint32_t width, std::uint32_t height) {
+    check(log);
+    if (frame >= log.frames.size())
+        throw InputError("picture: frame " + std::to_string(frame) + " asked for; the run has "
+                         + std::to_string(log.frames.size()));
+    if (width == 0 || height == 0 || width > 16384 || height > 16384)
+        throw InputError("picture: " + std::to_string(width) + " x " + std::to_string(height)
+                         + " asked for; 1 to 16384 pixels a side");
+    return encode_png(Renderer(log).render(log.frames[frame], width, height));
+}
+
+} // namespace raycontact::report

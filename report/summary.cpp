@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <report/summary.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <thread>
+
+namespace raycontact::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// How a key of `run --json` reads for a person; `scale` turns its unit into the one shown.
+struct Known {
+    const char *key, *name, *unit, *meaning;
+    double scale = 1;
+};
+
+constexpr Known known[] = {
+    {"bodies", "Bodies", "", "moving; the ground not counted"},
+    {"steps", "Steps", "", "of the simulation"},
+    {"seed", "Seed", "", "of the bodies' first poses"},
+    {"pairs_max", "Pairs, most in a step", "pairs", "bodies whose boxes overlap"},
+    {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps: the pile at rest"},
+    {"rays", "Rays", "rays", "cast in all steps together"},
+    {"contacts", "Contacts", "contacts", "found in all steps together"},
+    {"ray_length", "Ray length", "m", "of all contacts of all steps, added up"},
+    {"penetration_max", "Penetration, deepest", "mm", "deepest contact of the whole run", 1000},
+    {"penetration_max_last_second", "Penetration, last second", "mm", "deepest contact of the last second", 1000},
+    {"depth_limit", "Depth limit", "mm", "what counts as deep in the next three rows", 1000},
+    {"deep_contacts", "Deep contacts", "", "contacts past the limit, each step counted"},
+    {"deep_steps_longest", "Deep, longest", "steps", "for how many steps on end one contact stayed past the limit"},
+    {"deep_steps_last_second", "Deep, last second", "steps", "the same, within the last second"},
+    {"median_speed_last_second", "Median speed, last second", "mm/s", "half of the bodies are slower", 1000},
+    {"below_ground", "Below ground", "bodies", "at the end of the run"},
+    {"flown_off", "Flown off", "bodies", "at the end of the run"},
+    {"wall_ms", "Wall clock", "s", "all steps together, setup included, pictures not", 0.001},
+    {"step_ms.median", "Step, median", "ms", "wall clock: detection and response"},
+    {"step_ms.p95", "Step, 95th percentile", "ms", "one step in twenty takes longer"},
+    {"narrow_ms.median", "Narrow phase, median", "ms", "wall clock of contact finding alone"},
+    {"narrow_ms.p95", "Narrow phase, 95th percentile", "ms", "one step in twenty takes longer"},
+    {"method", "Method", "", "how rays are kept from step to step"},
+    {"caster", "Caster", "", "how a ray meets a mesh"},
+    {"direction", "Direction", "", "what normal and depth are made of"},
+    {"devices", "Devices", "", "that cast the rays"},
+    {"hash", "Hash", "", "XXH64 over every contact of every step: the same on every device and thread count"},
+};
+
+std::string as_text(const Json& value, double scale) {
+    if (value.is_number_float() || (value.is_number() && scale != 1)) return readable(value.get<double>() * scale);
+    if (value.is_number_unsigned() || value.is_number_integer()) return readable(value.get<double>());
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_array()) {
+        std::string text;
+        for (const Json& item : value) text += (text.empty() ? "" : ", ") + as_text(item, scale);
+        return text;
+    }
+    return value.dump();
+}
+
+/// {"step_ms": {"median": 1}} becomes "step_ms.median": 1.
+void flatten(const Json& object, const std::string& before, std::vector<std::pair<std::string, Json>>& out) {
+    for (const auto& [key, value] : object.items()) {
+        if (value.is_object())
+            flatten(value, before + key + ".", out);
+        else
+            out.emplace_back(before + key, value);
+    }
+}
+
+std::string processor() {
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name"))
+            if (const auto colon = line.find(':'); colon != std::string::npos && colon + 2 <= line.size())
+                return line.substr(colon + 2);
+    return "processor unknown";
+}
+
+std::string word(const Json& summary, const char* key, const char* otherwise) {
+    const auto at = summary.find(key);
+    return at == summary.end() ? otherwise : as_text(*at, 1);
+}
+
+/// The plain number of a key, as the command line takes it.
+std::string option(const Json& summary, const char* key, const char* name) {
+    const auto at = summary.find(key);
+    if (at == summary.end() || at->is_object()) return "";
+    std::string text;
+    if (at->is_array())
+        for (const Json& item : *at)
+            text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
+    else
+        text = at->is_string() ? at->get<std::string>() : at->dump();
+    return text.empty() ? "" : std::string(" ") + name + " " + text;
+}
+
+} // namespace
+
+void describe(const scenes::RunLog& log, Page& page) {
+    Json summary = Json::parse(log.summary_json, nullptr, false);
+    if (!summary.is_object()) summary = Json::object();
+
+    std::size_t moving = 0;
+    for (const bool moves : log.body_moves) moving += moves;
+    const double seconds = static_cast<double>(log.rows.size()) * log.dt;
+    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+    page.title = fmt::format("{}: {} concave meshes", log.scene.empty() ? "run" : log.scene, moving);
+    page.title[0] =
+        static_cast<char>(page.title[0] >= 'a' && page.title[0] <= 'z' ? page.title[0] - 'a' + 'A' : page.title[0]);
+    page.summary = fmt::format(
+        "{} bodies over {} steps, {:.3g} s of simulated time at {:.4g} steps a second. Each body is {}. All contacts "
+        "between "
+        "meshes were found by RayContact by casting rays from the vertices of one mesh into the other (method {}, "
+        "caster {}, "
+        "direction {}); the response is Bullet's sequential impulse solver. Times are wall clock on {} core{} ({}), "
+        "devices: {}.",
+        moving, log.rows.size(), seconds, 1 / log.dt, log.mesh_source.empty() ? "of unknown origin" : log.mesh_source,
+        word(summary, "method", "standard"), word(summary, "caster", "bvh"), word(summary, "direction", "reprojected"),
+        cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
+
+    std::vector<std::pair<std::string, Json>> figures;
+    flatten(summary, "", figures);
+    const auto take = [&figures](const std::string& key) {
+        for (auto it = figures.begin(); it != figures.end(); ++it)
+            if (it->first == key) {
+                Json value = it->second;
+                figures.erase(it);
+                return value;
+            }
+        return Json();
+    };
+    take("scene");
+    take("mesh_source"); // in the summary already
+    for (const Known& k : known)
+        if (const Json value = take(k.key); !value.is_null()) {
+            // A seed is a name, not an amount.
+            const std::string text = std::string_view(k.key) == "seed" ? value.dump() : as_text(value, k.scale);
+            page.rows.push_back({k.name, text, k.unit, k.meaning});
+        }
+    for (const auto& [key, value] : figures)
+        page.rows.push_back({key, as_text(value, 1), "", "as `run --json` prints it"});
+
+    page.command = "raycontact run " + (log.scene.empty() ? "SCENE" : log.scene) + option(summary, "bodies", "--bodies")
+                   + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
+                   + option(summary, "method", "--method") + option(summary, "caster", "--caster")
+                   + option(summary, "direction", "--direction") + option(summary, "devices", "--devices")
+                   + " --out DIR";
+    page.footer =
+        "Pictures: Embree, sun and sky, one ground square is 1 m; colours tell bodies apart and mean nothing else. "
+        "The camera follows the pile from picture to picture. The same command gives the same contacts and hash; "
+        "times differ from machine to machine.";
+}
+
+} // namespace raycontact::report
