@@ -97,10 +97,10 @@ void report(const Counts& c) {
 
 TEST(agreement, closed_meshes) {
     Counts counts;
-    run(pointers(closed_subjects()), 2400, 20130101, counts);
+    run(pointers(closed_subjects()), 16000, 20130101, counts);
     report(counts);
-    EXPECT_GE(counts.sum.pairs, 2400u);
-    EXPECT_GE(counts.sum.agreed, 50000u);
+    EXPECT_GE(counts.sum.pairs, 16000u);
+    EXPECT_GE(counts.sum.agreed, 250000u);
 }
 
 TEST(agreement, open_meshes_among_closed_ones) {
@@ -108,10 +108,10 @@ TEST(agreement, open_meshes_among_closed_ones) {
     for (const Subject& s : closed_subjects())
         if (s.solid.triangles.size() < 900) subjects.push_back(&s);
     Counts counts;
-    run(subjects, 600, 20130202, counts);
+    run(subjects, 4000, 20130202, counts);
     report(counts);
-    EXPECT_GE(counts.sum.pairs, 600u);
-    EXPECT_GE(counts.sum.agreed, 3000u);
+    EXPECT_GE(counts.sum.pairs, 4000u);
+    EXPECT_GE(counts.sum.agreed, 25000u);
 }
 
 } // namespace

@@ -79,7 +79,7 @@ Cloud make_cloud(const Subject& target, Aim aim, std::uint32_t triangles, Random
 }
 
 void cast(const Subject& target, Aim aim, double rays, std::uint64_t seed, Counts& counts) {
-    constexpr std::uint32_t triangles = 8000;
+    constexpr std::uint32_t triangles = 1500;
     Random random(seed);
     const Judge judge(target.solid);
     Scene scene;
@@ -91,7 +91,7 @@ void cast(const Subject& target, Aim aim, double rays, std::uint64_t seed, Count
         const BodyId source = scene.add(cloud.shape);
         const std::vector<Pair> pairs{{body, source}};
         std::vector<char> hit(cloud.vertices.size());
-        for (int k = 0; k < 50 && counts.rays < end; ++k) {
+        for (int k = 0; k < 100 && counts.rays < end; ++k) {
             // The target stands where it was aimed at, at random in the world; the cloud is off by about a rounding
             // when aimed, by anything when not. Each pose rounds every ray anew.
             Pose at = random.rotation();
@@ -135,7 +135,7 @@ void report(const char* what, const Counts& c, double wanted) {
                 static_cast<unsigned long long>(c.missed), static_cast<unsigned long long>(c.near_surface));
     EXPECT_EQ(c.invented, 0u) << c.first;
     EXPECT_EQ(c.missed, 0u) << c.first;
-    EXPECT_GE(static_cast<double>(c.rays), wanted);
+    EXPECT_GE(static_cast<double>(c.rays - c.near_surface), wanted);
     EXPECT_GE(c.contacts, c.rays / 20);
     EXPECT_LE(c.contacts, c.rays - c.rays / 20);
 }
@@ -145,7 +145,7 @@ void cast_all_targets(Aim aim, const char* what, double rays, std::uint64_t seed
     std::vector<const Subject*> targets;
     for (const Subject& s : closed_subjects()) targets.push_back(&s);
     for (const Subject* s : targets) cast(*s, aim, rays / static_cast<double>(targets.size()), seed++, counts);
-    report(what, counts, rays * 0.999);
+    report(what, counts, rays * 0.99);
 }
 
 TEST(invented, at_random) {
@@ -197,7 +197,7 @@ TEST(invented, along_the_axes_of_boxes) {
                 if (inside_bounds || hit[i][v]) judge.judge(p, hit[i][v] != 0, true, counts);
             }
     }
-    report("along axes", counts, 15000);
+    report("along axes", counts, 12000);
 }
 
 } // namespace

@@ -33,7 +33,7 @@ const std::vector<Subject>& closed_subjects() {
 const std::vector<Subject>& open_subjects() {
     static const std::vector<Subject> subjects = [] {
         std::vector<Subject> list;
-        for (const Mesh& mesh : {bowl_mesh(8), sheet_mesh(8)}) list.emplace_back(mesh);
+        for (const Mesh& mesh : {bowl_mesh(8), sheet_mesh(8), open_box_mesh(4)}) list.emplace_back(mesh);
         return list;
     }();
     return subjects;
@@ -53,7 +53,7 @@ Placement random_placement(const std::vector<const Subject*>& subjects, Random& 
     p.pose_a = random.rotation();
     p.pose_b = random.rotation();
     const Vec3 middle = 5 * random.in_ball();
-    const double apart = 0.35 * (p.a->solid.diagonal + p.b->solid.diagonal);
+    const double apart = 0.3 * (p.a->solid.diagonal + p.b->solid.diagonal);
     p.pose_a.translation = middle - rotate(p.pose_a, p.a->solid.centre);
     p.pose_b.translation = middle + apart * random.in_ball() - rotate(p.pose_b, p.b->solid.centre);
     return p;

@@ -25,7 +25,7 @@ Mesh model_mesh(const char* kind);
 
 /// Knot, gear, bumpy torus and bumpy sphere of 902 triangles; bumpy octahedron, frame, L prism, tetrahedron.
 const std::vector<Subject>& closed_subjects();
-/// Bowl and sheet.
+/// Bowl, sheet, and a box without a lid.
 const std::vector<Subject>& open_subjects();
 
 /// Two subjects so placed that their boxes overlap and mostly their surfaces do.

@@ -87,8 +87,8 @@ private:
             ++sum_.excuses[m.name_of_least()];
             return;
         }
-        const std::string margins = text(" (margins: edge %.2g, t_max %.2g, surface %.2g, bounds %.2g, exit %.2g)",
-                                         m.edge, m.t_max, m.surface, m.bounds, m.exit);
+        const std::string margins =
+            text(" (margins: edge %.2g, t_max %.2g, surface %.2g, bounds %.2g)", m.edge, m.t_max, m.surface, m.bounds);
         complain(what + margins, source_.vertex_index[vertex], ray, contact);
     }
 

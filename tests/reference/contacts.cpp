@@ -115,7 +115,6 @@ Margins ray_margins(const Solid& source, const Pose& source_pose, const Solid& t
     margins.t_max = hit.distance < inf && t_max < inf ? std::fabs(hit.distance - t_max) / target.diagonal : inf;
     margins.surface = distance_to_surface(target, origin) / target.diagonal;
     margins.bounds = distance_to_box(bounds.low, bounds.high, origin) / target.diagonal;
-    margins.exit = source.exit_margins[vertex];
     return margins;
 }
 

@@ -98,12 +98,12 @@ double distance_to_box(const Vec3& low, const Vec3& high, const Vec3& point) {
 }
 
 double Margins::least() const {
-    return std::min({edge, t_max, surface, bounds, exit});
+    return std::min({edge, t_max, surface, bounds});
 }
 
 const char* Margins::name_of_least() const {
     const double l = least();
-    return l == edge ? "edge" : l == t_max ? "t_max" : l == surface ? "surface" : l == bounds ? "bounds" : "exit";
+    return l == edge ? "edge" : l == t_max ? "t_max" : l == surface ? "surface" : "bounds";
 }
 
 } // namespace raycontact::reference

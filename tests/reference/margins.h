@@ -22,7 +22,6 @@ struct Margins {
     double t_max = 0;   ///< hit distance to the exit distance
     double surface = 0; ///< origin to the target's surface
     double bounds = 0;  ///< origin to the target's bounds
-    double exit = 0;    ///< of the exit distance itself
     double least() const;
     const char* name_of_least() const;
 };

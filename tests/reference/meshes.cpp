@@ -162,6 +162,14 @@ Mesh sheet_mesh(std::uint32_t n) {
     return height_field("sheet", n, [](double x, double y) { return 0.5 * x * y * (1 - x * x) + 0.25 * y * y * y; });
 }
 
+Mesh open_box_mesh(std::uint32_t n) {
+    Mesh mesh = grid_box_mesh(n);
+    mesh.name = "open box";
+    const auto on_lid = [&](std::uint32_t v) { return mesh.vertices[v].z == 1; };
+    std::erase_if(mesh.triangles, [&](const Triangle& t) { return on_lid(t[0]) && on_lid(t[1]) && on_lid(t[2]); });
+    return mesh; // the vertices inside the lid stay, in use by no triangle
+}
+
 Mesh moved(Mesh mesh, const Vec3& by) {
     for (Vec3& v : mesh.vertices) v = v + by;
     return mesh;

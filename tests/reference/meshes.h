@@ -17,6 +17,8 @@ Mesh bumpy_octahedron_mesh(std::uint32_t n); ///< star-shaped, concave: 8 n^2 tr
 Mesh bowl_mesh(std::uint32_t n);  ///< open: a paraboloid over a square of n x n squares, normals outward (down)
 Mesh sheet_mesh(std::uint32_t n); ///< open: a wavy square of n x n squares, normals up
 
+Mesh open_box_mesh(std::uint32_t n); ///< open: the grid box without its lid z = 1
+
 /// The positions moved by `by`; a mesh far from its own origin.
 Mesh moved(Mesh mesh, const Vec3& by);
 

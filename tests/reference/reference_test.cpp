@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reference itself, on cases whose answer is known by hand.
+#include "reference/compare.h"
 #include "reference/contacts.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -8,6 +9,8 @@
 #include "reference/vector.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 using namespace raycontact;
 using namespace raycontact::reference;
@@ -195,6 +198,68 @@ TEST(reference_contacts, of_an_open_target_reach_beyond_its_box) {
         EXPECT_NEAR(c.depth, 0.125, 1e-14);
         EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15);
     }
+}
+
+// What the library would have to say to agree with the reference.
+std::vector<Contact> as_library(const std::vector<ReferenceContact>& contacts) {
+    std::vector<Contact> list;
+    for (const ReferenceContact& r : contacts) {
+        Contact c;
+        c.body_b = 1;
+        c.vertex_body = r.vertex_body;
+        c.vertex = r.vertex;
+        c.triangle = r.triangle;
+        c.point = r.point;
+        c.normal = {static_cast<float>(r.normal.x), static_cast<float>(r.normal.y), static_cast<float>(r.normal.z)};
+        c.depth = static_cast<float>(r.depth);
+        c.ray_length = static_cast<float>(r.ray_length);
+        list.push_back(c);
+    }
+    return list;
+}
+
+TEST(reference_compare, notices_every_kind_of_error) {
+    const Solid a = solid(bumpy_octahedron_mesh(6));
+    const Solid b = solid(l_prism_mesh());
+    Random random(5);
+    Pose pose_a = random.rotation();
+    pose_a.translation = {0.25, 0.5, -0.125};
+    const Pose pose_b = random.rotation();
+    const std::vector<Contact> right = as_library(find_contacts(a, pose_a, b, pose_b));
+    ASSERT_GE(right.size(), 10u);
+    const auto verdict = [&](const std::vector<Contact>& contacts) {
+        Comparison sum;
+        compare(a, pose_a, b, pose_b, contacts, sum);
+        EXPECT_EQ(sum.contacts, right.size());
+        EXPECT_EQ(sum.excused, 0u);
+        EXPECT_EQ(sum.complaints.size(), std::min<std::size_t>(sum.wrong, 5));
+        return sum;
+    };
+    EXPECT_EQ(verdict(right).agreed, right.size());
+    EXPECT_EQ(verdict(right).wrong, 0u);
+    EXPECT_EQ(verdict({}).wrong, right.size()); // all missed
+    const auto wrong_after = [&](auto change) {
+        std::vector<Contact> list = right;
+        change(list[right.size() / 2]);
+        return verdict(list).wrong;
+    };
+    EXPECT_EQ(wrong_after([](Contact& c) { c.triangle = c.triangle ? 0 : 1; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.depth += 1e-4f; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.ray_length += 1e-4f; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.point.x += 1e-4; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) {
+                  for (float& n : c.normal) n = -n;
+              }),
+              1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.vertex = 4000; }), 2u); // one missed, one of no vertex
+    std::vector<Contact> more = right;
+    std::vector<bool> taken(a.vertices.size());
+    for (const Contact& c : right)
+        if (c.vertex_body == VertexBody::a) taken[c.vertex] = true;
+    more.push_back(right[0]);
+    more.back().vertex_body = VertexBody::a;
+    more.back().vertex = static_cast<std::uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    EXPECT_EQ(verdict(more).wrong, 1u); // invented
 }
 
 TEST(reference_rays, never_slip_through_an_edge) {
