@@ -1,1 +1,79 @@
 # SPDX-License-Identifier: Apache-2.0
+# The kernels' text for compilers that run later: one dialect, the types and every kernel, joined at build time into a
+# generated header; never committed. Included, it defines raycontact_embed_kernels(target): the target may then include
+# "kernels_opencl.h" and "kernels_cuda.h" (raycontact::opencl_text(), raycontact::cuda_text()). Run as a script
+# (cmake -P), it writes one of them.
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+    set(raycontact_embed_script ${CMAKE_CURRENT_LIST_FILE})
+
+    function(raycontact_embed_kernels target)
+        set(source_folder ${PROJECT_SOURCE_DIR}/src)
+        set(folder ${CMAKE_CURRENT_BINARY_DIR}/kernels_text)
+        file(GLOB kernels CONFIGURE_DEPENDS ${source_folder}/kernels/*.h)
+        foreach(dialect opencl cuda)
+            set(header ${folder}/kernels_${dialect}.h)
+            add_custom_command(OUTPUT ${header}
+                COMMAND ${CMAKE_COMMAND} -D SOURCE_FOLDER=${source_folder} -D DIALECT=${dialect} -D OUTPUT=${header}
+                        -P ${raycontact_embed_script}
+                DEPENDS ${kernels} ${source_folder}/device/${dialect}/dialect.h ${raycontact_embed_script}
+                COMMENT "Embedding the kernels for ${dialect}" VERBATIM)
+            target_sources(${target} PRIVATE ${header})
+        endforeach()
+        target_include_directories(${target} PRIVATE ${folder})
+    endfunction()
+    return()
+endif()
+
+# A stretch of one file as a raw string. Stretches stay well below the 65536 characters that a compiler must accept.
+function(add_piece text first_line file)
+    if(NOT text STREQUAL "")
+        string(APPEND pieces "    R\"raycontact(#line ${first_line} \"${file}\"\n${text})raycontact\",\n")
+        set(pieces "${pieces}" PARENT_SCOPE)
+    endif()
+endfunction()
+
+# The text of a file with its includes resolved; #line marks let a compiler's message name the file it came from.
+function(embed file)
+    file(READ ${SOURCE_FOLDER}/${file} rest)
+    set(line 1)
+    while(rest MATCHES "(^|\n)#include \"([^\"]+)\"\n")
+        set(included ${CMAKE_MATCH_2})
+        string(FIND "${rest}" "#include \"${included}\"\n" at)
+        string(SUBSTRING "${rest}" 0 ${at} before)
+        string(LENGTH "#include \"${included}\"\n" length)
+        math(EXPR after "${at} + ${length}")
+        string(SUBSTRING "${rest}" ${after} -1 rest)
+        add_piece("${before}" ${line} ${file})
+        string(REGEX REPLACE "[^\n]" "" newlines "${before}")
+        string(LENGTH "${newlines}" lines)
+        math(EXPR line "${line} + ${lines} + 1")
+        embed(${included})
+    endwhile()
+    add_piece("${rest}" ${line} ${file})
+    set(pieces "${pieces}" PARENT_SCOPE)
+endfunction()
+
+set(pieces "")
+embed(device/${DIALECT}/dialect.h)
+embed(kernels/types.h)
+embed(kernels/kernels.h)
+file(WRITE ${OUTPUT} "// SPDX-License-Identifier: Apache-2.0
+// Generated from src/device/${DIALECT}/dialect.h and src/kernels by cmake/EmbedKernels.cmake.
+#pragma once
+
+#include <string>
+
+namespace raycontact {
+
+inline constexpr const char* ${DIALECT}_pieces[] = {
+${pieces}};
+
+/// Dialect, types and kernels in one text.
+inline std::string ${DIALECT}_text() {
+    std::string text;
+    for (const char* piece : ${DIALECT}_pieces) text += piece;
+    return text;
+}
+
+} // namespace raycontact
+")

@@ -26,7 +26,7 @@ DEVICE uint overlapping_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL co
         const float ey = ((size[3] * hx + size[4] * hy) + size[5] * hz) + half_size[1];
         const float ez = ((size[6] * hx + size[7] * hy) + size[8] * hz) + half_size[2];
         const uint overlaps = (x <= ex) & (-x <= ex) & (y <= ey) & (-y <= ey) & (z <= ez) & (-z <= ez);
-        lanes |= overlaps != 0u ? lane_bit(k) : 0u;
+        lanes |= lane_bit(k) & (0u - overlaps);
     }
     return lanes;
 }
@@ -44,7 +44,7 @@ DEVICE uint inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const V
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        lanes |= inside != 0u ? lane_bit(k) : 0u;
+        lanes |= lane_bit(k) & (0u - inside);
     }
     return lanes;
 }

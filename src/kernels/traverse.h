@@ -36,7 +36,7 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
         const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
         const float enter = nxy > nzt ? nxy : nzt;
         const float leave = fxy < fzt ? fxy : fzt;
-        children |= enter <= leave ? lane_bit(k) : 0u;
+        children |= lane_bit(k) & (0u - (uint)(enter <= leave));
     }
     return children;
 }

@@ -21,10 +21,6 @@ typedef struct {
     float limit;
 } Closest;
 
-DEVICE float magnitude_of(float x) {
-    return x < 0.0f ? -x : x;
-}
-
 DEVICE float safe_inverse(float d) {
     const float huge = 1.0e20f;
     return magnitude_of(d) < 1.0e-20f ? (d < 0.0f ? -huge : huge) : 1.0f / d;
@@ -133,7 +129,7 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
         const uint inside = (least >= 0.0f) | (most <= 0.0f);
         const uint ahead = far >= -tolerance * size - volume_tolerance;
         const uint within = far <= limit * size + volume_tolerance;
-        lanes |= (inside & ahead & within) != 0u ? lane_bit(k) : 0u;
+        lanes |= lane_bit(k) & (0u - (inside & ahead & within));
     }
     while (lanes != 0u) {
         const uint lane = lowest_bit(lanes);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels' words in CUDA C++, for NVRTC with --fmad=false --prec-div=true --prec-sqrt=true --ftz=false.
+typedef unsigned int uint;
+typedef unsigned long long ulong;
+
+#define KERNEL extern "C" __global__
+#define DEVICE static inline __device__
+#define GLOBAL
+#define RESTRICT __restrict__
+#define RANGE
+#define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
+#define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
+
+DEVICE uint lowest_bit(uint bits) {
+    return (uint)__ffs((int)bits) - 1u;
+}
+DEVICE uint bit_count(uint bits) {
+    return (uint)__popc(bits);
+}
+DEVICE float magnitude_of(float x) {
+    return fabsf(x);
+}
+DEVICE uint lane_bit(int lane) {
+    return 1u << lane;
+}
+
+// What rounding took from p = fl(a * b), exactly; the only fused multiply-add there is.
+DEVICE float product_error(float a, float b, float p) {
+    return __fmaf_rn(a, b, -p);
+}

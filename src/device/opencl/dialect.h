@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels' words in OpenCL C 1.2. Contraction is off in the text itself, whatever the build options say.
+#pragma OPENCL FP_CONTRACT OFF
+
+#define KERNEL __kernel
+#define DEVICE static inline
+#define GLOBAL __global
+#define RESTRICT restrict
+#define RANGE
+#define FOR_EACH(i, n) for (uint i = (uint)get_global_id(0); i < (n); i += (uint)get_global_size(0))
+#define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
+
+DEVICE uint lowest_bit(uint bits) {
+    return 31u - clz(bits & (0u - bits));
+}
+DEVICE uint bit_count(uint bits) {
+    return popcount(bits);
+}
+DEVICE float magnitude_of(float x) {
+    return fabs(x);
+}
+DEVICE uint lane_bit(int lane) {
+    return 1u << lane;
+}
+
+// What rounding took from p = fl(a * b), exactly: fma() rounds once on every device, some only do it slowly.
+DEVICE float product_error(float a, float b, float p) {
+    return fma(a, b, -p);
+}
