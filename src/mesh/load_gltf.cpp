@@ -52,7 +52,7 @@ public:
             if (!placed_[n] || mesh < 0) continue;
             if (static_cast<std::size_t>(mesh) >= model_.meshes.size())
                 fail_node(n, "mesh " + std::to_string(mesh) + " does not exist");
-            const Matrix to_root = placement(n);
+            const Matrix& to_root = placement(n);
             for (const double entry : to_root) {
                 if (!std::isfinite(entry)) fail_node(n, "its transform is not finite");
             }
@@ -71,6 +71,8 @@ private:
     void find_parents() {
         constexpr int none = -1;
         parents_.assign(model_.nodes.size(), none);
+        known_.assign(model_.nodes.size(), 0);
+        to_root_.resize(model_.nodes.size());
         for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
             for (const int child : model_.nodes[n].children) {
                 if (child < 0 || static_cast<std::size_t>(child) >= model_.nodes.size()) {
@@ -168,12 +170,20 @@ private:
         return m;
     }
 
-    Matrix placement(std::size_t n) const {
-        Matrix m = local_matrix(n);
-        for (int up = parents_[n]; up >= 0; up = parents_[static_cast<std::size_t>(up)]) {
-            m = multiply(local_matrix(static_cast<std::size_t>(up)), m);
+    // Kept for every node on the way up, so that a deep chain costs each of its nodes once.
+    const Matrix& placement(std::size_t n) {
+        std::vector<std::size_t> chain;
+        for (int up = static_cast<int>(n); up >= 0; up = parents_[static_cast<std::size_t>(up)]) {
+            if (known_[static_cast<std::size_t>(up)]) break;
+            chain.push_back(static_cast<std::size_t>(up));
         }
-        return m;
+        for (auto node = chain.rbegin(); node != chain.rend(); ++node) {
+            const Matrix local = local_matrix(*node);
+            const int parent = parents_[*node];
+            to_root_[*node] = parent < 0 ? local : multiply(to_root_[static_cast<std::size_t>(parent)], local);
+            known_[*node] = 1;
+        }
+        return to_root_[n];
     }
 
     // A range of a buffer, checked: `count` records of `size` bytes, `stride` apart.
@@ -378,7 +388,8 @@ private:
     const InputFile& file_;
     const tinygltf::Model& model_;
     std::vector<int> parents_;
-    std::vector<char> placed_;
+    std::vector<char> placed_, known_;
+    std::vector<Matrix> to_root_;
     Mesh mesh_;
 };
 

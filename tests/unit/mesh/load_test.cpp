@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/mesh/formats.h"
+#include "tests/unit/mesh/solids.h"
+
+#include <raycontact/error.h>
+#include <raycontact/mesh.h>
+
+#include <gtest/gtest.h>
+#include <tiny_obj_loader.h>
+
+using namespace raycontact;
+using namespace raycontact::test;
+
+namespace {
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+/// Coordinates that float32 cannot hold.
+Mesh odd_mesh() {
+    Mesh mesh = torus(7, 5, 1.1, 0.3);
+    mesh.vertices[3].x = 1.0 / 3;
+    return mesh;
+}
+
+void expect_equal(const Mesh& loaded, const Mesh& made) {
+    EXPECT_EQ(loaded.vertices, made.vertices);
+    EXPECT_EQ(loaded.triangles, made.triangles);
+}
+
+/// As STL has it: three vertices of its own for each triangle.
+Mesh unwelded(const Mesh& mesh, bool as_float) {
+    Mesh out;
+    for (const auto& t : mesh.triangles) {
+        const auto base = static_cast<std::uint32_t>(out.vertices.size());
+        for (const std::uint32_t v : t) {
+            Vec3 p = mesh.vertices[v];
+            if (as_float) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+            out.vertices.push_back(p);
+        }
+        out.triangles.push_back({base, base + 1, base + 2});
+    }
+    return out;
+}
+
+std::string error_of(const std::filesystem::path& file) {
+    try {
+        load_mesh(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "loaded";
+}
+
+TEST(Load, ObjKeepsIndicesAndEveryBit) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    const Mesh loaded = load_mesh(folder.write("a thing.OBJ", as_obj(made)));
+    expect_equal(loaded, made);
+    EXPECT_EQ(loaded.name, "a thing.OBJ");
+}
+
+TEST(Load, ObjAgreesWithTinyobjloader) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    const Mesh loaded = load_mesh(folder.write("m.obj", as_obj(made)));
+    tinyobj::ObjReader reader;
+    ASSERT_TRUE(reader.ParseFromString(as_obj(made), ""));
+    const std::vector<tinyobj::real_t>& points = reader.GetAttrib().vertices;
+    ASSERT_EQ(points.size(), 3 * loaded.vertices.size());
+    for (std::size_t i = 0; i < loaded.vertices.size(); ++i) EXPECT_NEAR(points[3 * i], loaded.vertices[i].x, 1e-14);
+    ASSERT_EQ(reader.GetShapes().size(), 1u);
+    const auto& indices = reader.GetShapes()[0].mesh.indices;
+    ASSERT_EQ(indices.size(), 3 * loaded.triangles.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        EXPECT_EQ(static_cast<std::uint32_t>(indices[i].vertex_index), loaded.triangles[i / 3][i % 3]);
+    }
+}
+
+TEST(Load, ObjFacesOfEveryKind) {
+    const TempFolder folder;
+    const Mesh mesh =
+        load_mesh(folder.write("m.obj", "mtllib x.mtl\r\nv 0 0 0 1.0\r\nv +1 0 0\r\nv 1 1 0 0.5 0.5 0.5\r\n"
+                                        "vt 0 0\r\nvn 0 0 1\r\nv 0 1 0 # corner\r\ng a b\r\ns off\r\n"
+                                        "f 1/1/1 2//1 \\\r\n 3/1 4\r\nf -4 -3 -2\r\nf 1 2 5\r\nv 0 0 1e-400"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 1, 4}}));
+    EXPECT_EQ(mesh.vertices.size(), 5u);
+    EXPECT_EQ(mesh.vertices[4], (Vec3{0, 0, 0}));
+}
+
+TEST(Load, LinesMayEndInCarriageReturnAlone) {
+    const TempFolder folder;
+    const Mesh mesh = load_mesh(folder.write("m.obj", "\xef\xbb\xbfv 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
+}
+
+TEST(Load, OffKeepsIndicesAndEveryBit) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    expect_equal(load_mesh(folder.write("m.off", as_off(made))), made);
+}
+
+TEST(Load, OffWithColoursCommentsAndPolygons) {
+    const TempFolder folder;
+    const Mesh mesh =
+        load_mesh(folder.write("m.off", "# first\nCOFF 4 2 0\n0 0 0 255 0 0 1\n1 0 0 0 0 0 1\n\n1 1 0 1 1 1 1 # x\n"
+                                        "0 1 0 0 0 0 0\n4 0 1 2 3 0.5 0.5 0.5\n3 0 1 2\n"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
+}
+
+TEST(Load, StlTextAndBinary) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    expect_equal(load_mesh(folder.write("t.stl", as_ascii_stl(made))), unwelded(made, false));
+    expect_equal(load_mesh(folder.write("b.stl", as_binary_stl(made))), unwelded(made, true));
+    const std::string two = as_ascii_stl(box()) + as_ascii_stl(box(2));
+    EXPECT_EQ(load_mesh(folder.write("two.stl", two)).triangles.size(), 24u);
+}
+
+TEST(Load, PlyTextAndBothByteOrders) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    expect_equal(load_mesh(folder.write("t.ply", as_ascii_ply(made))), made);
+    expect_equal(load_mesh(folder.write("l.ply", as_binary_ply(made, false))), made);
+    expect_equal(load_mesh(folder.write("b.ply", as_binary_ply(made, true))), made);
+}
+
+TEST(Load, PlyOtherElementsPolygonsAndTypes) {
+    const TempFolder folder;
+    const Mesh mesh = load_mesh(folder.write(
+        "m.ply",
+        "ply\r\nformat ascii 1.0\r\nelement material 2\r\nproperty list uchar float parts\r\nproperty int id\r\n"
+        "element vertex 4\r\nproperty float x\r\nproperty short y\r\nproperty float z\r\nelement face 1\r\n"
+        "property uchar flags\r\nproperty list uint8 uint32 vertex_index\r\nelement edge 1\r\nproperty int a\r\n"
+        "end_header\r\n2 0.5 nan 1\r\n0 2\r\n0 0 0\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n9 4 3 2 1 0\r\n5\r\n"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{3, 2, 1}, {3, 1, 0}}));
+}
+
+TEST(Load, ErrorsNameTheLineOrTheElement) {
+    const TempFolder folder;
+    EXPECT_NE(
+        error_of(folder.write("a.obj", "v 0 0 0\nv 1 x 0\n")).find("a.obj: line 2: coordinate 'x' is not a number"),
+        std::string::npos);
+    EXPECT_NE(error_of(folder.write("b.obj", "v 0 0 0\nf 1 1 1\nf 1 1 9\n")).find("b.obj: line 3: vertex 9"),
+              std::string::npos);
+    EXPECT_NE(error_of(folder.write("c.off", "OFF 1 1 0\n0 0 0\n3 0 0 1\n")).find("c.off: line 3: vertex index 1"),
+              std::string::npos);
+    std::string ply = as_binary_ply(box());
+    ply.resize(ply.size() - 13);
+    EXPECT_NE(error_of(folder.write("d.ply", ply)).find("d.ply: element 'face'"), std::string::npos);
+}
+
+TEST(Load, AllFormatsOfOneMeshPrepareAlike) {
+    const TempFolder folder;
+    Mesh made = torus(9, 6, 1, 0.25);
+    for (Vec3& v : made.vertices) v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    const std::string wanted = to_json(prepare_mesh(made).report);
+    const std::array files{folder.write("m.obj", as_obj(made)), folder.write("m.off", as_off(made)),
+                           folder.write("m.ply", as_ascii_ply(made)), folder.write("b.ply", as_binary_ply(made)),
+                           folder.write("m.glb", as_glb(made))};
+    for (const auto& file : files) EXPECT_EQ(to_json(prepare_mesh(load_mesh(file)).report), wanted) << file;
+    // STL alone has other counts of vertices in the file.
+    for (const auto& file : {folder.write("m.stl", as_ascii_stl(made)), folder.write("b.stl", as_binary_stl(made))}) {
+        MeshReport report = prepare_mesh(load_mesh(file)).report;
+        EXPECT_EQ(report.file_vertices, 3 * made.triangles.size());
+        report.file_vertices = made.vertices.size();
+        EXPECT_EQ(to_json(report), wanted) << file;
+    }
+}
+
+} // namespace

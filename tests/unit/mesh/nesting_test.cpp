@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/mesh/solids.h"
+
+#include <raycontact/mesh.h>
+
+#include <gtest/gtest.h>
+
+using namespace raycontact;
+using namespace raycontact::test;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Boxes in one another, the outermost 10 wide, each wound as told.
+Mesh nested(std::initializer_list<bool> outward) {
+    Mesh mesh{"nested", {}, {}};
+    double inset = 0;
+    for (const bool out : outward) {
+        append_box(mesh, {inset, inset, inset}, {10 - inset, 10 - inset, 10 - inset}, out);
+        inset += 1;
+    }
+    return mesh;
+}
+
+TEST(Nesting, CavityStays) {
+    const MeshReport report = prepare_mesh(nested({true, false})).report;
+    EXPECT_TRUE(report.repairs.empty());
+    EXPECT_TRUE(report.outward);
+    EXPECT_EQ(report.components, 2u);
+    EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
+}
+
+TEST(Nesting, TurnsWhatContradicts) {
+    const MeshReport report = prepare_mesh(nested({true, true})).report;
+    EXPECT_EQ(report.repairs, Words{"turned 1 component of 2 whose winding contradicts its nesting"});
+    EXPECT_TRUE(report.outward);
+    EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
+    EXPECT_EQ(prepare_mesh(nested({false, true})).report.repairs,
+              Words{"turned 2 components of 2 whose winding contradicts its nesting"});
+}
+
+TEST(Nesting, AlternatesWithDepth) {
+    const MeshReport report = prepare_mesh(nested({true, false, true, true, false})).report;
+    EXPECT_EQ(report.repairs, Words{"turned 2 components of 5 whose winding contradicts its nesting"});
+    EXPECT_TRUE(report.outward);
+    EXPECT_NEAR(report.volume, 1000 - 512 + 216 - 64 + 8, 1e-9);
+}
+
+TEST(Nesting, AsIsChangesNothingAndSaysSo) {
+    const Mesh mesh = nested({false});
+    const PreparedMesh prepared = prepare_mesh(mesh, Repair::as_is);
+    EXPECT_EQ(prepared.triangles, mesh.triangles);
+    EXPECT_TRUE(prepared.report.closed && prepared.report.oriented);
+    EXPECT_FALSE(prepared.report.outward);
+    EXPECT_NEAR(prepared.report.volume, -1000, 1e-9);
+    EXPECT_FALSE(prepare_mesh(nested({true, true}), Repair::as_is).report.outward); // winding number 2 inside
+}
+
+TEST(Nesting, BesideIsNotInside) {
+    Mesh mesh = torus(24, 12, 2, 0.5);
+    append(mesh, torus(16, 8, 0.5, 0.2)); // in the hole
+    Mesh away = torus(16, 8, 0.5, 0.2);
+    turn_over(away);
+    append(mesh, away, {0, 0, 3});
+    const MeshReport report = prepare_mesh(mesh).report;
+    EXPECT_EQ(report.repairs, Words{"turned 1 component of 3 whose winding contradicts its nesting"});
+    EXPECT_TRUE(report.outward);
+}
+
+TEST(Nesting, OverlappingSolidsAreNotNested) {
+    Mesh mesh = nested({true});
+    append_box(mesh, {5, 5, 5}, {12, 8, 8});
+    const MeshReport report = prepare_mesh(mesh).report;
+    EXPECT_TRUE(report.repairs.empty());
+    EXPECT_TRUE(report.self_intersecting);
+    EXPECT_FALSE(report.outward);
+}
+
+TEST(Nesting, FlatTwoSidedSheetIsLeftAlone) {
+    const Mesh sheet{"sheet", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
+    const MeshReport report = prepare_mesh(sheet).report;
+    EXPECT_TRUE(report.closed);
+    EXPECT_TRUE(report.repairs.empty());
+    EXPECT_TRUE(report.self_intersecting);
+    EXPECT_FALSE(report.outward);
+}
+
+TEST(Nesting, ManySolidsInAShell) {
+    Mesh mesh = nested({true, false});
+    for (int i = 0; i < 6; ++i) {
+        for (int k = 0; k < 6; ++k) append_box(mesh, {2.0 + i, 2.0 + k, 3}, {2.7 + i, 2.7 + k, 4}, (i + k) % 2 == 0);
+    }
+    const MeshReport report = prepare_mesh(mesh).report;
+    EXPECT_EQ(report.repairs, Words{"turned 18 components of 38 whose winding contradicts its nesting"});
+    EXPECT_TRUE(report.outward);
+    EXPECT_EQ(report.components, 38u);
+}
+
+} // namespace
