@@ -2,6 +2,7 @@
 #include "cli/collide.h"
 #include "cli/devices.h"
 #include "cli/mesh.h"
+#include "cli/run.h"
 
 #include <raycontact/error.h>
 
@@ -29,17 +30,21 @@ int run_program(int argc, char** argv) {
     CLI::App app{"RayContact finds the contacts between moving, concave triangle meshes by casting rays.",
                  "raycontact"};
     app.set_version_flag("--version", "raycontact " RAYCONTACT_VERSION);
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1); // none is refused below: CLI11 would not name a misspelt one
     app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
     add_devices(app);
     add_mesh(app);
     add_collide(app);
+    add_run(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
         complain(std::string(error.what()) + " (see raycontact --help)");
         return bad_input;
+    }
+    if (app.get_subcommands().empty()) {
+        throw raycontact::InputError("a subcommand is required: devices, mesh, collide or run (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return fine;

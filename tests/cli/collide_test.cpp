@@ -174,17 +174,22 @@ TEST_F(Collide, PathsAreRelativeToThePairsFile) {
 }
 
 TEST_F(Collide, TwoFilesAndTheTable) {
-    folder_.write("moved.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    // A tetrahedron with its right-angled corner in the cube, 0.2 below the top; the cube's corner is as far inside it.
+    folder_.write("moved.obj", "v 0.1 0.2 0.3\nv 4.1 0.2 0.3\nv 0.1 4.2 0.3\nv 0.1 0.2 4.3\n"
+                               "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     const auto lines = json_lines(run_program({"collide", "cube.obj", "moved.obj", "--json"}, folder_.path()).out);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0]["pair"], 0);
-    ASSERT_EQ(lines[0]["contacts"].size(), 1u) << lines[0]; // the corner of the tetrahedron, half-way in the cube
-    EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "b");
-    EXPECT_EQ(lines[0]["contacts"][0]["vertex"], 0);
+    ASSERT_EQ(lines[0]["contacts"].size(), 2u) << lines[0];
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "a");
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex"], 6);
+    EXPECT_EQ(lines[0]["contacts"][1]["vertex_body"], "b");
+    EXPECT_EQ(lines[0]["contacts"][1]["vertex"], 0);
+    EXPECT_NEAR(lines[0]["contacts"][1]["depth"].get<double>(), 0.2, 1e-6);
     const auto table = run_program({"collide", "cube.obj", "moved.obj"}, folder_.path());
     EXPECT_EQ(table.status, 0);
-    EXPECT_NE(table.out.find("1 contact,"), std::string::npos) << table.out;
-    EXPECT_NE(run(json::array({corner_pair()}), {}).out.find("2 contacts"), std::string::npos);
+    EXPECT_NE(table.out.find("2 contacts, deepest 0.2 m"), std::string::npos) << table.out;
+    EXPECT_NE(run(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.2 m"), std::string::npos);
 }
 
 TEST_F(Collide, NoPairsIsNoOutput) {
