@@ -66,7 +66,9 @@ public:
             const kernels::Node& node = shape_.nodes[open.back()];
             open.pop_back();
             for (int lane = 0; lane < NODE_LANES; ++lane) {
-                if (node.child[lane] == NONE || enters(node, lane, origin, direction) > nearest) continue;
+                if (node.child[lane] == NONE) continue;
+                const double at = enters(node, lane, origin, direction);
+                if (at > nearest || std::isinf(at)) continue;
                 if ((node.child[lane] & LEAF) == 0) {
                     open.push_back(node.child[lane]);
                     continue;

@@ -15,7 +15,7 @@ TEST(Scan, AgreesWithTheStandardLibrary) {
         const OpenDevice opened = open_device("cpu", threads);
         for (const std::size_t count : {0u, 1u, 1023u, 1024u, 1025u, 100000u, 3u}) {
             std::vector<kernels::uint> values(count), expected(count), firsts(count);
-            for (auto& value : values) value = random() % 7;
+            for (auto& value : values) value = static_cast<kernels::uint>(random() % 7);
             std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);
             Array<kernels::uint> on_device, result;
             on_device.write(*opened.device, values);

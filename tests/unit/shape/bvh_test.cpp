@@ -2,6 +2,8 @@
 #include "scenes/models/model.h"
 #include "shape/shape_data.h"
 
+#include <algorithm>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -49,16 +51,18 @@ TEST(Bvh, HoldsEveryTriangleOnce) {
         }
 }
 
-// A fan of needles whose boxes shrink by half each time makes the greedy tree a list; the fallback bounds its depth.
+// Nested pairs, each a little smaller than the last: the greedy tree becomes a list, and the fallback bounds its depth.
 TEST(Bvh, StaysWithinTheTrailForNastyMeshes) {
     Mesh mesh;
-    mesh.name = "needles";
+    mesh.name = "nest";
     double x = 1;
-    for (std::uint32_t i = 0; i < 3000; ++i) {
-        x = i % 16 == 0 ? x * 0.8 : x;
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), {{x, 0, 1e-3 * i}, {x, x, 1e-3 * i}, {0, x, 1e-3 * i + 1e-4}});
-        mesh.triangles.push_back({first, first + 1, first + 2});
+    for (std::uint32_t i = 0; i < 1500; ++i) {
+        x *= 0.98;
+        for (const double side : {x, -x}) {
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            mesh.vertices.insert(mesh.vertices.end(), {{side, 0, side}, {side, side, 0}, {0, side, side}});
+            mesh.triangles.push_back({first, first + 1, first + 2});
+        }
     }
     const auto shape = Shape::make(mesh);
     std::vector<int> reached(shape->triangles().size(), 0);
