@@ -6,13 +6,14 @@
 namespace raycontact::report {
 namespace {
 
-/// The 97 % of the balls nearest to their middle: one that rolled away must not make the pile small.
+/// A body that rolled far away must not make the pile small: strays are 2.5 times as far from the middle as most are.
 std::vector<Ball> without_strays(std::vector<Ball> balls) {
     Float3 middle;
     for (const Ball& ball : balls) middle += (1 / static_cast<float>(balls.size())) * ball.centre;
-    std::sort(balls.begin(), balls.end(),
-              [&](const Ball& a, const Ball& b) { return length(a.centre - middle) < length(b.centre - middle); });
-    balls.resize(balls.size() - balls.size() * 3 / 100);
+    const auto away = [&](const Ball& ball) { return length(ball.centre - middle); };
+    std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) { return away(a) < away(b); });
+    const float most = 2.5f * away(balls[balls.size() / 2]) + balls.front().radius;
+    std::erase_if(balls, [&](const Ball& ball) { return away(ball) > most; });
     return balls;
 }
 
@@ -27,7 +28,7 @@ Camera frame_balls(const std::vector<Ball>& all, float ground, std::uint32_t wid
     camera.up = cross(camera.right, camera.forward);
     const std::vector<Ball> balls = all.empty() ? std::vector<Ball>{{{0, 0, ground}, 1}} : without_strays(all);
 
-    // Aim and distance by turns until the balls' extent on the picture is centred and fills it to 88 %.
+    // Aim and distance by turns until the balls' extent on the picture is centred and fills it to 92 %.
     Float3 aim = balls.front().centre;
     float distance = 10;
     for (int turn = 0; turn < 40; ++turn) {
@@ -44,7 +45,7 @@ Camera frame_balls(const std::vector<Ball>& all, float ground, std::uint32_t wid
         }
         aim += (0.5f * (left + rightmost) * distance) * camera.right + (0.5f * (low + high) * distance) * camera.up;
         const float fill = std::max((rightmost - left) / camera.half_width, (high - low) / camera.half_height) / 2;
-        distance *= 0.3f + 0.7f * fill / 0.88f;
+        distance *= 0.3f + 0.7f * fill / 0.92f;
     }
     camera.eye = aim - distance * camera.forward;
     camera.eye.z = std::max(camera.eye.z, ground + 0.2f);

@@ -16,7 +16,7 @@ body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,
 main{max-width:1180px;margin:0 auto;padding:36px 24px 48px}
 h1{font-size:30px;line-height:1.2;margin:0 0 10px;letter-spacing:-.01em}
 h2{font-size:19px;margin:38px 0 12px}
-.lead{max-width:78ch;margin:0 0 24px;color:var(--ink)}
+.lead{max-width:110ch;margin:0 0 24px;color:var(--ink)}
 .stage{margin:0;position:relative;border-radius:12px;overflow:hidden;background:#dfe5ec;box-shadow:0 1px 3px #0003}
 .stage img{display:block;width:100%;height:auto}
 .stage figcaption{position:absolute;left:14px;bottom:12px;padding:3px 11px;border-radius:99px;background:#000a;color:#fff;font-size:14px;font-variant-numeric:tabular-nums}

@@ -24,8 +24,8 @@ constexpr std::uint32_t ambient_rays = 3; ///< per primary ray
 const Float3 sun_direction = unit({-0.62f, -0.38f, 0.84f});
 constexpr Float3 sun_light{3.0f, 2.75f, 2.35f}; // linear, warm against the blue of the sky
 constexpr float sun_radius = 0.05f;             // of its disc at distance 1: the softness of the shadows
-constexpr Float3 ground_albedo{0.62f, 0.61f, 0.59f};
-constexpr Float3 backdrop{0.86f, 0.90f, 0.96f};
+constexpr Float3 ground_albedo{0.50f, 0.50f, 0.49f};
+constexpr Float3 backdrop{0.80f, 0.85f, 0.93f};
 
 struct Point2 {
     float x = 0, y = 0;
@@ -118,7 +118,7 @@ float grid(Float3 p, float footprint) {
     };
     const float fine = std::max(line(p.x, 1, 0.012f), line(p.y, 1, 0.012f));
     const float coarse = std::max(line(p.x, 5, 0.022f), line(p.y, 5, 0.022f));
-    return std::max(0.16f * fine, 0.26f * coarse);
+    return std::max(0.22f * fine, 0.38f * coarse);
 }
 
 Hit cast(const View& view, Float3 direction) {

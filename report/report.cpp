@@ -87,6 +87,14 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          "m",
          "Lengths of all rays that are contacts, added up.",
          {{"ray length", column(log, [](const StepRow& r) { return r.ray_length; })}}},
+        {"Mean ray length",
+         "mm",
+         "Ray length divided by contacts: how far a vertex in contact typically is from the face it meets.",
+         {{"mean ray length", column(log,
+                                     [](const StepRow& r) {
+                                         return r.contacts > 0 ? 1000 * r.ray_length / static_cast<double>(r.contacts)
+                                                               : std::nan("");
+                                     })}}},
         {"Median speed",
          "m/s",
          "Half of the moving bodies are slower than this at the end of the step.",

@@ -22,11 +22,15 @@ struct Header {
 };
 
 std::optional<std::string> bytes_of(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
     std::ifstream in(file, std::ios::binary);
     if (!in) return std::nullopt;
-    std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    if (in.bad()) return std::nullopt;
-    return bytes;
+    try {
+        return std::string{std::istreambuf_iterator<char>(in), {}};
+    } catch (const std::ios_base::failure&) { // a read error leaves the iterator this way
+        return std::nullopt;
+    }
 }
 
 std::string payload_of(const Mesh& mesh) {

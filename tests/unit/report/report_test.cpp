@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "decode.h"
+
+#include <raycontact/error.h>
+#include <report/report.h>
+#include <scenes/models/procedural.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <unistd.h>
+
+using namespace raycontact;
+using namespace raycontact::report;
+
+namespace {
+
+/// Nine gears over a slab, in three frames.
+scenes::RunLog small_log() {
+    scenes::RunLog log;
+    log.scene = "avalanche";
+    log.seed = 77;
+    log.mesh_source = "a gear <of the test>";
+    Mesh slab{"slab", {}, {}};
+    for (int i = 0; i < 8; ++i) slab.vertices.push_back({i & 1 ? 9.0 : -9.0, i & 2 ? 9.0 : -9.0, i & 4 ? 0.0 : -1.0});
+    slab.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    log.shapes = {Shape::make(scenes::gear(300)), Shape::make(slab)};
+    for (int body = 0; body < 10; ++body) {
+        log.body_shape.push_back(body == 9);
+        log.body_moves.push_back(body != 9);
+    }
+    for (const std::uint32_t step : {0u, 10u, 19u}) {
+        scenes::Frame& frame = log.frames.emplace_back();
+        frame.step = step;
+        for (int body = 0; body < 9; ++body) {
+            Pose pose = pose_from_quaternion({}, 1, 0.3 * body, 0.1 * step, 0.2);
+            pose.translation = {body % 3 * 1.1, body / 3 * 1.1, 3 - 0.12 * step};
+            frame.poses.push_back(pose);
+        }
+        frame.poses.emplace_back();
+    }
+    for (std::uint32_t step = 0; step < 20; ++step) {
+        scenes::StepRow row;
+        row.step = step;
+        row.pairs = 1234 + step;
+        row.rays = 56789 + step;
+        row.contacts = step < 5 ? 0 : 4321 + step;
+        row.step_ms = 12.625;
+        row.narrow_ms = 7.375;
+        row.ray_length = 3.0625;
+        row.penetration_max = 0.015625;
+        row.median_speed = 2.03125;
+        log.rows.push_back(row);
+    }
+    log.summary_json = R"({"scene": "avalanche", "seed": 77, "steps": 20, "bodies": 9, "rays": 1135970,
+        "penetration_max": 0.015625, "step_ms": {"median": 12.625, "p95": 13.5}, "method": "standard", "caster": "bvh",
+        "direction": "reprojected", "devices": ["cpu"], "hash": "00ff00ff00ff00ff", "unheard_of": "<b>kept</b>"})";
+    return log;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Report : public ::testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() / ("raycontact-report-test-" + std::to_string(::getpid()));
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::filesystem::path folder_;
+};
+
+} // namespace
+
+TEST_F(Report, IsOneFileWithTheNumbersOfTheLog) {
+    write_report(folder_ / "deep" / "down", small_log());
+    const std::string html = bytes_of(folder_ / "deep" / "down" / "report.html");
+    for (const char* text : {"Avalanche: 9 concave meshes", "a gear &lt;of the test&gt;", "1234", "56789", "4326",
+                             "12.625", "7.375", "3.0625", "15.625", "2.03125", "1\u202f135\u202f970",
+                             "00ff00ff00ff00ff", "unheard_of", "&lt;b&gt;kept&lt;/b&gt;", "step 19, 0.3 s",
+                             "raycontact run avalanche --bodies 9 --steps 20 --seed 77 --method standard --caster bvh "
+                             "--direction reprojected --devices cpu --out DIR"})
+        EXPECT_NE(html.find(text), std::string::npos) << text;
+    // Nothing may come from elsewhere: no address at all, and every source is inline.
+    for (const char* text : {"http:", "https:", "//www", "@import", "url(", "<b>kept"})
+        EXPECT_EQ(html.find(text), std::string::npos) << text;
+    for (const std::string attribute : {" src=\"", " href=\""})
+        for (std::size_t at = 0; (at = html.find(attribute, at)) != std::string::npos; ++at)
+            EXPECT_EQ(html.substr(at + attribute.size(), 5), "data:");
+}
+
+TEST_F(Report, PicturesDecodeAndShowSomething) {
+    write_report(folder_, small_log());
+    for (const char* name : {"step-000.png", "step-010.png", "step-019.png"}) {
+        const Image image = decode(bytes_of(folder_ / "pictures" / name));
+        EXPECT_EQ(image.width, 960u);
+        EXPECT_EQ(image.height, 540u);
+        EXPECT_GT(contrast(image), 10) << name;
+    }
+}
+
+TEST_F(Report, APictureIsTheSameEveryTimeAndFollowsTheBodies) {
+    const scenes::RunLog log = small_log();
+    const std::string first = picture_png(log, 0, 160, 90);
+    EXPECT_EQ(first, picture_png(log, 0, 160, 90));
+    EXPECT_NE(first, picture_png(log, 2, 160, 90));
+    EXPECT_GT(contrast(decode(first)), 10);
+}
+
+TEST_F(Report, ThePictureDoesNotDependOnWhichAxisIsUp) {
+    const scenes::RunLog z_up = small_log();
+    scenes::RunLog y_up = z_up; // (x, y, z) to (y, z, x): the world turned, nothing else
+    for (scenes::Frame& frame : y_up.frames)
+        for (Pose& pose : frame.poses) {
+            const Pose old = pose;
+            for (std::size_t row = 0; row < 3; ++row)
+                for (std::size_t column = 0; column < 3; ++column)
+                    pose.rotation[3 * row + column] = old.rotation[3 * ((row + 1) % 3) + column];
+            pose.translation = {old.translation.y, old.translation.z, old.translation.x};
+        }
+    EXPECT_EQ(picture_png(z_up, 1, 160, 90), picture_png(y_up, 1, 160, 90));
+}
+
+TEST_F(Report, AnUnreadableSummaryLeavesTheRestStanding) {
+    scenes::RunLog log = small_log();
+    log.frames.resize(1);
+    log.summary_json = "{\"rays\": ";
+    write_report(folder_, log);
+    EXPECT_NE(bytes_of(folder_ / "report.html").find("raycontact run avalanche --seed 77"), std::string::npos);
+}
+
+TEST_F(Report, WhatCannotBeShownIsSaid) {
+    scenes::RunLog log = small_log();
+    EXPECT_THROW(picture_png(log, 3, 160, 90), InputError);
+    EXPECT_THROW(picture_png(log, 0, 0, 90), InputError);
+    log.frames[0].poses.pop_back();
+    EXPECT_THROW(write_report(folder_, log), InputError);
+    log = small_log();
+    log.body_shape[2] = 9;
+    EXPECT_THROW(write_report(folder_, log), InputError);
+    log = small_log();
+    log.rows.clear();
+    EXPECT_THROW(write_report(folder_, log), InputError);
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "file") << "in the way";
+    EXPECT_THROW(write_report(folder_ / "file", small_log()), InputError);
+}
