@@ -176,7 +176,7 @@ try {
     std::size_t embree_contacts = 0;
     for (int run = 0; run <= runs; ++run) {
         for (Contender& c : contenders) {
-            const double queue = milliseconds([&] { c.queue.fill(*c.device, c.store->arrays(), c.pairs); });
+            const double queue = milliseconds([&] { c.queue.fill(*c.device, c.store->arrays(), c.pairs, false); });
             const double bvh = milliseconds([&] {
                 rc::cast_standard(*c.device, rc::Caster::bvh, c.store->arrays(), c.pairs, c.queue.rays(), c.hits);
             });

@@ -21,7 +21,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
     device_pairs_.write(on, ordered_);
 
     // Rays: the vertices inside the other body's bounds, found by clusters.
-    queue_.fill(on, shapes_.arrays(), device_pairs_);
+    queue_.fill(on, shapes_.arrays(), device_pairs_, settings_.caster != Caster::basic);
 
     // Hits: every ray in full.
     cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_);
@@ -32,7 +32,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
 
     stats.pairs = pairs.size();
     stats.vertices = queue_.vertices_tested();
-    stats.rays = queue_.rays().size();
+    stats.rays = queue_.vertices_inside();
+    stats.rays_cast = queue_.rays().size();
     stats.contacts = contacts.size();
     stats.ray_length = 0;
     stats.depth_max = 0;

@@ -21,7 +21,8 @@ using Pair = std::pair<BodyId, BodyId>;
 struct StepStats {
     std::uint64_t pairs = 0;         ///< unordered pairs in the narrow phase
     std::uint64_t vertices = 0;      ///< vertices tested against bounds, after whole clusters were ruled out
-    std::uint64_t rays = 0;          ///< rays cast: vertices inside the other body's bounds
+    std::uint64_t rays = 0;          ///< rays of the rule: vertices inside the other body's bounds
+    std::uint64_t rays_cast = 0;     ///< of these, cast; the vertices of the rest are known to be outside the other mesh
     std::uint64_t side_tests = 0;    ///< rays whose closest front and back hit lay within rounding, decided by side
     std::uint64_t contacts = 0;
     double ray_length = 0;           ///< sum of the contacts' ray lengths, metres (paper section 5.2)

@@ -31,8 +31,14 @@ DEVICE uint overlapping_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL co
     return lanes;
 }
 
+typedef struct {
+    float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES]; // target frame
+    uint lanes;
+} InsideLanes;
+
 // Vertices inside the bounds, exactly as the ray will see them.
-DEVICE uint inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block) {
+DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block) {
+    InsideLanes found;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
@@ -45,8 +51,37 @@ DEVICE uint inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const V
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
         lanes |= lane_bit(k) & (0u - inside);
+        found.x[k] = x;
+        found.y[k] = y;
+        found.z[k] = z;
     }
-    return lanes;
+    found.lanes = lanes;
+    return found;
+}
+
+// Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
+// outside.
+DEVICE uint outside_lanes(const InsideLanes* found, const ShapeHeader* target,
+                          GLOBAL const uint* RESTRICT outside_cells) {
+    const float scale = target->grid_scale;
+    const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
+    const uint size_x = target->grid_size[0], size_y = target->grid_size[1];
+    const uint inside = found->lanes;
+    GLOBAL const uint* RESTRICT words = outside_cells + target->grid_first;
+    uint lanes = 0u;
+    FOR_LANES(k, VERTEX_LANES) {
+        const bool known = (inside & lane_bit(k)) != 0u;
+        // Other lanes, which may hold NaN, look at the first cell.
+        const float px = known ? found->x[k] : low_x, py = known ? found->y[k] : low_y,
+                    pz = known ? found->z[k] : low_z;
+        const uint x = (uint)(int)((px - low_x) * scale);
+        const uint y = (uint)(int)((py - low_y) * scale);
+        const uint z = (uint)(int)((pz - low_z) * scale);
+        const uint cell = (z * size_y + y) * size_x + x;
+        const uint outside = (words[cell >> 5] >> (cell & 31u)) & 1u;
+        lanes |= lane_bit(k) & (0u - outside);
+    }
+    return lanes & inside;
 }
 
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
@@ -109,12 +144,20 @@ KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
     }
 }
 
-KERNEL void count_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                       GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL Cluster* RESTRICT clusters,
-                       GLOBAL uint* RESTRICT counts) {
+// inside: vertices in the bounds, one ray of the rule each. counts: those whose ray must be cast to know.
+KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair* RESTRICT pairs,
+                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                       GLOBAL const uint* RESTRICT outside_cells, GLOBAL Cluster* RESTRICT clusters,
+                       GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
-        const uint lanes = inside_lanes(pairs + clusters[i].pair, vertices + clusters[i].vertex_block);
+        GLOBAL const OrderedPair* pair = pairs + clusters[i].pair;
+        const InsideLanes found = inside_lanes(pair, vertices + clusters[i].vertex_block);
+        const ShapeHeader target = shapes[pair->target];
+        uint lanes = found.lanes;
+        if (lanes != 0u && use_grid != 0u && target.grid_size[0] != 0u)
+            lanes &= ~outside_lanes(&found, &target, outside_cells);
         clusters[i].lanes = lanes;
+        inside[i] = bit_count(found.lanes);
         counts[i] = bit_count(lanes);
     }
 }

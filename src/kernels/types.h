@@ -58,9 +58,12 @@ typedef struct {
     uint closed;
     float tolerance;        // metres: distances of two hits closer than this are not told apart
     float volume_tolerance; // metres^3: slack of the division-free distance test
-    float unused;
+    uint grid_first;        // words of outside_cells, a bit for each cell, x fastest
+    uint grid_size[3];      // cells; 0: no grid
+    float grid_low[3];
+    float grid_scale; // cells a metre
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 76);
+WIRE_SIZE(ShapeHeader, 104);
 
 // Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
 typedef struct {
@@ -75,7 +78,7 @@ WIRE_SIZE(OrderedPair, 80);
 typedef struct {
     uint pair;
     uint vertex_block; // absolute
-    uint lanes;        // a bit for each vertex inside the bounds
+    uint lanes;        // a bit for each vertex that casts a ray
 } Cluster;
 WIRE_SIZE(Cluster, 12);
 

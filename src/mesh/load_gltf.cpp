@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/byte_reader.h"
+#include "mesh/gltf_json.h"
 #include "mesh/input_file.h"
 
 #include <raycontact/error.h>
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -423,6 +425,7 @@ bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, in
 
 Mesh read_gltf(const InputFile& file) {
     if (file.bytes.size() >= 0xffffffffu) file.fail("has more than 4 GiB, the limit of the format");
+    check_gltf_json(file);
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({&file_exists, &same_path, &read_whole_file, nullptr, nullptr});
     loader.SetImageLoader(&skip_image, nullptr);

@@ -251,7 +251,8 @@ private:
                 indices = &property;
         }
         if (indices == nullptr) file_.fail("element 'face' lacks a list vertex_indices");
-        if (indices->type == Type::f32 || indices->type == Type::f64) file_.fail("vertex indices must be whole numbers");
+        if (indices->type == Type::f32 || indices->type == Type::f64)
+            file_.fail("vertex indices must be whole numbers");
         mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
         std::vector<std::uint32_t> corners;
         for (record_ = 0; record_ < element.count; ++record_) {

@@ -6,17 +6,22 @@
 
 namespace raycontact {
 
-/// The rays of a step, dense: one for each vertex of a source inside its target's bounds, in the order of the pairs.
+/// The rays of a step, dense, in the order of the pairs: one for each vertex of a source inside its target's bounds
+/// that is not known to be outside the target.
 class RayQueue {
 public:
-    void fill(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs);
+    /// use_grid: leave out the rays of vertices that a shape's grid knows to be outside; the contacts are the same.
+    void fill(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
+              bool use_grid);
 
     const Array<kernels::Ray>& rays() const { return rays_; }
+    std::uint64_t vertices_inside() const { return vertices_inside_; }
     std::uint64_t vertices_tested() const { return VERTEX_LANES * clusters_.size(); }
 
 private:
     Scan scan_;
-    Array<kernels::uint> counts_, firsts_;
+    Array<kernels::uint> counts_, inside_, firsts_;
+    std::uint64_t vertices_inside_ = 0;
     Array<kernels::Cluster> clusters_;
     Array<kernels::Ray> rays_;
 };

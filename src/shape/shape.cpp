@@ -7,6 +7,7 @@
 #include "shape/bvh.h"
 #include "shape/clusters.h"
 #include "shape/exit_distances.h"
+#include "shape/outside_grid.h"
 #include "shape/shape_data.h"
 #include "shape/vertex_normals.h"
 
@@ -99,6 +100,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) shape.exit_max = std::max(shape.exit_max, exit);
     build_clusters(shape);
+    build_outside_grid(shape);
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));
 }
 
@@ -148,7 +150,7 @@ std::uint64_t Shape::memory_bytes() const {
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.exit_distances)
            + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals);
+           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells);
 }
 
 } // namespace raycontact

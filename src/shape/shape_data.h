@@ -31,6 +31,7 @@ struct ShapeData {
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
+    std::vector<kernels::uint> outside_cells;           ///< a bit for each cell of the grid
     kernels::ShapeHeader header{};
 };
 

@@ -51,6 +51,7 @@ void ShapeStore::upload(Entry& entry) {
     header.triangle_block_first = first_index(arrays_.triangle_blocks.size(), data.triangle_blocks.size());
     header.vertex_block_first = first_index(arrays_.vertex_blocks.size(), data.vertex_blocks.size());
     header.normal_first = first_index(arrays_.face_normals.size(), data.face_normals.size());
+    header.grid_first = first_index(arrays_.outside_cells.size(), data.outside_cells.size());
     for (kernels::uint& first : header.cluster_first)
         first += first_index(arrays_.clusters.size(), data.clusters.size());
     entry.index = static_cast<kernels::uint>(arrays_.headers.size());
@@ -60,6 +61,7 @@ void ShapeStore::upload(Entry& entry) {
     arrays_.vertex_blocks.append(device_, std::span(data.vertex_blocks));
     arrays_.clusters.append(device_, std::span(data.clusters));
     arrays_.face_normals.append(device_, std::span(data.face_normals));
+    arrays_.outside_cells.append(device_, std::span(data.outside_cells));
     bytes_used_ += entry.shape->memory_bytes();
 }
 

@@ -21,6 +21,7 @@ public:
         Array<kernels::VertexBlock> vertex_blocks;
         Array<kernels::ClusterBlock> clusters;
         Array<kernels::Packed3> face_normals;
+        Array<kernels::uint> outside_cells;
     };
 
     explicit ShapeStore(Device& device) : device_(device) {}
