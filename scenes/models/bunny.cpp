@@ -14,7 +14,7 @@ namespace raycontact::scenes {
 namespace {
 
 /// Raised whenever the way from the file to the mesh changes, so that no cache holds a mesh made the old way.
-constexpr int recipe = 1;
+constexpr int recipe = 2;
 
 std::filesystem::path cached_name(std::uint64_t content, std::uint32_t triangles) {
     char name[96];

@@ -57,9 +57,11 @@ void normalise(Mesh& mesh) {
     }
     const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     const Vec3 centre = mass_of_solid(mesh.vertices, mesh.triangles).centre;
-    // Rounded to float32 so that a mesh written to any format and read again is the same mesh.
+    // Rounded to float32 so that a mesh written to any format and read again is the same mesh. Volatile because g++ 12
+    // at -O2 vectorises the coordinates and drops the pair of conversions: the golden hashes tell.
     const auto place = [extent](double value, double middle) {
-        return static_cast<double>(static_cast<float>((value - middle) / extent));
+        const volatile float rounded = static_cast<float>((value - middle) / extent);
+        return static_cast<double>(rounded);
     };
     for (Vec3& v : mesh.vertices) v = {place(v.x, centre.x), place(v.y, centre.y), place(v.z, centre.z)};
 }
