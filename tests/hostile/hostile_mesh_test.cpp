@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+// Damaged and hostile mesh files: each gives one clear line that names the file, never garbage, a crash or a long wait.
+#include "tests/unit/mesh/formats.h"
+#include "tests/unit/mesh/solids.h"
+
+#include <raycontact/error.h>
+#include <raycontact/mesh.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace raycontact;
+using namespace raycontact::test;
+
+namespace {
+
+/// What the error says; fails the test when there is none, or it is not one line naming the file.
+std::string refused(const std::filesystem::path& file) {
+    try {
+        prepare_mesh(load_mesh(file));
+    } catch (const InputError& error) {
+        const std::string line = error.what();
+        EXPECT_EQ(line.find_first_of("\n\r"), std::string::npos) << line;
+        EXPECT_NE(line.find(file.filename().string()), std::string::npos) << line;
+        EXPECT_LT(line.size(), 400u) << line;
+        return line;
+    } catch (const std::exception& other) {
+        ADD_FAILURE() << file << ": not an InputError: " << other.what();
+        return {};
+    }
+    ADD_FAILURE() << file << " was taken as a mesh";
+    return {};
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& with) {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return text.replace(at, old.size(), with);
+}
+
+Mesh sound() {
+    return torus(6, 4, 1, 0.3);
+}
+
+Mesh with_coordinate(double value) {
+    Mesh mesh = sound();
+    mesh.vertices[5].y = value;
+    return mesh;
+}
+
+Mesh with_index(std::uint32_t index) {
+    Mesh mesh = sound();
+    mesh.triangles[3][1] = index;
+    return mesh;
+}
+
+struct Writer {
+    const char* ending;
+    std::string (*write)(const Mesh&);
+};
+
+std::string little_ply(const Mesh& mesh) {
+    return as_binary_ply(mesh, false);
+}
+std::string big_ply(const Mesh& mesh) {
+    return as_binary_ply(mesh, true);
+}
+
+const std::vector<Writer> writers{{"a.obj", &as_obj},        {"a.off", &as_off},       {"a.stl", &as_ascii_stl},
+                                  {"b.stl", &as_binary_stl}, {"a.ply", &as_ascii_ply}, {"l.ply", &little_ply},
+                                  {"b.ply", &big_ply},       {"a.glb", &as_glb}};
+
+TEST(HostileMesh, TruncatedAnywhere) {
+    const TempFolder folder;
+    for (const Writer& writer : writers) {
+        const std::string whole = writer.write(sound());
+        for (std::size_t part = 1; part < 40; ++part) {
+            const std::size_t size = part < 20 ? whole.size() * part / 20 : part - 20;
+            if (size >= whole.size() - 4) continue;
+            std::string cut = whole.substr(0, size);
+            // OBJ has no end mark: cut between lines it is a smaller mesh, sound or not; cut in a face it may be, too.
+            if (std::string_view(writer.ending) == "a.obj" && cut.find("\nf ") != std::string::npos) continue;
+            refused(folder.write(writer.ending, cut));
+        }
+    }
+}
+
+TEST(HostileMesh, CoordinatesThatAreNotFinite) {
+    const TempFolder folder;
+    for (const Writer& writer : writers) {
+        for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                                 -std::numeric_limits<double>::infinity()}) {
+            refused(folder.write(writer.ending, writer.write(with_coordinate(bad))));
+        }
+        refused(
+            folder.write(writer.ending, writer.write(with_coordinate(1e30)))); // finite, and beyond float32 arithmetic
+    }
+    refused(folder.write("e.obj", "v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n"));
+}
+
+TEST(HostileMesh, IndicesOutOfRange) {
+    const TempFolder folder;
+    for (const Writer& writer : writers) {
+        if (std::string_view(writer.ending).substr(1) == ".stl") continue; // has none
+        for (const std::uint32_t bad : {24u, 0x7fffffffu, 0xfffffffeu, 0xffffffffu}) {
+            refused(folder.write(writer.ending, writer.write(with_index(bad))));
+        }
+    }
+}
+
+TEST(HostileMesh, NoTriangles) {
+    const TempFolder folder;
+    const Mesh points{"points", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}};
+    for (const Writer& writer : writers) refused(folder.write(writer.ending, writer.write(points)));
+    for (const Writer& writer : writers) refused(folder.write(writer.ending, ""));
+    for (const Writer& writer : writers) refused(folder.write(writer.ending, std::string(3000, '\0')));
+    for (const Writer& writer : writers)
+        refused(folder.write(writer.ending, "<html><body>404 Not Found</body></html>\n"));
+    const Mesh flat{"flat", {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}};
+    for (const Writer& writer : writers) refused(folder.write(writer.ending, writer.write(flat)));
+}
+
+TEST(HostileMesh, Obj) {
+    const TempFolder folder;
+    const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const std::vector<std::string> tails{"f 0 1 2\n",
+                                         "f -4 -2 -1\n",
+                                         "f 1 2\n",
+                                         "f 1 2 x\n",
+                                         "f 1 2 3.5\n",
+                                         "f 1 2 99999999999999999999\n",
+                                         "f 1 2 -9223372036854775808\n",
+                                         "f 1/ 2/y 3\n",
+                                         "f 1//z 2 3\n",
+                                         "w 1 2 3\nf 1 2 3\n",
+                                         "v 1 2\nf 1 2 3\n",
+                                         "v 1 2 3 4 5 6 7 8 9\nf 1 2 3\n",
+                                         "f\n",
+                                         "v 0x10 0 0\nf 1 2 3\n",
+                                         "l 1 2 3\np 1\n",
+                                         "v - 0 0\nf 1 2 3",
+                                         "v +-1 0 0\nf 1 2 3",
+                                         "f 1 2 \\"};
+    for (const std::string& tail : tails) refused(folder.write("t.obj", three + tail));
+    refused(folder.write("z.obj", three + std::string("f 1 2 3\n\0\0\0\0", 12)));
+}
+
+TEST(HostileMesh, Stl) {
+    const TempFolder folder;
+    std::string counted = as_binary_stl(sound());
+    counted.replace(80, 4, "\xff\xff\xff\xff");
+    EXPECT_NE(refused(folder.write("huge.stl", counted)).find("huge.stl"), std::string::npos);
+    refused(folder.write("longer.stl", as_binary_stl(sound()) + "x"));
+    refused(folder.write("mixed.stl", as_ascii_stl(sound()) + as_binary_stl(sound())));
+    refused(folder.write("mixed2.stl", as_ascii_stl(sound()).substr(0, 200) + as_binary_stl(sound()).substr(84)));
+    refused(folder.write("four.stl", replaced(as_ascii_stl(sound()), "endloop", "vertex 0 0 0\nendloop")));
+    refused(folder.write("two.stl", replaced(as_ascii_stl(sound()), "  vertex ", "  vertices ")));
+    refused(folder.write("missing.stl", replaced(as_ascii_stl(sound()), "endfacet", "")));
+    refused(folder.write("after.stl", as_ascii_stl(sound()) + "and more\n"));
+}
+
+TEST(HostileMesh, Ply) {
+    const TempFolder folder;
+    const std::string ascii = as_ascii_ply(sound()), binary = as_binary_ply(sound());
+    for (const std::string& file : {ascii, binary}) {
+        for (const auto& [old, with] : std::vector<std::pair<std::string, std::string>>{
+                 {"vertex 24", "vertex 99999999999"},
+                 {"vertex 24", "vertex -1"},
+                 {"vertex 24", "vertex 18446744073709551617"},
+                 {"vertex 24", "vertex many"},
+                 {"face 48", "face 4000000000"},
+                 {"face 48", "face 49"},
+                 {"face 48", "face 47"},
+                 {"uchar int", "float int"},
+                 {"uchar int", "uchar float"},
+                 {"uchar int", "uchar quad"},
+                 {"property double y\n", ""},
+                 {"vertex_indices", "corners"},
+                 {"element vertex", "element points"},
+                 {"1.0\n", "1.0\nproperty int i\n"},
+                 {"end_header", "end_heading"},
+                 {"format ", "formats "},
+                 {"format ", "format very_"},
+                 {"element face", "element vertex"},
+                 {"element face", "element empty 4000000000\nelement face"}}) {
+            SCOPED_TRACE(with);
+            refused(folder.write("t.ply", replaced(file, old, with)));
+        }
+    }
+    refused(folder.write("list.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uint "
+                                     "double w\nend_header\n\xff\xff\xff\xff"));
+    refused(folder.write("face.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\n"
+                         "element face 1\nproperty list uint int vertex_index\nend_header\n0 0 0\n4294967295 0 0 0\n"));
+    refused(folder.write("point.ply", replaced(ascii, "3 0 4 5", "1 0")));
+}
+
+TEST(HostileMesh, Off) {
+    const TempFolder folder;
+    const std::string file = as_off(sound());
+    for (const auto& [old, with] :
+         std::vector<std::pair<std::string, std::string>>{{"24 48", "24 4000000000"},
+                                                          {"24 48", "99999999999999999999 48"},
+                                                          {"24 48", "-24 48"},
+                                                          {"24 48", "24"},
+                                                          {"24 48", "24 49"},
+                                                          {"24 48", "24 47"},
+                                                          {"24 48", "25 48"},
+                                                          {"OFF", "4OFF"},
+                                                          {"OFF", "OFF BINARY"},
+                                                          {"OFF", "nOFF"},
+                                                          {"OFF", "COUGH"},
+                                                          {"3 0 4 5", "4000000000 0 4 5"},
+                                                          {"3 0 4 5", "2 0 4"},
+                                                          {"3 0 4 5", "3 0 -4 5"},
+                                                          {"3 0 4 5", "3 0 4"},
+                                                          {"3 0 4 5", "3 0 4 5e0"}}) {
+        SCOPED_TRACE(with);
+        refused(folder.write("t.off", replaced(file, old, with)));
+    }
+}
+
+TEST(HostileMesh, Gltf) {
+    const TempFolder folder;
+    const std::string json = gltf_json(sound(), R"([{"mesh":0}])", ""), buffer = gltf_buffer(sound());
+    for (const auto& [old, with] : std::vector<std::pair<std::string, std::string>>{
+             {R"([{"mesh":0}])", R"([{"mesh":0,"children":[0]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])"},
+             {R"([{"mesh":0}])", R"([{"children":[1]},{"children":[0],"mesh":0}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"children":[7]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"children":[-7]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":3}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"scale":[1,2]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"rotation":[0,0,0,0]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"scale":[1e308,1e308,1e308],"children":[]}])"},
+             {R"([{"mesh":0}])", R"([{"mesh":0,"matrix":[1,2,3]}])"},
+             {R"([{"mesh":0}])", R"([])"},
+             {R"("nodes":[0])", R"("nodes":[1])"},
+             {R"("scene":0)", R"("scene":5)"},
+             {R"("POSITION":0)", R"("POSITION":9)"},
+             {R"("POSITION":0)", R"("POSITION":-2)"},
+             {R"("POSITION":0)", R"("COLOR_0":0)"},
+             {R"("indices":1)", R"("indices":0)"},
+             {R"("indices":1)", R"("indices":77)"},
+             {R"("indices":1)", R"("indices":-1)"},
+             {R"("indices":1)", R"("indices":"1")"},
+             {R"("indices":1)", R"("indices":1.5)"},
+             {R"("indices":1)", R"("indices":1,"mode":0)"},
+             {R"("count":24)", R"("count":25)"},
+             {R"("count":24)", R"("count":18446744073709551615)"},
+             {R"("count":24)", R"("count":-1)"},
+             {R"("count":144)", R"("count":4000000000)"},
+             {R"("count":144)", R"("count":143)"},
+             {R"("componentType":5126)", R"("componentType":1)"},
+             {R"("componentType":5126)", R"("componentType":5130)"},
+             {R"("VEC3")", R"("VEC2")"},
+             {R"("VEC3")", R"("MAT4")"},
+             {R"("bufferView":0)", R"("bufferView":8)"},
+             {R"("bufferView":0,)", R"("count":4000000000000,)"},
+             {R"("bufferView":0,)", R"("bufferView":0,"byteOffset":18446744073709551000,)"},
+             {R"({"buffer":0,)", R"({"buffer":6,)"},
+             {R"({"buffer":0,)", R"({"byteStride":4,"buffer":0,)"},
+             {R"("byteOffset":0)", R"("byteOffset":1000000)"},
+             {R"("byteOffset":0)", R"("byteOffset":-8)"},
+             {R"("byteLength":288)", R"("byteLength":18446744073709551610)"},
+             {R"("asset")", R"("extensionsRequired":["KHR_draco_mesh_compression"],"asset")"},
+             {R"("version":"2.0")", R"("version":2)"},
+             {R"({"asset")", R"(["asset")"}}) {
+        SCOPED_TRACE(with);
+        refused(folder.write("t.glb", glb(replaced(json, old, with), buffer)));
+    }
+    refused(folder.write("short.glb", glb(json, buffer.substr(0, 100))));
+    std::string sized = as_glb(sound());
+    refused(folder.write("chunk.glb", sized.replace(12, 4, "\xff\xff\xff\x7f")));
+    refused(folder.write("missing.gltf", gltf_json(sound(), R"([{"mesh":0}])", "not-there.bin")));
+    refused(folder.write("folder.gltf", gltf_json(sound(), R"([{"mesh":0}])", "..")));
+    refused(folder.write("endless.gltf", gltf_json(sound(), R"([{"mesh":0}])", "../../../../../../dev/zero")));
+    refused(folder.write("base64.gltf",
+                         gltf_json(sound(), R"([{"mesh":0}])", "data:application/octet-stream;base64,AAAA")));
+    refused(folder.write("deep.gltf", std::string(200000, '[')));
+    refused(folder.write("deeper.gltf", R"({"asset":{"version":"2.0","extras":)" + std::string(50000, '[')));
+}
+
+TEST(HostileMesh, DeepChainOfNodesIsNoLongWait) {
+    const TempFolder folder;
+    std::string nodes = "[";
+    for (int i = 1; i < 20000; ++i) nodes += R"({"mesh":1,"children":[)" + std::to_string(i) + "]},";
+    const std::string json =
+        replaced(gltf_json(sound(), nodes + R"({"mesh":0}])", ""), R"("accessors")", R"("unused":0,"accessors")");
+    const std::string two =
+        replaced(json, R"("meshes":[)", R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]},)");
+    const std::string none = replaced(two, R"("POSITION":0},"indices":1}]},)", R"("COLOR_0":0}}]},)");
+    const Mesh mesh = load_mesh(
+        folder.write("chain.glb", glb(replaced(none, R"({"mesh":0}])", R"({"mesh":1}])"), gltf_buffer(sound()))));
+    EXPECT_EQ(mesh.triangles.size(), 20000 * sound().triangles.size());
+}
+
+TEST(HostileMesh, PathsThatAreNoFiles) {
+    const TempFolder folder;
+    refused(folder.path() / "missing.obj");
+    std::filesystem::create_directory(folder.path() / "folder.obj");
+    EXPECT_NE(refused(folder.path() / "folder.obj").find("is a folder"), std::string::npos);
+    std::filesystem::create_symlink("nowhere.obj", folder.path() / "dangling.obj");
+    refused(folder.path() / "dangling.obj");
+    std::filesystem::create_symlink("loop.obj", folder.path() / "loop.obj");
+    refused(folder.path() / "loop.obj");
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe.obj").c_str(), 0600), 0);
+    refused(folder.path() / "pipe.obj");
+    refused(folder.write("file.obj", as_obj(sound())) / "below.obj");
+    refused(folder.write("mesh.fbx", "x"));
+    refused(folder.write("mesh", as_obj(sound())));
+    try {
+        load_mesh(folder.write("two\nlines.obj", "v 1 2 x"));
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+}
+
+TEST(HostileMesh, NoPermission) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.write("secret.obj", as_obj(sound()));
+    ASSERT_EQ(::chmod(file.c_str(), 0), 0);
+    ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
+    // Root may read everything, so a child gives up its rights first.
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        if (::getuid() == 0 && ::setuid(65534) != 0) ::_exit(3);
+        int status = 1;
+        try {
+            load_mesh(file);
+        } catch (const InputError& error) {
+            status = std::string(error.what()).find("secret.obj: cannot be read") != std::string::npos ? 0 : 2;
+        }
+        ::_exit(status);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+} // namespace
