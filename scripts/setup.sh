@@ -4,13 +4,12 @@
 
 packages_build=(
     g++ cmake ninja-build pkg-config
-    libtbb-dev nlohmann-json3-dev libxxhash-dev                        # the library
-    libtinyobjloader-dev libtinygltf-dev libstb-dev                    # mesh files, pictures
+    libtbb-dev nlohmann-json3-dev libxxhash-dev libtinygltf-dev        # the library
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev         # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev # the program, its scenes and report
 )
-packages_demo=(glmark2-data)                                           # the Stanford bunny
-packages_test=(libgtest-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers)
+packages_demo=(glmark2-data) # the Stanford bunny
+packages_test=(libgtest-dev libtinyobjloader-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers)
 packages_all=(clang clang-tidy oclgrind libbenchmark-dev)
 
 say() { printf '== %s\n' "$*" >&2; }
