@@ -2,31 +2,54 @@
 // Which vertices of the source lie inside the target's bounds? Clusters of sixteen blocks first, then blocks of
 // sixteen vertices, then one dense queue of rays (the paper's padded grid, Fig. 6, would waste lanes).
 
-// Child boxes that may reach into the bounds; grown by the rounding of the transform.
-DEVICE uint overlapping_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block) {
-    float r[9], size[9], t[3], middle[3], half_size[3];
+// The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
+typedef struct {
+    float rotation[9], size[9]; // size: magnitudes of the rotation
+    float offset[3];            // source origin relative to the middle of the bounds, target frame
+    float half_size[3];
+    float source_centre[3], source_half_size[3]; // the same box in the source's frame, axis-aligned there
+} PairBounds;
+
+DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
+    PairBounds b;
     for (int i = 0; i < 9; ++i) {
-        r[i] = pair->rotation[i];
-        size[i] = magnitude_of(r[i]);
+        b.rotation[i] = pair->rotation[i];
+        b.size[i] = magnitude_of(b.rotation[i]);
     }
     for (int i = 0; i < 3; ++i) {
-        t[i] = pair->translation[i];
-        middle[i] = 0.5f * pair->bounds[i] + 0.5f * pair->bounds[3 + i];
-        half_size[i] = 0.5f * pair->bounds[3 + i] - 0.5f * pair->bounds[i];
-        half_size[i] += 1.0e-6f * ((half_size[i] + magnitude_of(middle[i])) + magnitude_of(t[i]));
+        const float middle = 0.5f * pair->bounds[i] + 0.5f * pair->bounds[3 + i];
+        const float half_size = 0.5f * pair->bounds[3 + i] - 0.5f * pair->bounds[i];
+        b.offset[i] = pair->translation[i] - middle;
+        b.half_size[i] =
+            half_size + 1.0e-6f * ((half_size + magnitude_of(middle)) + magnitude_of(pair->translation[i]));
     }
+    for (int i = 0; i < 3; ++i) {
+        b.source_centre[i] =
+            -((b.rotation[i] * b.offset[0] + b.rotation[3 + i] * b.offset[1]) + b.rotation[6 + i] * b.offset[2]);
+        const float half_size =
+            (b.size[i] * b.half_size[0] + b.size[3 + i] * b.half_size[1]) + b.size[6 + i] * b.half_size[2];
+        b.source_half_size[i] = half_size + 1.0e-6f * (half_size + magnitude_of(b.source_centre[i]));
+    }
+    return b;
+}
+
+// Child boxes that may reach into the bounds: no face of either box separates them.
+DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RESTRICT block) {
     uint lanes = 0u;
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
         const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
-        const float x = (((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0]) - middle[0];
-        const float y = (((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1]) - middle[1];
-        const float z = (((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2]) - middle[2];
-        const float ex = ((size[0] * hx + size[1] * hy) + size[2] * hz) + half_size[0];
-        const float ey = ((size[3] * hx + size[4] * hy) + size[5] * hz) + half_size[1];
-        const float ez = ((size[6] * hx + size[7] * hy) + size[8] * hz) + half_size[2];
-        const uint overlaps = (x <= ex) & (-x <= ex) & (y <= ey) & (-y <= ey) & (z <= ez) & (-z <= ez);
-        lanes |= lane_bit(k) & (0u - overlaps);
+        const float x = ((b->rotation[0] * cx + b->rotation[1] * cy) + b->rotation[2] * cz) + b->offset[0];
+        const float y = ((b->rotation[3] * cx + b->rotation[4] * cy) + b->rotation[5] * cz) + b->offset[1];
+        const float z = ((b->rotation[6] * cx + b->rotation[7] * cy) + b->rotation[8] * cz) + b->offset[2];
+        const float ex = ((b->size[0] * hx + b->size[1] * hy) + b->size[2] * hz) + b->half_size[0];
+        const float ey = ((b->size[3] * hx + b->size[4] * hy) + b->size[5] * hz) + b->half_size[1];
+        const float ez = ((b->size[6] * hx + b->size[7] * hy) + b->size[8] * hz) + b->half_size[2];
+        const uint in_target = (magnitude_of(x) <= ex) & (magnitude_of(y) <= ey) & (magnitude_of(z) <= ez);
+        const uint in_source = (magnitude_of(cx - b->source_centre[0]) <= hx + b->source_half_size[0])
+                               & (magnitude_of(cy - b->source_centre[1]) <= hy + b->source_half_size[1])
+                               & (magnitude_of(cz - b->source_centre[2]) <= hz + b->source_half_size[2]);
+        lanes |= lane_bit(k) & (0u - (in_target & in_source));
     }
     return lanes;
 }
@@ -84,17 +107,29 @@ DEVICE uint outside_lanes(const InsideLanes* found, const ShapeHeader* target,
     return lanes & inside;
 }
 
+// Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
+#define SMALL_BLOCKS 64u
+
+DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
+    Cluster cluster;
+    cluster.pair = pair;
+    cluster.vertex_block = vertex_block;
+    cluster.lanes = 0u;
+    return cluster;
+}
+
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
 // from `first` on when asked to.
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, const ShapeHeader* shape,
                            GLOBAL const ClusterBlock* RESTRICT clusters, const bool write, uint first,
                            GLOBAL Cluster* RESTRICT found) {
+    const PairBounds bounds = bounds_of(pairs + p);
     uint count = 0u;
     const uint top = shape->cluster_levels - 1u;
     for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
         uint level = top, at = root;
         ulong trail = 0u;
-        uint lanes = overlapping_lanes(pairs + p, clusters + shape->cluster_first[level] + at);
+        uint lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[level] + at);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -107,19 +142,13 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, con
             const uint child = VERTEX_LANES * at + lowest_bit(lanes);
             lanes &= lanes - 1u;
             if (level == 0u) {
-                if (write) {
-                    Cluster cluster;
-                    cluster.pair = p;
-                    cluster.vertex_block = shape->vertex_block_first + child;
-                    cluster.lanes = 0u;
-                    found[first + count] = cluster;
-                }
+                if (write) found[first + count] = cluster_at(p, shape->vertex_block_first + child);
                 ++count;
             } else {
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
                 --level;
                 at = child;
-                lanes = overlapping_lanes(pairs + p, clusters + shape->cluster_first[level] + at);
+                lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[level] + at);
             }
         }
     }
@@ -128,19 +157,46 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, con
 
 KERNEL void count_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
-                           GLOBAL uint* RESTRICT counts) {
+                           GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
     FOR_EACH(p, count) {
         const ShapeHeader shape = shapes[pairs[p].source];
-        counts[p] = reach_clusters(p, pairs, &shape, clusters, false, 0u, (GLOBAL Cluster*)0);
+        if (shape.vertex_block_count <= SMALL_BLOCKS) {
+            const PairBounds bounds = bounds_of(pairs + p);
+            ulong blocks = 0u;
+            uint number = 0u;
+            for (uint i = 0u; i < shape.cluster_count[0]; ++i) {
+                const uint lanes = overlapping_lanes(&bounds, clusters + shape.cluster_first[0] + i);
+                blocks |= (ulong)lanes << (VERTEX_LANES * i);
+                number += bit_count(lanes);
+            }
+            small[p] = blocks;
+            counts[p] = number;
+        } else {
+            counts[p] = reach_clusters(p, pairs, &shape, clusters, false, 0u, (GLOBAL Cluster*)0);
+        }
     }
 }
 
 KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
-                           GLOBAL const uint* RESTRICT firsts, GLOBAL Cluster* RESTRICT found) {
+                           GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
+                           GLOBAL Cluster* RESTRICT found) {
     FOR_EACH(p, count) {
-        const ShapeHeader shape = shapes[pairs[p].source];
-        reach_clusters(p, pairs, &shape, clusters, true, firsts[p], found);
+        GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
+        if (shape->vertex_block_count <= SMALL_BLOCKS) {
+            uint at = firsts[p];
+            for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
+                uint lanes = (uint)(small[p] >> (VERTEX_LANES * i)) & 0xffffu;
+                while (lanes != 0u) {
+                    found[at] = cluster_at(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
+                    ++at;
+                    lanes &= lanes - 1u;
+                }
+            }
+        } else {
+            const ShapeHeader large = *shape;
+            reach_clusters(p, pairs, &large, clusters, true, firsts[p], found);
+        }
     }
 }
 

@@ -6,10 +6,11 @@ namespace raycontact {
 void RayQueue::fill(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
                     bool use_grid) {
     counts_.resize(device, pairs.size());
-    launch<KernelId::count_clusters>(device, pairs.size(), pairs, shapes.headers, shapes.clusters, counts_);
+    small_.resize(device, pairs.size());
+    launch<KernelId::count_clusters>(device, pairs.size(), pairs, shapes.headers, shapes.clusters, counts_, small_);
     clusters_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_clusters>(device, clusters_.size() > 0 ? pairs.size() : 0, pairs, shapes.headers,
-                                     shapes.clusters, firsts_, clusters_);
+                                     shapes.clusters, small_, firsts_, clusters_);
 
     counts_.resize(device, clusters_.size());
     inside_.resize(device, clusters_.size());

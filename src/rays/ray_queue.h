@@ -21,6 +21,7 @@ public:
 private:
     Scan scan_;
     Array<kernels::uint> counts_, inside_, firsts_;
+    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
     std::uint64_t vertices_inside_ = 0;
     Array<kernels::Cluster> clusters_;
     Array<kernels::Ray> rays_;
