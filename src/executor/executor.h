@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
+#include <type_traits>
 
 namespace raycontact {
 
@@ -20,9 +20,23 @@ public:
     std::uint32_t threads() const;
     /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, under FloatEnvironment, and returns when
     /// all are done. The first exception of a slice is thrown here.
-    void run(std::uint32_t count, std::uint32_t grain, const std::function<void(std::uint32_t, std::uint32_t)>& slice);
+    template <typename Slice>
+    void run(std::uint32_t count, std::uint32_t grain, Slice&& slice) {
+        using Function = std::remove_reference_t<Slice>;
+        run_slices(count, grain, {&slice, [](const void* function, std::uint32_t begin, std::uint32_t end) {
+                                      (*static_cast<const Function*>(function))(begin, end);
+                                  }});
+    }
 
 private:
+    // Refers to a caller's lambda; std::function would allocate one every step.
+    struct SliceReference {
+        const void* function;
+        void (*call)(const void*, std::uint32_t, std::uint32_t);
+        void operator()(std::uint32_t begin, std::uint32_t end) const { call(function, begin, end); }
+    };
+    void run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice);
+
     struct State;
     std::unique_ptr<State> state_;
 };

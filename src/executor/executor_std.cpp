@@ -19,7 +19,7 @@ struct Executor::State {
     std::vector<std::thread> pool;
     std::mutex mutex;
     std::condition_variable work, done;
-    const std::function<void(std::uint32_t, std::uint32_t)>* slice = nullptr;
+    const SliceReference* slice = nullptr;
     std::uint32_t next = 0, count = 0, step = 1, active = 0;
     std::exception_ptr error;
     bool stop = false;
@@ -75,8 +75,7 @@ std::uint32_t Executor::threads() const {
     return state_->threads;
 }
 
-void Executor::run(std::uint32_t count, std::uint32_t grain,
-                   const std::function<void(std::uint32_t, std::uint32_t)>& slice) {
+void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;
     Pin pin;
     if (state_->core >= 0) pin.enter(state_->core);

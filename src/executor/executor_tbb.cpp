@@ -45,8 +45,7 @@ std::uint32_t Executor::threads() const {
     return state_->threads;
 }
 
-void Executor::run(std::uint32_t count, std::uint32_t grain,
-                   const std::function<void(std::uint32_t, std::uint32_t)>& slice) {
+void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;
     if (!state_->pinner && (state_->threads == 1 || count <= grain)) {
         const FloatEnvironment environment;
@@ -56,9 +55,9 @@ void Executor::run(std::uint32_t count, std::uint32_t grain,
     state_->arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, grain),
                           [&](const tbb::blocked_range<std::uint32_t>& r) {
-            const FloatEnvironment environment;
-            slice(r.begin(), r.end());
-        });
+                              const FloatEnvironment environment;
+                              slice(r.begin(), r.end());
+                          });
     });
 }
 

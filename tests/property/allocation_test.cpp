@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Once a scene has seen its worst step, further steps allocate nothing.
+#include "scenes/models/model.h"
+
+#include <raycontact/scene.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <new>
+
+namespace {
+std::atomic<std::uint64_t> allocations{0};
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+    ++allocations;
+    void* memory = nullptr;
+    if (posix_memalign(&memory, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
+    return memory;
+}
+} // namespace
+
+void* operator new(std::size_t bytes) {
+    return counted(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    return counted(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+
+namespace raycontact {
+namespace {
+
+// Bodies that swing back and forth, so that every state returns.
+void move(Scene& scene, int step) {
+    const int phase = step % 16;
+    for (BodyId body = 0; body < 64; ++body) {
+        const double sway = 0.02 * (phase < 8 ? phase : 16 - phase);
+        const Vec3 at{0.7 * (body % 4) + sway, 0.7 * (body / 4 % 4) - sway, 0.7 * (body / 16)};
+        scene.set_pose(body, pose_from_quaternion(at, 1, 0.1 * body, sway, 0.3));
+    }
+}
+
+TEST(Allocations, NoneAfterWarmUp) {
+    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    for (const std::uint32_t threads : {1u, 2u})
+        for (const bool given : {false, true}) {
+            Settings settings;
+            settings.threads = threads;
+            Scene scene(settings);
+            for (BodyId body = 0; body < 64; ++body) scene.add(shape);
+            std::vector<Pair> pairs;
+            const auto step = [&](int i) {
+                move(scene, i);
+                if (given)
+                    scene.step(pairs);
+                else
+                    scene.step();
+            };
+            for (BodyId a = 0; a < 64; ++a)
+                for (BodyId b = a + 1; b < 64; ++b) pairs.emplace_back(a, b);
+            for (int i = 0; i < 32; ++i) step(i);
+            const std::uint64_t before = allocations;
+            std::uint64_t contacts = 0;
+            for (int i = 32; i < 96; ++i) {
+                step(i);
+                contacts += scene.stats().contacts;
+            }
+            EXPECT_EQ(allocations - before, 0u) << threads << " threads";
+            EXPECT_GT(contacts, 10000u);
+        }
+}
+
+} // namespace
+} // namespace raycontact
