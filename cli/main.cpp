@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/bench.h"
 #include "cli/collide.h"
 #include "cli/devices.h"
 #include "cli/mesh.h"
+#include "cli/replay.h"
 #include "cli/run.h"
 
 #include <raycontact/error.h>
@@ -36,6 +38,8 @@ int run_program(int argc, char** argv) {
     add_mesh(app);
     add_collide(app);
     add_run(app);
+    add_replay(app);
+    add_bench(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -44,7 +48,7 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (app.get_subcommands().empty()) {
-        throw raycontact::InputError("a subcommand is required: devices, mesh, collide or run (see raycontact --help)");
+        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, run, replay or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return fine;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bench/peers/peer.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace raycontact::bench {
+
+/// One entrant's figures on one work. Times are of the processor (one thread each), so that other programs on the
+/// machine disturb them least; wall times are kept beside them. All are medians over the runs.
+struct Result {
+    std::string work, peer, what;
+    bool rays_alone = false;
+    std::uint32_t steps = 0;      ///< given to it
+    std::uint64_t pair_steps = 0; ///< in these
+    double us = 0, wall_us = 0;   ///< a pair and step, microseconds
+    double ratio = 0;             ///< its time over ours (bvh, or our rays) on the same steps; 0 where ours did not run
+    std::uint64_t rays = 0, contacts = 0;
+    double depth_sum = 0;
+    std::uint64_t memory_bytes = 0; ///< in use more than before it was made, warm; own count where it has one
+    bool memory_is_own_count = false;
+    std::string hash;   ///< of the steps given; ours only
+    bool agrees = true; ///< every step's hash is that of `bvh`, where both have one
+};
+
+/// Every entrant over all steps, one after the other, `runs` times: A B C A B C. `progress` is told what is next.
+std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entrants, std::uint32_t runs,
+                            const std::function<void(const std::string&)>& progress);
+
+/// Bytes the C library's allocator has handed out and not got back; 0 where it cannot be asked.
+std::uint64_t heap_in_use();
+
+} // namespace raycontact::bench

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bench/peers/work.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace raycontact::bench {
+
+/// What one step of a peer gave. The sum is of what a caller reads of each contact, so that reading it costs its price.
+struct Found {
+    std::uint64_t rays = 0, contacts = 0;
+    double depth_sum = 0;
+};
+
+/// One way to find the contacts of a work. Made once per work, then given the same steps again and again.
+class Peer {
+public:
+    virtual ~Peer() = default;
+    /// Not timed: what is no part of the question.
+    virtual void prepare(const WorkStep&) {}
+    /// Timed: poses set, pairs collided, contacts read, on the calling thread alone.
+    virtual Found detect(const WorkStep& step) = 0;
+    /// Not timed, after each step of the first run.
+    virtual void note(std::uint32_t) {}
+
+    virtual std::string hash() const { return {}; }
+    /// Per step that note() was called for, in order; empty for those who promise no bits.
+    virtual std::vector<std::string> step_hashes() const { return {}; }
+    /// Bytes by the library's own count, for those that allocate behind the C library's back.
+    virtual std::optional<std::uint64_t> own_memory() const { return {}; }
+    /// Bytes it uses that were there before it was made.
+    virtual std::uint64_t shared_memory() const { return 0; }
+};
+
+struct Entrant {
+    std::string name; ///< as in --only
+    std::string what; ///< for a person: library, version, how it is asked
+    bool rays_alone = false;
+    std::uint32_t every = 1;                                ///< of the steps, for one too slow to be given all
+    std::function<std::unique_ptr<Peer>(const Work&)> make; ///< empty: not built
+    std::string why_not;                                    ///< what to install, where it was not built
+};
+
+/// All there are, ours first.
+std::vector<Entrant> entrants();
+
+// One a file; those of libraries that CMake did not find are answered by entrants() itself.
+Entrant ours(bool bvh);
+Entrant gimpact();
+Entrant fcl();
+Entrant ode();
+Entrant embree();
+Entrant rays_of_ours();
+Entrant rays_of_embree();
+
+} // namespace raycontact::bench

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <bench/peers/embree_scene.h>
+#include <bench/peers/peer.h>
+
+#include "device/device.h"
+#include "executor/float_environment.h"
+#include "pairs/ordered_pairs.h"
+#include "rays/ray_queue.h"
+#include "rays/standard.h"
+
+namespace raycontact::bench {
+
+namespace {
+
+/// The rays of each step, found by us and not timed; what is timed is only casting them, all of the rule's.
+class RayPeer : public Peer {
+public:
+    explicit RayPeer(const Work& work) : opened_(open_device("cpu", 1)), shapes_(*opened_.device) {
+        for (const auto& shape : work.shapes) shapes_.add(shape);
+        for (BodyId body = 0; body < work.body_shape.size(); ++body) {
+            PlacedBody& placed = bodies_.emplace_back();
+            placed.shape = &work.shape(body);
+            placed.shape_index = shapes_.index_of(placed.shape);
+        }
+    }
+
+    void prepare(const WorkStep& step) override {
+        const FloatEnvironment environment;
+        for (std::size_t body = 0; body < bodies_.size(); ++body) {
+            PlacedBody& placed = bodies_[body];
+            placed.pose = placed.centred = step.poses[body];
+            placed.centred.translation = transform_point(placed.pose, placed.shape->centre());
+        }
+        order_pairs(*opened_.executor, bodies_, step.pairs, ordered_);
+        pairs_.write(*opened_.device, ordered_);
+        queue_.fill(*opened_.device, shapes_.arrays(), pairs_, false);
+    }
+
+protected:
+    OpenDevice opened_;
+    ShapeStore shapes_;
+    std::vector<PlacedBody> bodies_;
+    std::vector<kernels::OrderedPair> ordered_;
+    Array<kernels::OrderedPair> pairs_;
+    RayQueue queue_;
+};
+
+class OurRays : public RayPeer {
+public:
+    using RayPeer::RayPeer;
+
+    Found detect(const WorkStep&) override {
+        const FloatEnvironment environment;
+        cast_standard(*opened_.device, Caster::bvh, shapes_.arrays(), pairs_, queue_.rays(), hits_);
+        host_.resize(hits_.size());
+        hits_.read(*opened_.device, host_);
+        Found found;
+        found.rays = host_.size();
+        for (const kernels::Hit& hit : host_) {
+            if (hit.triangle == NONE) continue;
+            ++found.contacts;
+            found.depth_sum += static_cast<double>(hit.distance);
+        }
+        return found;
+    }
+
+private:
+    Array<kernels::Hit> hits_;
+    std::vector<kernels::Hit> host_;
+};
+
+class EmbreeRays : public RayPeer {
+public:
+    explicit EmbreeRays(const Work& work) : RayPeer(work), scenes_(work.shapes.size()) {
+        for (const auto& shape : work.shapes)
+            scenes_[shapes_.index_of(shape.get())] = std::make_unique<EmbreeScene>(device_, *shape);
+        blocks_.resize(shapes_.arrays().vertex_blocks.size());
+        shapes_.arrays().vertex_blocks.read(*opened_.device, blocks_);
+    }
+
+    void prepare(const WorkStep& step) override {
+        RayPeer::prepare(step);
+        rays_.resize(queue_.rays().size());
+        queue_.rays().read(*opened_.device, rays_);
+    }
+
+    Found detect(const WorkStep&) override {
+        Found found;
+        found.rays = rays_.size();
+        for (const kernels::Ray& ray : rays_) {
+            // The vertex's way into the target's frame is part of the work, as it is of ours.
+            const kernels::prototype::SourceRay source = kernels::prototype::source_ray(
+                &ordered_[ray.pair], &blocks_[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
+            RTCRayHit hit;
+            if (!scenes_[ordered_[ray.pair].target]->cast(source.position, source.direction, source.reach, hit))
+                continue;
+            ++found.contacts;
+            found.depth_sum += static_cast<double>(hit.ray.tfar);
+        }
+        return found;
+    }
+
+    std::optional<std::uint64_t> own_memory() const override { return device_.bytes(); }
+
+private:
+    EmbreeDevice device_;
+    std::vector<std::unique_ptr<EmbreeScene>> scenes_; ///< by index in the store
+    std::vector<kernels::VertexBlock> blocks_;
+    std::vector<kernels::Ray> rays_;
+};
+
+} // namespace
+
+Entrant rays_of_ours() {
+    Entrant entrant;
+    entrant.name = "rays";
+    entrant.what = "RayContact, casting alone";
+    entrant.rays_alone = true;
+    entrant.make = [](const Work& work) { return std::make_unique<OurRays>(work); };
+    return entrant;
+}
+
+Entrant rays_of_embree() {
+    Entrant entrant;
+    entrant.name = "embree-rays";
+    entrant.what = "Embree " RTC_VERSION_STRING " rtcIntersect1, casting alone";
+    entrant.rays_alone = true;
+    entrant.make = [](const Work& work) { return std::make_unique<EmbreeRays>(work); };
+    return entrant;
+}
+
+} // namespace raycontact::bench

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <bench/peers/work.h>
+
+#include <raycontact/error.h>
+#include <scenes/avalanche.h>
+#include <scenes/models/model.h>
+#include <scenes/random.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace raycontact::bench {
+
+namespace {
+
+constexpr double cell = 4; // metres between pairs; meshes are 1 m, so no pair sees another
+
+using Quaternion = std::array<double, 4>; // w x y z
+
+Quaternion times(const Quaternion& a, const Quaternion& b) {
+    return {
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+/// In a ball, not too near its middle.
+std::array<double, 3> random_direction(scenes::Random& random) {
+    for (;;) {
+        const double x = random.symmetric(), y = random.symmetric(), z = random.symmetric();
+        const double square = x * x + y * y + z * z;
+        if (square > 1 || square < 0.01) continue;
+        const double length = std::sqrt(square);
+        return {x / length, y / length, z / length};
+    }
+}
+
+Quaternion random_rotation(scenes::Random& random) {
+    for (;;) {
+        const Quaternion q{random.symmetric(), random.symmetric(), random.symmetric(), random.symmetric()};
+        const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (square <= 1 && square > 0.01) return q;
+    }
+}
+
+/// One pair's path: along `way` from far to near, each body turning about an axis of its own.
+struct Path {
+    Vec3 home;
+    std::array<double, 3> way, spin_a, spin_b;
+    Quaternion a, b;
+    double touch = 0; ///< metres between the centres
+
+    /// `turn` of a body is tan(angle / 2) along its axis; 0 at the pose that `touch` was found for.
+    Pose pose(bool second, double distance, double turn) const {
+        const auto& spin = second ? spin_b : spin_a;
+        const Quaternion turned = times({1, turn * spin[0], turn * spin[1], turn * spin[2]}, second ? b : a);
+        const double at = second ? distance : 0;
+        const Vec3 where{home.x + at * way[0], home.y + at * way[1], home.z + at * way[2]};
+        return pose_from_quaternion(where, turned[0], turned[1], turned[2], turned[3]);
+    }
+};
+
+/// Largest distance at which each pair has a contact: from afar in steps of 2 cm, then halved eight times.
+void find_touch(Work& work, std::vector<Path>& paths) {
+    const auto scene = make_scene(work, Caster::bvh);
+    std::vector<Pair> pairs;
+    for (BodyId i = 0; i < paths.size(); ++i) pairs.emplace_back(2 * i, 2 * i + 1);
+    const auto touching = [&](const std::vector<double>& distances) {
+        for (BodyId i = 0; i < paths.size(); ++i) {
+            scene->set_pose(2 * i, paths[i].pose(false, distances[i], 0));
+            scene->set_pose(2 * i + 1, paths[i].pose(true, distances[i], 0));
+        }
+        std::vector<bool> touches(paths.size());
+        for (const Contact& contact : scene->step(pairs)) touches[contact.body_a / 2] = true;
+        return touches;
+    };
+    const double far = 2 * work.shapes[0]->radius(), stride = 0.02;
+    std::vector<double> distances(paths.size(), far);
+    for (double distance = far; distance > 0; distance -= stride) {
+        const std::vector<bool> touches = touching(distances);
+        for (std::size_t i = 0; i < paths.size(); ++i)
+            if (!touches[i]) distances[i] = distance;
+    }
+    std::vector<double> apart(distances);
+    for (double& d : apart) d += stride;
+    for (int halving = 0; halving < 8; ++halving) {
+        std::vector<double> middle(paths.size());
+        for (std::size_t i = 0; i < paths.size(); ++i) middle[i] = (apart[i] + distances[i]) / 2;
+        const std::vector<bool> touches = touching(middle);
+        for (std::size_t i = 0; i < paths.size(); ++i) (touches[i] ? distances : apart)[i] = middle[i];
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) paths[i].touch = distances[i];
+}
+
+/// The pairs whose world boxes overlap, by our own sweep and prune: the same list for everyone.
+void find_pairs(Work& work) {
+    const auto scene = make_scene(work, Caster::bvh);
+    for (WorkStep& step : work.steps) {
+        for (BodyId body = 0; body < step.poses.size(); ++body) scene->set_pose(body, step.poses[body]);
+        scene->step();
+        step.pairs.assign(scene->pairs().begin(), scene->pairs().end());
+    }
+}
+
+} // namespace
+
+std::uint64_t Work::pair_steps() const {
+    std::uint64_t count = 0;
+    for (const WorkStep& step : steps) count += step.pairs.size();
+    return count;
+}
+
+std::unique_ptr<Scene> make_scene(const Work& work, Caster caster) {
+    Settings settings;
+    settings.caster = caster;
+    settings.threads = 1;
+    auto scene = std::make_unique<Scene>(settings);
+    for (const std::uint32_t shape : work.body_shape) scene->add(work.shapes[shape]);
+    return scene;
+}
+
+Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
+                       const ApproachOptions& options) {
+    Work work;
+    work.name = std::move(name);
+    work.source = std::move(source);
+    work.shapes = {shape};
+    work.body_shape.assign(std::size_t{2} * options.pairs, 0);
+    scenes::Random random(1);
+    std::vector<Path> paths(options.pairs);
+    for (std::uint32_t i = 0; i < options.pairs; ++i) {
+        Path& path = paths[i];
+        path.home = {cell * (i % 4), cell * (i / 4 % 4), cell * (i / 16)};
+        path.way = random_direction(random);
+        path.spin_a = random_direction(random);
+        path.spin_b = random_direction(random);
+        path.a = random_rotation(random);
+        path.b = random_rotation(random);
+    }
+    find_touch(work, paths);
+    // Six tenths of the time to come together, the rest to turn in each other; about 12 degrees each way a body.
+    for (std::uint32_t k = 0; k < options.steps; ++k) {
+        const double time = (k + 0.5) / options.steps;
+        const double in = std::fmin(1, time / 0.6);
+        WorkStep& step = work.steps.emplace_back();
+        for (const Path& path : paths) {
+            const double distance = path.touch + options.clearance - (options.clearance + options.depth) * in;
+            const double turn = 0.2 * (time - 0.6);
+            step.poses.push_back(path.pose(false, distance, turn));
+            step.poses.push_back(path.pose(true, distance, turn));
+        }
+    }
+    find_pairs(work);
+    return work;
+}
+
+std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source) {
+    scenes::Model model = scenes::scene_model("bunny", triangles);
+    // The usual stand-in has a hole, and so half a percent fewer vertices for its triangles.
+    if (model.stand_in) model = scenes::scene_model("sphere", triangles);
+    source = model.source;
+    return Shape::make(model.mesh);
+}
+
+std::shared_ptr<const Shape> one_metre_mesh(const std::filesystem::path& file) {
+    Mesh mesh = load_mesh(file);
+    Vec3 low = mesh.vertices.front(), high = low;
+    for (const Vec3& v : mesh.vertices) {
+        low = {std::fmin(low.x, v.x), std::fmin(low.y, v.y), std::fmin(low.z, v.z)};
+        high = {std::fmax(high.x, v.x), std::fmax(high.y, v.y), std::fmax(high.z, v.z)};
+    }
+    const double extent = std::fmax(high.x - low.x, std::fmax(high.y - low.y, high.z - low.z));
+    if (!(extent > 0)) throw InputError(file.string() + ": all vertices are in one place; give a mesh with an area");
+    for (Vec3& v : mesh.vertices)
+        v = {(v.x - (low.x + high.x) / 2) / extent, (v.y - (low.y + high.y) / 2) / extent,
+             (v.z - (low.z + high.z) / 2) / extent};
+    return Shape::make(mesh);
+}
+
+Work avalanche_work(const AvalancheWorkOptions& options) {
+    scenes::AvalancheOptions how;
+    how.bodies = options.bodies;
+    scenes::Avalanche scene(how);
+    Work work;
+    work.name = "avalanche";
+    const scenes::RunLog& log = scene.log();
+    work.shapes = log.shapes;
+    work.body_shape = log.body_shape;
+    work.source = std::to_string(options.bodies) + " bodies and the ground, steps " + std::to_string(options.first)
+                  + " to " + std::to_string(options.first + options.steps - 1) + " of the avalanche, every "
+                  + std::to_string(options.stride) + "th; " + log.mesh_source;
+    for (std::uint32_t k = 0; k < options.first + options.steps; ++k) {
+        if (k >= options.first && (k - options.first) % options.stride == 0) {
+            // Bullet detects at the poses a step begins with.
+            WorkStep& step = work.steps.emplace_back();
+            for (std::uint32_t body = 0; body < options.bodies; ++body) step.poses.push_back(scene.pose(body));
+            step.poses.emplace_back(); // the ground
+        }
+        scene.step();
+    }
+    find_pairs(work);
+    return work;
+}
+
+} // namespace raycontact::bench

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/scene.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace raycontact::bench {
+
+/// Poses of all bodies, and the pairs whose world boxes overlap there.
+struct WorkStep {
+    std::vector<Pose> poses;
+    std::vector<Pair> pairs;
+};
+
+/// Poses and pairs fixed beforehand: the same question for everyone.
+struct Work {
+    std::string name;   ///< as in --works
+    std::string source; ///< what it is made of, for a person
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    std::vector<std::uint32_t> body_shape; ///< index into shapes, per body
+    std::vector<WorkStep> steps;
+
+    const Shape& shape(BodyId body) const { return *shapes[body_shape[body]]; }
+    std::uint64_t pair_steps() const;
+};
+
+struct ApproachOptions {
+    std::uint32_t pairs = 32, steps = 100;
+    double clearance = 0.10; ///< metres between the first pose and the one where they touch; meshes are 1 m
+    double depth = 0.06;     ///< metres pushed in beyond that
+};
+
+/// Pairs of one mesh that start apart, come together, overlap and turn slowly all the while; each pair alone in its
+/// cell of a grid. No libm in the poses: the same bits from every compiler.
+Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
+                       const ApproachOptions& options);
+
+/// The reduced bunny of that many triangles where it can be made, else a closed bumpy sphere; says which in `source`.
+std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source);
+
+/// A mesh file, its box centred on the origin, largest extent 1 m. Throws InputError as load_mesh does.
+std::shared_ptr<const Shape> one_metre_mesh(const std::filesystem::path& file);
+
+struct AvalancheWorkOptions {
+    std::uint32_t bodies = 512;
+    std::uint32_t first = 200; ///< step
+    std::uint32_t steps = 200; ///< from there on
+    std::uint32_t stride = 20; ///< of those, every how many are given to the peers
+};
+
+/// Steps of the scene avalanche, simulated here and now.
+Work avalanche_work(const AvalancheWorkOptions& options);
+
+/// A scene's bodies in one RayContact scene on one thread.
+std::unique_ptr<Scene> make_scene(const Work& work, Caster caster);
+
+} // namespace raycontact::bench

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// Registers `bench peers` and `bench growth`: what contacts cost here and elsewhere, and how that grows.
+void add_bench(CLI::App& app);
