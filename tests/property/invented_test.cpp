@@ -96,8 +96,9 @@ void cast(const Subject& target, Aim aim, double rays, std::uint64_t seed, Count
             // when aimed, by anything when not. Each pose rounds every ray anew.
             Pose at = random.rotation();
             at.translation = 3 * random.in_ball() - rotate(at, target.solid.centre);
-            const Pose off =
-                aim == Aim::anywhere ? random.rotation() : small_rotation(random.direction(), 1e-7 * random.uniform());
+            const Vec3 axis = random.direction(); // one after the other: the order of arguments is the compiler's
+            const double angle = 1e-7 * random.uniform();
+            const Pose off = aim == Aim::anywhere ? random.rotation() : small_rotation(axis, angle);
             const Vec3 shift = (aim == Aim::anywhere ? 0.1 : 1e-7) * random.in_ball();
             Pose pose = at; // x_target = off * x_cloud + shift, about the target's centre
             for (std::size_t i = 0; i < 3; ++i)

@@ -80,10 +80,15 @@ Mesh grid_box_mesh(std::uint32_t n) {
                         p[(axis + 2) % 3] = v;
                         return vertex(p);
                     };
+                    // One after the other: the order of arguments is the compiler's, and new vertices count up.
+                    const std::uint32_t a = at(i, j);
+                    const std::uint32_t b = at(i + 1, j);
+                    const std::uint32_t c = at(i + 1, j + 1);
+                    const std::uint32_t d = at(i, j + 1);
                     if (high)
-                        add_quad(mesh, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                        add_quad(mesh, a, b, c, d);
                     else
-                        add_quad(mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+                        add_quad(mesh, a, d, c, b);
                 }
     return mesh;
 }
@@ -146,8 +151,11 @@ Mesh bumpy_octahedron_mesh(std::uint32_t n) {
                             else
                                 mesh.triangles.push_back({a, c, b});
                         };
-                        add(at(i, j), at(i + 1, j), at(i, j + 1));
-                        if (i + j + 1 < m) add(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                        const std::uint32_t corner = at(i, j);
+                        const std::uint32_t right = at(i + 1, j);
+                        const std::uint32_t up = at(i, j + 1);
+                        add(corner, right, up);
+                        if (i + j + 1 < m) add(right, at(i + 1, j + 1), up);
                     }
     return mesh;
 }
