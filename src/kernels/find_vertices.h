@@ -45,10 +45,12 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
         const float ex = ((b->size[0] * hx + b->size[1] * hy) + b->size[2] * hz) + b->half_size[0];
         const float ey = ((b->size[3] * hx + b->size[4] * hy) + b->size[5] * hz) + b->half_size[1];
         const float ez = ((b->size[6] * hx + b->size[7] * hy) + b->size[8] * hz) + b->half_size[2];
-        const uint in_target = (magnitude_of(x) <= ex) & (magnitude_of(y) <= ey) & (magnitude_of(z) <= ez);
-        const uint in_source = (magnitude_of(cx - b->source_centre[0]) <= hx + b->source_half_size[0])
-                               & (magnitude_of(cy - b->source_centre[1]) <= hy + b->source_half_size[1])
-                               & (magnitude_of(cz - b->source_centre[2]) <= hz + b->source_half_size[2]);
+        const float x_size = magnitude_of(x), y_size = magnitude_of(y), z_size = magnitude_of(z);
+        const float away_x = magnitude_of(cx - b->source_centre[0]), away_y = magnitude_of(cy - b->source_centre[1]);
+        const float away_z = magnitude_of(cz - b->source_centre[2]);
+        const uint in_target = (x_size <= ex) & (y_size <= ey) & (z_size <= ez);
+        const uint in_source = (away_x <= hx + b->source_half_size[0]) & (away_y <= hy + b->source_half_size[1])
+                               & (away_z <= hz + b->source_half_size[2]);
         lanes |= lane_bit(k) & (0u - (in_target & in_source));
     }
     return lanes;
