@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels' text as CUDA C++: it compiles for old and new GPUs, and its PTX rounds every operation as the CPU does.
+#include "device/nvrtc.h"
+#include "device/ptx.h"
+
+#include "kernels_cuda.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace raycontact;
+using namespace raycontact::device_test;
+
+namespace {
+
+const std::vector<std::string> exact_options = {"--fmad=false", "--prec-div=true", "--prec-sqrt=true", "--ftz=false",
+                                                "--std=c++17"};
+
+const Nvrtc& nvrtc() {
+    static const Nvrtc loaded;
+    return loaded;
+}
+
+std::vector<std::string> with(std::vector<std::string> options, const std::vector<std::string>& more) {
+    options.insert(options.end(), more.begin(), more.end());
+    return options;
+}
+
+// With every intended fused multiply-add (product_error) turned into a call: whatever fma is left was not intended.
+PtxReport without_intended_fma(const std::vector<std::string>& options, std::string* ptx = nullptr) {
+    const std::string marked = "extern \"C\" __device__ float marked_fma(float, float, float);\n"
+                               "#define __fmaf_rn marked_fma\n"
+                               + cuda_text();
+    const std::string made = nvrtc().compile(marked, with(options, {"--relocatable-device-code=true"}));
+    if (ptx) *ptx = made;
+    return read_ptx(made);
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
+}
+
+std::vector<std::string> target(const std::string& architecture) {
+    return {"--gpu-architecture=compute_" + architecture};
+}
+
+class Architecture : public testing::TestWithParam<const char*> {};
+
+TEST_P(Architecture, has_every_kernel_and_rounds_every_operation) {
+    const std::string ptx = nvrtc().compile(cuda_text(), with(exact_options, target(GetParam())));
+    EXPECT_NE(ptx.find(std::string(".target sm_") + GetParam()), std::string::npos);
+    const PtxReport report = read_ptx(ptx);
+    std::vector<std::string> expected = {
+#define RAYCONTACT_KERNEL(name) #name,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+    };
+    std::vector<std::string> entries = report.entries;
+    std::sort(expected.begin(), expected.end());
+    std::sort(entries.begin(), entries.end());
+    EXPECT_EQ(entries, expected);
+    EXPECT_EQ(joined(report.inexact), "");
+    EXPECT_GT(report.rounded, 500u);
+    EXPECT_GT(report.fused, 0u); // product_error
+}
+
+TEST_P(Architecture, fuses_only_in_product_error) {
+    std::string ptx;
+    const PtxReport report = without_intended_fma(with(exact_options, target(GetParam())), &ptx);
+    EXPECT_NE(ptx.find("call"), std::string::npos);
+    EXPECT_EQ(report.fused, 0u);
+    EXPECT_EQ(joined(report.inexact), "");
+}
+
+// What the checks are worth: other rules for floats are noticed.
+TEST(nvrtc, contraction_is_noticed) {
+    const std::vector<std::string> contracted = {"--fmad=true", "--prec-div=true", "--prec-sqrt=true", "--ftz=false",
+                                                 "--std=c++17"};
+    const PtxReport report = without_intended_fma(with(contracted, target("90")));
+    EXPECT_GT(report.fused, 0u);
+    EXPECT_FALSE(report.inexact.empty()); // what ptxas would be free to contract
+}
+
+TEST(nvrtc, fast_division_and_flushing_are_noticed) {
+    for (const char* wrong : {"--prec-div=false", "--ftz=true"}) {
+        std::vector<std::string> options = target("90");
+        for (const std::string& option : exact_options)
+            if (!option.starts_with(std::string(wrong).substr(0, 6))) options.push_back(option);
+        options.push_back(wrong);
+        EXPECT_FALSE(without_intended_fma(options).inexact.empty()) << wrong;
+    }
+}
+
+// Turing, the oldest that today's compiler knows; Hopper; Blackwell.
+INSTANTIATE_TEST_SUITE_P(nvrtc, Architecture, testing::Values("75", "90", "120"));
+
+TEST(ptx, sees_what_does_not_round_as_ours) {
+    const auto report = [](const char* line) { return read_ptx(line); };
+    for (const char* wrong :
+         {"\tadd.f32 \t%f1, %f2, %f3;", "\tmul.ftz.f32 %f1, %f2, %f3;", "@%p1 mad.rn.f32 %f1, %f2, %f3, %f4;",
+          "\tdiv.full.f32 %f1, %f2, %f3;", "\tsqrt.approx.f32 %f1, %f2;", "\tadd.rn.f64 %fd1, %fd2, %fd3;",
+          "\tadd.rz.f32 %f1, %f2, %f3;", "\tsin.approx.f32 %f1, %f2;", "\tsetp.lt.ftz.f32 %p1, %f1, %f2;"})
+        EXPECT_EQ(report(wrong).inexact.size(), 1u) << wrong;
+    for (const char* right : {"\tadd.rn.f32 %f1, %f2, %f3;", "@!%p2 sub.rn.f32 %f1, %f2, %f3;"}) {
+        EXPECT_EQ(report(right).inexact.size(), 0u) << right;
+        EXPECT_EQ(report(right).rounded, 1u) << right;
+    }
+    EXPECT_EQ(report("\tfma.rn.f32 %f1, %f2, %f3, %f4;").fused, 1u);
+    EXPECT_EQ(report(".visible .entry cast(").entries, std::vector<std::string>{"cast"});
+}
+
+} // namespace

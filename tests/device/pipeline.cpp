@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/pipeline.h"
+
+#include "contacts/gather.h"
+#include "device/cpu/device.h"
+#include "pairs/ordered_pairs.h"
+#include "rays/standard.h"
+#include "reference/meshes.h"
+#include "reference/random.h"
+
+#include <cstring>
+
+namespace raycontact::device_test {
+
+namespace {
+
+PlacedBody place(const Work& work, std::size_t shape, const Pose& pose) {
+    PlacedBody body;
+    body.shape = work.shapes[shape].get();
+    body.shape_index = static_cast<kernels::uint>(shape);
+    body.pose = pose;
+    body.centred = pose;
+    body.centred.translation = transform_point(pose, body.shape->centre());
+    return body;
+}
+
+} // namespace
+
+Work make_work(std::size_t random_pairs) {
+    using namespace reference;
+    Work work;
+    for (const Mesh& mesh : {bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8),
+                             sheet_mesh(8), grid_box_mesh(4)})
+        work.shapes.push_back(Shape::make(mesh));
+    const std::size_t grid_box = work.shapes.size() - 1;
+
+    std::vector<PlacedBody> bodies;
+    Random random(2013);
+    for (std::size_t i = 0; i < 2 * random_pairs; ++i) {
+        Pose pose = random.rotation();
+        const Vec3 at = random.in_ball();
+        pose.translation = {0.6 * at.x, 0.6 * at.y, 0.6 * at.z};
+        bodies.push_back(place(work, random.below(static_cast<std::uint32_t>(work.shapes.size())), pose));
+    }
+    for (const double by : {0.25, 0.5, 0.75}) {
+        Pose beside;
+        beside.translation = {by, by / 2, 0};
+        bodies.push_back(place(work, grid_box, Pose{}));
+        bodies.push_back(place(work, grid_box, beside));
+        bodies.push_back(place(work, grid_box, beside));
+        bodies.push_back(place(work, 1, Pose{}));
+    }
+    std::vector<Pair> pairs;
+    for (BodyId i = 0; i < bodies.size(); i += 2) pairs.emplace_back(i, i + 1);
+    Executor executor(1);
+    order_pairs(executor, bodies, pairs, work.pairs);
+    return work;
+}
+
+Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::size_t last) {
+    TracingDevice tracing(device);
+    ShapeStore store(tracing);
+    for (const auto& shape : work.shapes) store.add(shape);
+    Array<kernels::OrderedPair> pairs;
+    pairs.write(tracing, std::span(work.pairs).subspan(first, last - first));
+    RayQueue queue;
+    queue.fill(tracing, store.arrays(), pairs, true);
+    Array<kernels::Hit> hits, basic_hits;
+    cast_standard(tracing, Caster::bvh, store.arrays(), pairs, queue.rays(), hits);
+    cast_standard(tracing, Caster::basic, store.arrays(), pairs, queue.rays(), basic_hits);
+
+    Outcome outcome;
+    Gather gather;
+    outcome.side_tests = gather.run(tracing, store.arrays(), pairs, queue.rays(), hits, outcome.contacts);
+    for (kernels::LocalContact& contact : outcome.contacts) contact.pair += static_cast<kernels::uint>(first);
+    outcome.rays = queue.rays().size();
+    outcome.trace = tracing.trace();
+    return outcome;
+}
+
+Outcome run_pipeline(Device& device, const Work& work) {
+    return run_pipeline(device, work, 0, work.pairs.size());
+}
+
+Outcome run_on_cpu(const Work& work, std::string_view instruction_set) {
+    Executor executor(1);
+    return run_pipeline(*cpu::open(executor, instruction_set), work);
+}
+
+bool same_bits(const std::vector<kernels::LocalContact>& a, const std::vector<kernels::LocalContact>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+}
+
+} // namespace raycontact::device_test
