@@ -33,9 +33,7 @@ Mesh unwelded(const Mesh& mesh, bool as_float) {
     for (const auto& t : mesh.triangles) {
         const auto base = static_cast<std::uint32_t>(out.vertices.size());
         for (const std::uint32_t v : t) {
-            Vec3 p = mesh.vertices[v];
-            if (as_float) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-            out.vertices.push_back(p);
+            out.vertices.push_back(as_float ? rounded(mesh.vertices[v]) : mesh.vertices[v]);
         }
         out.triangles.push_back({base, base + 1, base + 2});
     }
@@ -152,7 +150,7 @@ TEST(Load, ErrorsNameTheLineOrTheElement) {
 TEST(Load, AllFormatsOfOneMeshPrepareAlike) {
     const TempFolder folder;
     Mesh made = torus(9, 6, 1, 0.25);
-    for (Vec3& v : made.vertices) v = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    for (Vec3& v : made.vertices) v = rounded(v);
     const std::string wanted = to_json(prepare_mesh(made).report);
     const std::array files{folder.write("m.obj", as_obj(made)), folder.write("m.off", as_off(made)),
                            folder.write("m.ply", as_ascii_ply(made)), folder.write("b.ply", as_binary_ply(made)),

@@ -16,6 +16,12 @@
 
 namespace raycontact::test {
 
+/// To float32 and back. Volatile because g++ 12 vectorises the two conversions away.
+inline Vec3 rounded(const Vec3& p) {
+    const volatile float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+    return {x, y, z};
+}
+
 /// Appends a box of 8 vertices and 12 triangles, wound outward unless told otherwise.
 inline void append_box(Mesh& mesh, const Vec3& low, const Vec3& high, bool outward = true) {
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
