@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same rays through our casters, for each instruction set, and through Embree 3 (rtcIntersect1, one ray at a time),
-// one thread, in alternated runs. Prints nanoseconds a ray, triangle tests a second of `basic`, and the hash of the hits.
+// one thread, in alternated runs. Prints nanoseconds a ray, triangle tests a second of `basic`, and the hash of the
+// hits.
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "pairs/ordered_pairs.h"
@@ -12,8 +13,8 @@
 #include <raycontact/shape.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <embree3/rtcore.h>
 #include <xxhash.h>
 
@@ -33,8 +34,7 @@ struct Random {
     }
 };
 
-std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pairs)
-{
+std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pairs) {
     Random random{7};
     std::vector<rc::PlacedBody> bodies(2 * pairs);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -50,11 +50,11 @@ std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pai
 
 class Embree {
 public:
-    explicit Embree(const rc::Shape& shape) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_))
-    {
+    explicit Embree(const rc::Shape& shape) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
         RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         const auto& points = shape.data().points;
-        auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, points.size()));
+        auto* v = static_cast<float*>(
+            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, points.size()));
         for (std::size_t i = 0; i < points.size(); ++i) {
             v[3 * i] = points[i].x;
             v[3 * i + 1] = points[i].y;
@@ -72,8 +72,7 @@ public:
         rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
         rtcCommitScene(scene_);
     }
-    ~Embree()
-    {
+    ~Embree() {
         rtcReleaseScene(scene_);
         rtcReleaseDevice(device_);
     }
@@ -81,14 +80,14 @@ public:
     Embree& operator=(const Embree&) = delete;
 
     // Contacts found; the transform of the vertex is part of the work, as it is of ours.
-    std::size_t cast(const std::vector<rk::OrderedPair>& pairs, const rc::ShapeData& shape, const std::vector<rk::Ray>& rays) const
-    {
+    std::size_t cast(const std::vector<rk::OrderedPair>& pairs, const rc::ShapeData& shape,
+                     const std::vector<rk::Ray>& rays) const {
         std::size_t contacts = 0;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         for (const rk::Ray& ray : rays) {
-            const rk::prototype::SourceRay source =
-                rk::prototype::source_ray(&pairs[ray.pair], &shape.vertex_blocks[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
+            const rk::prototype::SourceRay source = rk::prototype::source_ray(
+                &pairs[ray.pair], &shape.vertex_blocks[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
             RTCRayHit hit{};
             hit.ray.org_x = source.position[0];
             hit.ray.org_y = source.position[1];
@@ -112,16 +111,20 @@ private:
     RTCScene scene_;
 };
 
+// Of processor time: the work runs on this one thread, and other jobs on the machine then count less.
 template <typename Work>
-double milliseconds(Work&& work)
-{
-    const auto start = std::chrono::steady_clock::now();
+double milliseconds(Work&& work) {
+    const auto now = [] {
+        timespec time{};
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+        return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+    };
+    const double start = now();
     work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return now() - start;
 }
 
-double median(std::vector<double> values)
-{
+double median(std::vector<double> values) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
     return values[values.size() / 2];
 }
@@ -136,8 +139,7 @@ struct Contender {
     std::vector<double> queue_ms, bvh_ms, basic_ms;
     std::uint64_t hash = 0, basic_hash = 0;
 
-    std::uint64_t hash_hits()
-    {
+    std::uint64_t hash_hits() {
         std::vector<rk::Hit> host(hits.size());
         hits.read(*device, host);
         return XXH64(host.data(), host.size() * sizeof(rk::Hit), 0);
@@ -146,8 +148,7 @@ struct Contender {
 
 } // namespace
 
-int main(int argc, char** argv)
-try {
+int main(int argc, char** argv) try {
     if (argc < 2) {
         std::fprintf(stderr, "usage: raycontact_bench_rays MESH [PAIRS [RUNS]]\n");
         return 2;
@@ -203,9 +204,10 @@ try {
     const double count = static_cast<double>(rays.size());
     const double triangles = static_cast<double>(shape->triangles().size());
     const double theirs = 1e6 * median(embree_ms) / count;
-    std::printf("%zu pairs, %.0f rays (%.1f a pair and direction), %.0f triangles, %d runs, medians\n", pair_count, count,
-                count / (2.0 * static_cast<double>(pair_count)), triangles, runs);
-    std::printf("%-10s %12s %10s %10s %14s %18s\n", "", "queue ns/ray", "bvh ns/ray", "x Embree", "basic Mtri/s", "hash");
+    std::printf("%zu pairs, %.0f rays (%.1f a pair and direction), %.0f triangles, %d runs, medians\n", pair_count,
+                count, count / (2.0 * static_cast<double>(pair_count)), triangles, runs);
+    std::printf("%-10s %12s %10s %10s %14s %18s\n", "", "queue ns/ray", "bvh ns/ray", "x Embree", "basic Mtri/s",
+                "hash");
     for (const Contender& c : contenders)
         std::printf("%-10s %12.1f %10.1f %10.2f %14.0f %016llx%s\n", c.device->info().driver.c_str(),
                     1e6 * median(c.queue_ms) / count, 1e6 * median(c.bvh_ms) / count,

@@ -4,6 +4,8 @@
 #include "executor/pin.h"
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_scheduler_observer.h>
@@ -29,9 +31,14 @@ private:
 
 struct Executor::State {
     std::uint32_t threads;
+    // oneTBB keeps to the number of cores unless told otherwise; whoever asks for more threads gets them.
+    std::unique_ptr<tbb::global_control> allowed;
     tbb::task_arena arena;
     std::unique_ptr<Pinner> pinner;
-    explicit State(std::uint32_t count) : threads(count), arena(static_cast<int>(count)) {}
+    explicit State(std::uint32_t count) : threads(count), arena(static_cast<int>(count)) {
+        if (count > static_cast<std::uint32_t>(tbb::info::default_concurrency()))
+            allowed = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
+    }
 };
 
 Executor::Executor(std::uint32_t threads, int core)
