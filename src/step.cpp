@@ -21,7 +21,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
     device_pairs_.write(on, ordered_);
 
     // Rays: the vertices inside the other body's bounds, found by clusters.
-    queue_.fill(on, shapes_.arrays(), device_pairs_, settings_.caster != Caster::basic);
+    queue_.fill(on, shapes_.arrays(), device_pairs_, settings_.skip_outside && settings_.caster != Caster::basic);
 
     // Hits: every ray in full.
     cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_);

@@ -26,6 +26,9 @@ struct Settings {
     Method method = Method::standard;
     Caster caster = Caster::bvh;
     Direction direction = Direction::reprojected;
+    /// Leave out the rays of vertices that a mesh's outside grid knows to be outside (caster bvh; docs/design.md). No
+    /// contact depends on it; off, every ray is cast.
+    bool skip_outside = true;
     std::string device = "auto"; ///< "auto", "cpu" or "cpu/k" (the k-th core alone)
     std::uint32_t threads = 0;   ///< of the CPU device; 0: one per core. No count changes a bit of the result
 };
