@@ -47,30 +47,9 @@ Mesh stood_up(Mesh mesh) {
     return mesh;
 }
 
-/// Bullet wants the centre of mass at the origin and a diagonal inertia: the mesh in its principal axes gives both.
-Mesh in_principal_axes(Mesh mesh, const Pose& principal) {
-    const auto& r = principal.rotation;
-    for (Vec3& v : mesh.vertices) {
-        const Vec3 d{v.x - principal.translation.x, v.y - principal.translation.y, v.z - principal.translation.z};
-        v = {r[0] * d.x + r[3] * d.y + r[6] * d.z, r[1] * d.x + r[4] * d.y + r[7] * d.z,
-             r[2] * d.x + r[5] * d.y + r[8] * d.z};
-    }
-    return mesh;
-}
-
-btTransform start_pose(const Vec3& position, const std::array<double, 4>& tilt, const Pose& principal) {
-    const Pose tilted = pose_from_quaternion(position, tilt[0], tilt[1], tilt[2], tilt[3]);
-    btTransform t;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            double sum = 0;
-            for (int k = 0; k < 3; ++k) sum += tilted.rotation[3 * i + k] * principal.rotation[3 * k + j];
-            t.getBasis()[i][j] = btScalar(sum);
-        }
-    }
-    const Vec3 origin = transform_point(tilted, principal.translation);
-    t.setOrigin(btVector3(btScalar(origin.x), btScalar(origin.y), btScalar(origin.z)));
-    return t;
+btTransform start_pose(const Vec3& position, const std::array<double, 4>& tilt) {
+    return btTransform(btQuaternion(btScalar(tilt[1]), btScalar(tilt[2]), btScalar(tilt[3]), btScalar(tilt[0])),
+                       btVector3(btScalar(position.x), btScalar(position.y), btScalar(position.z)));
 }
 
 Pose to_pose(const btTransform& t) {
@@ -147,9 +126,7 @@ void Avalanche::State::configure() {
 
 void Avalanche::State::add_shapes() {
     const Model model = scene_model(options.model, options.triangles);
-    const Mesh standing = stood_up(model.mesh);
-    const bullet::MassProperties before_turn = bullet::mass_properties(*Shape::make(standing));
-    const auto shape = Shape::make(in_principal_axes(standing, before_turn.principal));
+    const auto shape = Shape::make(stood_up(model.mesh));
     const std::uint32_t side = [&] {
         std::uint32_t n = 1;
         while (static_cast<std::uint64_t>(n) * n * n < options.bodies) ++n;
@@ -162,10 +139,11 @@ void Avalanche::State::add_shapes() {
     log.shapes = {shape, ground};
     log.mesh_source = model.source;
 
-    const double mass = options.density * before_turn.volume;
-    const btVector3 inertia(btScalar(options.density * before_turn.principal_inertia.x),
-                            btScalar(options.density * before_turn.principal_inertia.y),
-                            btScalar(options.density * before_turn.principal_inertia.z));
+    // The model's axes, not its principal ones: they have the smaller box, and every ray starts in a box. What Bullet
+    // neglects are the products of inertia; the centre of mass is the origin as it must be.
+    const double mass = options.density * bullet::mass_properties(*shape).volume;
+    btVector3 inertia;
+    body_shape->calculateLocalInertia(btScalar(mass), inertia);
     Random random(options.seed);
     const double middle = (side - 1) / 2.0;
     for (std::uint32_t i = 0; i < options.bodies; ++i) {
@@ -173,7 +151,7 @@ void Avalanche::State::add_shapes() {
         const double dx = random.symmetric(), dy = random.symmetric();
         const Vec3 position{(ix - middle) * options.spacing + 0.02 * dx, (iy - middle) * options.spacing + 0.02 * dy,
                             0.75 + iz * options.spacing};
-        add_body(*body_shape, start_pose(position, random.tilt(0.2), before_turn.principal), mass, inertia);
+        add_body(*body_shape, start_pose(position, random.tilt(0.2)), mass, inertia);
         top = std::max(top, position.z + 1);
     }
     add_body(*ground_shape, btTransform::getIdentity(), 0, btVector3(0, 0, 0));
@@ -275,6 +253,9 @@ std::span<const Contact> Avalanche::contacts() const {
 }
 const StepStats& Avalanche::stats() const {
     return state_->dispatcher.scene().stats();
+}
+const Scene& Avalanche::scene() const {
+    return state_->dispatcher.scene();
 }
 const bullet::DispatcherStats& Avalanche::manifold_stats() const {
     return state_->dispatcher.stats();

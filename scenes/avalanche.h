@@ -29,10 +29,10 @@ struct AvalancheOptions {
     double friction = 0.6;
     Settings settings; ///< of RayContact
     bullet::ManifoldSettings manifolds;
-    int iterations = 20; ///< of the solver
+    int iterations = 20;                         ///< of the solver
     bullet::Bounds bounds = bullet::Bounds::box; ///< what the broad phase sees; the paper's pair counts go with boxes
     double slop = 0.005; ///< metres a contact may stay deep: rays see only what penetrates, so bodies rest there
-    double erp = 0.2;    ///< part of the remaining depth undone a step, by positions and not by speed
+    double erp = 0.3;    ///< part of the remaining depth undone a step, by positions and not by speed
     double linear_damping = 0, angular_damping = 0; ///< part of the speed lost in a second
     std::uint32_t expected_steps = 600;             ///< the frames kept for pictures are spread over these
     std::uint32_t frames = 8;
@@ -64,8 +64,9 @@ public:
     std::uint32_t steps() const;               ///< done so far
     std::span<const Contact> contacts() const; ///< of the last step; body ids count from 0, the ground is the last
     const StepStats& stats() const;            ///< of the last step
+    const Scene& scene() const;                ///< poses and pairs of the last step, as contacts() came from them
     const bullet::DispatcherStats& manifold_stats() const;
-    Pose pose(std::uint32_t body) const; ///< body frame: principal axes at the centre of mass
+    Pose pose(std::uint32_t body) const; ///< body frame: the model's, z up, at the centre of mass
     std::uint32_t body_count() const;    ///< without the ground
     AvalancheHealth health() const;
     std::string hash() const; ///< ContactHash of all steps so far

@@ -6,6 +6,7 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 namespace raycontact::bullet {
 
@@ -22,31 +23,40 @@ private:
     ShapeCache& shapes_;
 };
 
+/// Holds an empty manifold as long as it lives: Bullet asks a result's manifold which body comes first.
 class QueryAlgorithm final : public btCollisionAlgorithm {
 public:
-    QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries)
-        : btCollisionAlgorithm(info), queries_(queries) {}
+    QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries,
+                   const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b)
+        : btCollisionAlgorithm(info), queries_(queries),
+          manifold_(m_dispatcher->getNewManifold(a.getCollisionObject(), b.getCollisionObject())) {}
+    ~QueryAlgorithm() override { m_dispatcher->releaseManifold(manifold_); }
+    QueryAlgorithm(const QueryAlgorithm&) = delete;
+    QueryAlgorithm& operator=(const QueryAlgorithm&) = delete;
+
     void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
                           btManifoldResult* result) override {
+        result->setPersistentManifold(manifold_);
         queries_.run(*a, *b, *result);
     }
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                    btManifoldResult*) override {
         return btScalar(1);
     }
-    void getAllContactManifolds(btManifoldArray&) override {}
+    void getAllContactManifolds(btManifoldArray& out) override { out.push_back(manifold_); }
 
 private:
     Queries& queries_;
+    btPersistentManifold* manifold_;
 };
 
 struct QueryCreate final : btCollisionAlgorithmCreateFunc {
     explicit QueryCreate(Queries& q) : queries(q) {}
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                   const btCollisionObjectWrapper*,
-                                                   const btCollisionObjectWrapper*) override {
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override {
         void* place = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(QueryAlgorithm));
-        return new (place) QueryAlgorithm(info, queries);
+        return new (place) QueryAlgorithm(info, queries, *a, *b);
     }
     Queries& queries;
 };

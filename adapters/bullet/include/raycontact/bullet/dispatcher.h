@@ -15,7 +15,7 @@ struct ManifoldSettings {
     /// A pair's contacts are grouped into patches, one manifold each: normals within this cosine of the patch's ...
     btScalar patch_cosine = btScalar(0.8);
     /// ... and points within this part of the smaller body's box diagonal from the patch's centre.
-    btScalar patch_reach = btScalar(0.5);
+    btScalar patch_reach = btScalar(0.25);
     /// A point whose contact is gone lives on for this many steps while its surfaces stay within the manifold's
     /// breaking threshold: rays see only what penetrates, and a resting body must not lose its support in between.
     int keep_steps = 8;

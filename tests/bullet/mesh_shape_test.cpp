@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "test_world.h"
+
+#include <scenes/models/model.h>
+#include <scenes/random.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace raycontact::test {
+namespace {
+
+struct Collect : btTriangleCallback {
+    std::set<int> seen;
+    void processTriangle(btVector3*, int, int index) override { EXPECT_TRUE(seen.insert(index).second); }
+};
+
+TEST(MeshShape, BoxHoldsEveryVertexAndFitsSnugly) {
+    const auto big = Shape::make(scenes::scene_model("torus", 6000).mesh); // more vertices than are looked at singly
+    scenes::Random random(5);
+    for (const auto& shape : {torus(), big}) {
+        for (const auto bounds : {bullet::Bounds::vertices, bullet::Bounds::box}) {
+            const bullet::MeshShape mesh(shape, bounds);
+            for (int i = 0; i < 50; ++i) {
+                const auto number = [&] { return btScalar(random.symmetric()); };
+                const btTransform pose(btQuaternion(number(), number(), number(), number()).normalized(),
+                                       btVector3(number(), number(), number()));
+                btVector3 low, high, least(9, 9, 9), most(-9, -9, -9);
+                mesh.getAabb(pose, low, high);
+                for (const Vec3& v : shape->vertices()) {
+                    const btVector3 p = pose(btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z)));
+                    least.setMin(p);
+                    most.setMax(p);
+                }
+                for (int k = 0; k < 3; ++k) {
+                    EXPECT_LE(low[k], least[k] + btScalar(1e-6));
+                    EXPECT_GE(high[k], most[k] - btScalar(1e-6));
+                    if (bounds == bullet::Bounds::vertices) {
+                        EXPECT_LT(least[k] - low[k], btScalar(0.08));
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(MeshShape, GivesEachTriangleInABoxOnce) {
+    const bullet::MeshShape mesh(torus());
+    Collect all, some;
+    mesh.processAllTriangles(&all, btVector3(-9, -9, -9), btVector3(9, 9, 9));
+    EXPECT_EQ(all.seen.size(), torus()->triangles().size());
+
+    const btVector3 low(0, btScalar(-0.3), btScalar(-0.1)), high(btScalar(0.5), btScalar(0.3), btScalar(0.2));
+    mesh.processAllTriangles(&some, low, high);
+    std::set<int> expected;
+    for (std::size_t t = 0; t < torus()->triangles().size(); ++t) {
+        btVector3 a(9, 9, 9), b(-9, -9, -9);
+        for (const std::uint32_t v : torus()->triangles()[t]) {
+            const Vec3& p = torus()->vertices()[v];
+            a.setMin(btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z)));
+            b.setMax(btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z)));
+        }
+        bool overlap = true;
+        for (int k = 0; k < 3; ++k) overlap = overlap && a[k] <= high[k] && low[k] <= b[k];
+        if (overlap) expected.insert(int(torus()->triangle_index()[t]));
+    }
+    EXPECT_EQ(some.seen, expected);
+    EXPECT_GT(expected.size(), 20u);
+    EXPECT_LT(expected.size(), torus()->triangles().size());
+}
+
+TEST(MeshShape, BulletTakesItForAConcaveShape) {
+    const bullet::MeshShape mesh(torus());
+    EXPECT_TRUE(mesh.isConcave());
+    EXPECT_FALSE(mesh.isConvex());
+    EXPECT_EQ(mesh.getMargin(), btScalar(0));
+}
+
+} // namespace
+} // namespace raycontact::test

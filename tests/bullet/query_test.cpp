@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays, sweeps and contact tests of btCollisionWorld against our shape.
+#include "test_world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace raycontact::test {
+namespace {
+
+struct Found : btCollisionWorld::ContactResultCallback {
+    int count = 0;
+    btScalar deepest = 0;
+    btVector3 normal{0, 0, 0};
+    const btCollisionObject* first = nullptr;
+    btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper* a, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        ++count;
+        if (p.getDistance() < deepest) {
+            deepest = p.getDistance();
+            normal = p.m_normalWorldOnB;
+            first = a->getCollisionObject();
+        }
+        return 0;
+    }
+};
+
+TEST(Query, RayHitsTheMesh) {
+    TestWorld w;
+    const btRigidBody& body = w.add_mesh(table(), 0, at(0, 0, 0));
+    const btVector3 from(btScalar(0.05), btScalar(0.02), 3), to(btScalar(0.05), btScalar(0.02), -3);
+    btCollisionWorld::ClosestRayResultCallback hit(from, to);
+    w.world.rayTest(from, to, hit);
+    ASSERT_TRUE(hit.hasHit());
+    EXPECT_EQ(hit.m_collisionObject, &body);
+    EXPECT_NEAR(double(hit.m_hitPointWorld.z()), 0.4, 1e-5);
+    EXPECT_NEAR(double(hit.m_hitNormalWorld.z()), 1, 1e-5);
+    // Between the legs, under the top: nothing.
+    const btVector3 side0(-3, 0, btScalar(-0.2)), side1(3, 0, btScalar(-0.2));
+    btCollisionWorld::ClosestRayResultCallback miss(side0, side1);
+    w.world.rayTest(side0, side1, miss);
+    EXPECT_FALSE(miss.hasHit());
+}
+
+TEST(Query, SweepStopsAtTheMesh) {
+    TestWorld w;
+    w.add_mesh(table(), 0, at(0, 0, 0));
+    const btSphereShape ball(btScalar(0.1));
+    const btVector3 from(0, 0, 3), to(0, 0, -3);
+    btCollisionWorld::ClosestConvexResultCallback hit(from, to);
+    w.world.convexSweepTest(&ball, at(0, 0, 3), at(0, 0, -3), hit);
+    ASSERT_TRUE(hit.hasHit());
+    EXPECT_NEAR(3 - 6 * double(hit.m_closestHitFraction), 0.5, 0.01);
+}
+
+TEST(Query, ContactPairTestOfTwoMeshes) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(table(), 0, at(0, 0, 0.39));
+    Found found, other;
+    w.world.contactPairTest(&high, &low, found);
+    EXPECT_EQ(found.count, 16); // four feet of four vertices
+    EXPECT_NEAR(double(found.deepest), -0.01, 1e-5);
+    EXPECT_NEAR(std::fabs(double(found.normal.z())), 1, 1e-5);
+    EXPECT_EQ(found.normal.z() > 0, found.first == &high); // from B to A
+    w.world.contactTest(&high, other);
+    EXPECT_EQ(other.count, 16);
+}
+
+TEST(Query, ContactPairTestWithPlaneBothWays) {
+    TestWorld w;
+    btRigidBody& plane = w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, at(0, 0, 0));
+    btRigidBody& mesh = w.add_mesh(table(), 0, at(0, 0, 0.38));
+    for (const bool swapped : {false, true}) {
+        Found found;
+        w.world.contactPairTest(swapped ? &plane : &mesh, swapped ? &mesh : &plane, found);
+        EXPECT_EQ(found.count, 16);
+        EXPECT_NEAR(double(found.deepest), -0.02, 1e-5);
+        EXPECT_EQ(found.normal.z() > 0, found.first == &mesh);
+    }
+}
+
+TEST(Query, ContactTestWithSphere) {
+    TestWorld w;
+    btRigidBody& mesh = w.add_mesh(table(), 0, at(0, 0, 0));
+    btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.2)), 0, at(0, 0, 0.59));
+    Found found;
+    w.world.contactPairTest(&mesh, &ball, found);
+    EXPECT_GT(found.count, 0);
+    EXPECT_NEAR(double(found.deepest), -0.01, 2e-3);
+}
+
+} // namespace
+} // namespace raycontact::test

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies and shapes come and go while others touch them; run under AddressSanitizer too.
+#include "test_world.h"
+
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+#include <raycontact/error.h>
+
+#include <gtest/gtest.h>
+
+namespace raycontact::test {
+namespace {
+
+TEST(Removal, LeavesNoManifoldAndNoBody) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(-0.01)), 0, at(0, 0, 0));
+    for (int i = 0; i < 6; ++i) w.add_mesh(table(), 5, at(0.3 * (i % 2), 0.2 * (i % 3), 0.45 + 0.7 * i));
+    w.steps(60);
+    EXPECT_GT(w.touching(), 3);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 7u);
+    for (int i = 0; i < 6; ++i) {
+        const btRigidBody* gone = w.bodies.back().get();
+        w.remove(*w.bodies.back());
+        for (int k = 0; k < w.dispatcher.getNumManifolds(); ++k) {
+            EXPECT_NE(w.dispatcher.getManifoldByIndexInternal(k)->getBody0(), gone);
+            EXPECT_NE(w.dispatcher.getManifoldByIndexInternal(k)->getBody1(), gone);
+        }
+        w.steps(5);
+    }
+    EXPECT_EQ(w.dispatcher.getNumManifolds(), 0);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 0u); // the ground has nobody to meet
+}
+
+TEST(Removal, BodiesComeBack) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    for (int i = 0; i < 20; ++i) {
+        w.add_mesh(table(), 5, at(0.1 * i, 0, 0.41));
+        w.steps(7);
+        if (i % 3 != 0) w.remove(*w.bodies[1 + static_cast<std::size_t>(i) % (w.bodies.size() - 1)]);
+    }
+    for (const auto& body : w.bodies) EXPECT_GT(double(body->getWorldTransform().getOrigin().z()), -0.6);
+}
+
+TEST(Removal, PinnedBodiesKeepTheirIds) {
+    TestWorld w;
+    btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 3));
+    EXPECT_EQ(w.dispatcher.add_body(body), 0u);
+    EXPECT_EQ(w.dispatcher.add_body(ground), 1u);
+    w.steps(120);
+    ASSERT_FALSE(w.dispatcher.scene().contacts().empty());
+    for (const Contact& c : w.dispatcher.scene().contacts()) {
+        EXPECT_EQ(c.body_a, 0u);
+        EXPECT_EQ(c.body_b, 1u);
+        EXPECT_GT(c.normal[2], -1.01f);
+        EXPECT_LT(c.normal[2], -0.99f); // from the table to the ground
+    }
+    w.world.removeRigidBody(&body);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 2u);
+    w.dispatcher.remove_body(body);
+    w.dispatcher.remove_body(ground);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 0u);
+    const btSphereShape ball(1);
+    btCollisionObject sphere;
+    sphere.setCollisionShape(const_cast<btSphereShape*>(&ball));
+    EXPECT_THROW(w.dispatcher.add_body(sphere), InputError);
+}
+
+TEST(Removal, ShapeReplacedWhileTouching) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.4));
+    w.steps(30);
+    EXPECT_EQ(w.dispatcher.stats().pairs, 1u);
+    body.setCollisionShape(
+        &w.keep(std::make_unique<btBoxShape>(btVector3(btScalar(0.4), btScalar(0.4), btScalar(0.4)))));
+    w.steps(60);
+    EXPECT_EQ(w.dispatcher.stats().pairs, 0u);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.4, 0.05);
+    body.setCollisionShape(&w.keep(std::make_unique<bullet::MeshShape>(torus())));
+    w.steps(120);
+    EXPECT_EQ(w.dispatcher.stats().pairs, 1u);
+    btVector3 low, high;
+    body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
+    EXPECT_NEAR(double(low.z()), 0, 0.03);
+}
+
+TEST(Removal, ChildrenAddedAndRemovedWhileTouching) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    auto made = std::make_unique<btCompoundShape>();
+    btCompoundShape& compound = *made;
+    auto& mesh = w.keep(std::make_unique<bullet::MeshShape>(table()));
+    auto& ball = w.keep(std::make_unique<btSphereShape>(btScalar(0.2)));
+    compound.addChildShape(at(-0.6, 0, 0), &mesh);
+    compound.addChildShape(at(0.6, 0, 0), &mesh);
+    compound.addChildShape(at(0, 0, -0.2), &ball);
+    const btRigidBody& body = w.add(std::move(made), 10, at(0, 0, 0.42));
+    w.steps(60);
+    EXPECT_EQ(w.dispatcher.stats().mesh_pairs, 2u);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 3u);
+    compound.removeChildShapeByIndex(0);
+    w.steps(1);
+    EXPECT_EQ(w.dispatcher.stats().mesh_pairs, 1u);
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 2u);
+    compound.addChildShape(at(-0.6, 0, 0), &mesh);
+    w.steps(120);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.4, 0.03);
+}
+
+TEST(Removal, MeshChangedInPlaceIsRefreshed) {
+    const float h = 2;
+    std::vector<btVector3> vertices{{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
+    const std::vector<int> indices{0, 1, 2, 0, 2, 3};
+    btTriangleIndexVertexArray mesh(2, const_cast<int*>(indices.data()), 3 * int(sizeof(int)), 4, &vertices[0][0],
+                                    int(sizeof(btVector3)));
+    TestWorld w;
+    auto shape = std::make_unique<btBvhTriangleMeshShape>(&mesh, false, btVector3(-9, -9, -9), btVector3(9, 9, 9));
+    btBvhTriangleMeshShape& sheet = *shape;
+    btRigidBody& ground = w.add(std::move(shape), 0, at(0, 0, 0));
+    const btRigidBody& body = w.add_mesh(table(), 5, at(0.1, 0, 0.41));
+    w.steps(60);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.4, 0.02);
+    for (btVector3& v : vertices) v.setZ(btScalar(0.05));
+    sheet.refitTree(btVector3(-9, -9, -9), btVector3(9, 9, 9));
+    w.world.updateSingleAabb(&ground);
+    w.dispatcher.refresh(ground);
+    w.steps(120);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.45, 0.02);
+}
+
+TEST(Removal, PoseNotFiniteIsNamed) {
+    TestWorld w;
+    btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.4));
+    w.dispatcher.add_body(ground);
+    w.dispatcher.add_body(body);
+    w.steps(2);
+    btTransform broken = at(0, 0, 0.4);
+    broken.getBasis()[0][0] = btScalar(3); // sheared, so boxes stay finite and the pair alive
+    body.setWorldTransform(broken);
+    EXPECT_THROW(w.world.performDiscreteCollisionDetection(), InputError);
+    body.setWorldTransform(at(0, 0, 0.4));
+    EXPECT_NO_THROW(w.world.performDiscreteCollisionDetection());
+    w.dispatcher.remove_body(body);
+    w.dispatcher.remove_body(ground);
+}
+
+} // namespace
+} // namespace raycontact::test

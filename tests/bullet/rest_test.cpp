@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every combination that Bullet would let fall through in silence, or that falls through to Bullet: bodies must rest.
+#include "test_world.h"
+
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+
+#include <gtest/gtest.h>
+
+namespace raycontact::test {
+namespace {
+
+/// Where Bullet's own algorithms make the contacts, one manifold of four points serves a whole mesh and a ball rolls
+/// on: such bodies are never as still as on RayContact's contacts.
+constexpr double still = 0.05, by_bullet = 0.2; // m/s
+
+/// Lets the body fall and settle; its lowest point must then stay at the surface's height.
+void expect_rest(TestWorld& w, const btRigidBody& body, double surface, double tolerance = 0.02, double speed = still) {
+    w.steps(180);
+    for (int i = 0; i < 60; ++i) {
+        w.steps(1);
+        EXPECT_LT(double(body.getLinearVelocity().length()), speed) << "step " << i;
+    }
+    btVector3 low, high;
+    body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
+    EXPECT_NEAR(double(low.z()), surface, tolerance);
+    EXPECT_GT(w.touching(), 0);
+}
+
+std::unique_ptr<btTriangleMesh> sheet(double half) {
+    auto mesh = std::make_unique<btTriangleMesh>();
+    const btScalar h = btScalar(half);
+    for (int i = -2; i < 2; ++i) {
+        for (int j = -2; j < 2; ++j) {
+            const btScalar x = btScalar(i) * h / 2, y = btScalar(j) * h / 2, s = h / 2;
+            mesh->addTriangle(btVector3(x, y, 0), btVector3(x + s, y, 0), btVector3(x + s, y + s, 0));
+            mesh->addTriangle(btVector3(x, y, 0), btVector3(x + s, y + s, 0), btVector3(x, y + s, 0));
+        }
+    }
+    return mesh;
+}
+
+std::unique_ptr<btTriangleMesh> bullet_mesh(const Mesh& mesh) {
+    auto out = std::make_unique<btTriangleMesh>();
+    const auto v = [&](std::uint32_t i) {
+        const Vec3& p = mesh.vertices[i];
+        return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
+    };
+    for (const auto& t : mesh.triangles) out->addTriangle(v(t[0]), v(t[1]), v(t[2]));
+    return out;
+}
+
+TEST(Rest, OnOurMesh) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);
+    EXPECT_EQ(w.dispatcher.stats().mesh_pairs, 1u);
+}
+
+TEST(Rest, OnPlane) {
+    TestWorld w;
+    w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0.25)), 0, at(0, 0, -0.25));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);
+}
+
+TEST(Rest, TorusOnTiltedPlaneObject) {
+    TestWorld w;
+    // The plane's own normal points along x; its object turns it up.
+    btTransform pose = at(0, 0, 0);
+    pose.setRotation(btQuaternion(btVector3(0, 1, 0), -SIMD_HALF_PI));
+    w.add(std::make_unique<btStaticPlaneShape>(btVector3(1, 0, 0), btScalar(0)), 0, pose);
+    expect_rest(w, w.add_mesh(torus(), 5, at(0, 0, 0.8)), 0);
+}
+
+TEST(Rest, OnBulletsBox) {
+    TestWorld w;
+    w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.5))), 0, at(0, 0, -0.5));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0, 0.02, by_bullet);
+    EXPECT_EQ(w.dispatcher.stats().pairs, 0u); // Bullet's own algorithm serves it
+}
+
+TEST(Rest, OnHeightField) {
+    const std::vector<btScalar> heights(11 * 11, btScalar(0));
+    for (const bool flip : {false, true}) {
+        TestWorld w;
+        w.add(std::make_unique<btHeightfieldTerrainShape>(11, 11, heights.data(), btScalar(-1), btScalar(1), 2, flip),
+              0, at(0, 0, 0));
+        expect_rest(w, w.add_mesh(table(), 5, at(0.03, 0.07, 0.6)), 0);
+    }
+}
+
+TEST(Rest, OnScaledHeightField) {
+    std::vector<btScalar> heights(9 * 9, btScalar(0.5));
+    TestWorld w;
+    auto field = std::make_unique<btHeightfieldTerrainShape>(9, 9, heights.data(), btScalar(-1), btScalar(1), 2, false);
+    field->setLocalScaling(btVector3(btScalar(0.7), btScalar(0.7), btScalar(0.4)));
+    w.add(std::move(field), 0, at(0, 0, 0));
+    expect_rest(w, w.add_mesh(table(), 5, at(0.03, 0.07, 0.8)), 0.2);
+}
+
+TEST(Rest, OnCompoundOfBoxes) {
+    TestWorld w;
+    auto compound = std::make_unique<btCompoundShape>();
+    btBoxShape& box = w.keep(std::make_unique<btBoxShape>(btVector3(1, 2, btScalar(0.5))));
+    compound->addChildShape(at(-1, 0, -0.5), &box);
+    compound->addChildShape(at(1, 0, -0.5), &box);
+    w.add(std::move(compound), 0, at(0, 0, 0));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0, 0.02, by_bullet);
+}
+
+TEST(Rest, OnCompoundOfMeshAndBox) {
+    TestWorld w;
+    auto compound = std::make_unique<btCompoundShape>();
+    auto& mesh = w.keep(std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(2, 4, 1))));
+    auto& box = w.keep(std::make_unique<btBoxShape>(btVector3(1, 2, btScalar(0.5))));
+    compound->addChildShape(at(-1, 0, -0.5), &mesh);
+    compound->addChildShape(at(1, 0, -0.5), &box);
+    w.add(std::move(compound), 0, at(0, 0, 0));
+    const btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.6));
+    expect_rest(w, body, 0, 0.02, by_bullet);
+    EXPECT_LT(body.getWorldTransform().getBasis()[2].z(), btScalar(1.01)); // and it stands level: both children carry
+    EXPECT_GT(body.getWorldTransform().getBasis()[2].z(), btScalar(0.999));
+}
+
+TEST(Rest, OnPlaneInsideCompound) {
+    TestWorld w;
+    auto compound = std::make_unique<btCompoundShape>();
+    auto& plane = w.keep(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)));
+    compound->addChildShape(at(0, 0, 0.5), &plane);
+    w.add(std::move(compound), 0, at(0, 0, -0.5));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);
+}
+
+TEST(Rest, MovingCompoundOfMeshesOnMeshAndPlane) {
+    for (const bool plane : {false, true}) {
+        TestWorld w;
+        if (plane)
+            w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, at(0, 0, 0));
+        else
+            w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+        auto compound = std::make_unique<btCompoundShape>();
+        auto& mesh = w.keep(std::make_unique<bullet::MeshShape>(table()));
+        compound->addChildShape(at(-0.6, 0, 0), &mesh);
+        compound->addChildShape(at(0.6, 0, 0), &mesh);
+        expect_rest(w, w.add(std::move(compound), 10, at(0, 0, 0.6)), 0);
+    }
+}
+
+TEST(Rest, OnBvhTriangleMesh) {
+    const auto triangles = sheet(3);
+    TestWorld w;
+    w.add(std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true), 0, at(0, 0, 0));
+    expect_rest(w, w.add_mesh(table(), 5, at(0.03, 0.07, 0.6)), 0);
+    EXPECT_EQ(w.dispatcher.stats().mesh_pairs, 1u);
+}
+
+TEST(Rest, OnScaledBvhTriangleMesh) {
+    const auto triangles = bullet_mesh(box_mesh(3, 3, 1));
+    TestWorld w;
+    auto& base = w.keep(std::make_unique<btBvhTriangleMeshShape>(triangles.get(), true));
+    w.add(std::make_unique<btScaledBvhTriangleMeshShape>(&base, btVector3(2, 2, btScalar(0.5))), 0, at(0, 0, -0.25));
+    expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);
+}
+
+TEST(Rest, GImpactOnOursOnPlaneAndOnGImpact) {
+    const auto triangles = bullet_mesh(table_mesh());
+    const auto ground = bullet_mesh(box_mesh(6, 6, 1));
+    for (int kind = 0; kind < 3; ++kind) {
+        TestWorld w;
+        if (kind == 0) w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+        if (kind == 1) w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, at(0, 0, 0));
+        if (kind == 2) {
+            auto shape = std::make_unique<btGImpactMeshShape>(ground.get());
+            shape->updateBound();
+            w.add(std::move(shape), 0, at(0, 0, -0.5));
+        }
+        auto shape = std::make_unique<btGImpactMeshShape>(triangles.get());
+        shape->setLocalScaling(btVector3(1, 1, btScalar(0.5)));
+        shape->setMargin(0);
+        shape->updateBound();
+        expect_rest(w, w.add(std::move(shape), 5, at(0, 0, 0.4)), 0);
+        EXPECT_EQ(w.dispatcher.stats().pairs, 1u);
+    }
+}
+
+TEST(Rest, SphereAndBoxOnOurs) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    const btRigidBody& sphere = w.add(std::make_unique<btSphereShape>(btScalar(0.3)), 2, at(-1, 0, 0.5));
+    const btVector3 half(btScalar(0.3), btScalar(0.3), btScalar(0.3));
+    const btRigidBody& box = w.add(std::make_unique<btBoxShape>(half), 2, at(1, 0, 0.5));
+    expect_rest(w, sphere, 0, 0.02, by_bullet);
+    expect_rest(w, box, 0, 0.02, by_bullet);
+}
+
+TEST(Rest, SphereOnMovingMesh) {
+    TestWorld w;
+    w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)), 0, at(0, 0, 0));
+    w.add_mesh(table(), 20, at(0, 0, 0.41));
+    expect_rest(w, w.add(std::make_unique<btSphereShape>(btScalar(0.2)), 1, at(0, 0, 1.1)), 0.8, 0.03, by_bullet);
+}
+
+TEST(Rest, StackOfTables) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    w.add_mesh(table(), 5, at(0, 0, 0.45));
+    w.add_mesh(table(), 5, at(0.05, 0.02, 1.3));
+    expect_rest(w, w.add_mesh(table(), 5, at(0.02, 0.06, 2.15)), 1.6);
+}
+
+TEST(Rest, UnsupportedPairIsCounted) {
+    /// A user's own concave shape: Bullet itself has nothing for it against a mesh.
+    struct Strange : btStaticPlaneShape {
+        Strange() : btStaticPlaneShape(btVector3(0, 0, 1), 0) { m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE; }
+    };
+    TestWorld w;
+    w.add(std::make_unique<Strange>(), 0, at(0, 0, 0));
+    w.add_mesh(table(), 5, at(0, 0, 0.3));
+    w.steps(1);
+    EXPECT_EQ(w.dispatcher.stats().unsupported, 1u);
+}
+
+} // namespace
+} // namespace raycontact::test
