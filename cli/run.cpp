@@ -3,6 +3,7 @@
 
 #include "cli/common_options.h"
 #include "cli/progress.h"
+#include "cli/record.h"
 
 #include <raycontact/error.h>
 #include <report/report.h>
@@ -27,7 +28,7 @@ using raycontact::InputError;
 using namespace raycontact::scenes;
 
 struct RunOptions {
-    std::string scene, out;
+    std::string scene, out, record;
     std::uint32_t steps = 600, bodies = 512;
     std::uint64_t seed = 1;
     bool json = false;
@@ -134,12 +135,15 @@ void run(const RunOptions& options) {
     how.expected_steps = options.steps;
     const auto start = std::chrono::steady_clock::now();
     Avalanche scene(how);
+    Recorder recorder(options.record, scene, options.seed, options.settings);
     Progress progress("avalanche", options.steps);
     for (std::uint32_t i = 0; i < options.steps; ++i) {
         scene.step();
+        recorder.step();
         progress.show(i + 1);
     }
     progress.done();
+    recorder.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
     const Json result = summary(options, scene, wall.count());
@@ -172,6 +176,8 @@ void add_run(CLI::App& app) {
     command->add_option("--seed", options->seed, "of the bodies' small offsets and tilts; same seed, same hash")
         ->type_name("S")
         ->capture_default_str();
+    command->add_option("--record", options->record, "write a recording there: `raycontact replay` and any glTF viewer play it")
+        ->type_name("FILE");
     command->add_option("--out", options->out, "write report.html, pictures and steps.csv there")->type_name("DIR");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     add_common_options(*command, options->settings);

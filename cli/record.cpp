@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/record.h"
+
+#include <recording/writer.h>
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+using namespace raycontact;
+
+struct Recorder::State {
+    std::string file;
+    const scenes::Avalanche& scene;
+    recording::Writer writer;
+};
+
+Recorder::Recorder(const std::string& file, const scenes::Avalanche& scene, std::uint64_t seed,
+                   const Settings& settings) {
+    if (file.empty()) return;
+    const scenes::RunLog& log = scene.log();
+    recording::Info info;
+    info.scene = log.scene;
+    info.seed = seed;
+    info.bodies = scene.body_count();
+    info.dt = log.dt;
+    info.settings = settings;
+    info.mesh_source = log.mesh_source;
+    state_ = std::unique_ptr<State>(new State{file, scene, {file, info}});
+    for (const auto& shape : log.shapes) state_->writer.add_shape(*shape);
+    for (const std::uint32_t shape : log.body_shape) state_->writer.add_body(shape);
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::step() {
+    if (state_) state_->writer.step(state_->scene.scene());
+}
+
+void Recorder::finish() {
+    if (!state_) return;
+    recording::Writer& writer = state_->writer;
+    writer.finish(state_->scene.hash());
+    std::cerr << fmt::format("recording: {}, {:.1f} MB; writing took {:.2f} ms a step and {:.2f} s at the end\n",
+                             state_->file, static_cast<double>(writer.bytes()) / 1e6,
+                             1000 * writer.seconds() / writer.steps(), writer.finish_seconds());
+}

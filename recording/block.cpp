@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <recording/block.h>
+
+#include <xxhash.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <memory>
+#include <new>
+
+namespace raycontact::recording {
+
+namespace {
+
+constexpr std::uint32_t coding_zlib = 1;
+constexpr std::size_t checksum_at = BlockHeader::size - 8;
+constexpr std::uint64_t most_expansion = 1032; // what deflate can reach at best
+
+std::uint64_t checksum_of(std::span<const unsigned char> header, std::span<const unsigned char> padded,
+                          std::uint64_t place) {
+    const std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state(XXH64_createState(), XXH64_freeState);
+    if (!state) throw std::bad_alloc();
+    XXH64_reset(state.get(), place);
+    XXH64_update(state.get(), header.data(), checksum_at);
+    if (!padded.empty()) XXH64_update(state.get(), padded.data(), padded.size());
+    return XXH64_digest(state.get());
+}
+
+// zlib counts in 32 bits.
+uInt piece(std::size_t bytes) {
+    return static_cast<uInt>(std::min<std::size_t>(bytes, 1u << 30));
+}
+
+/// Appends `raw`, compressed, to `to`.
+void deflate_onto(Bytes& to, std::span<const unsigned char> raw, Effort effort) {
+    z_stream stream{};
+    // Residuals are noise with a skewed distribution: runs and Huffman codes find all there is, and fast.
+    const int level = effort == Effort::quick ? 1 : 6;
+    const int strategy = effort == Effort::quick ? Z_RLE : Z_DEFAULT_STRATEGY;
+    if (deflateInit2(&stream, level, Z_DEFLATED, 15, 9, strategy) != Z_OK) throw std::bad_alloc();
+    const std::size_t before = to.size();
+    to.resize(before + deflateBound(&stream, static_cast<uLong>(raw.size())));
+    stream.next_in = const_cast<unsigned char*>(raw.data()); // zlib's type; it only reads
+    stream.next_out = to.data() + before;
+    std::size_t in_left = raw.size(), out_left = to.size() - before;
+    int status = Z_OK;
+    while (status == Z_OK) {
+        stream.avail_in = piece(in_left);
+        stream.avail_out = piece(out_left);
+        const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
+        status = deflate(&stream, in_given == in_left ? Z_FINISH : Z_NO_FLUSH);
+        in_left -= in_given - stream.avail_in;
+        out_left -= out_given - stream.avail_out;
+    }
+    deflateEnd(&stream);
+    if (status != Z_STREAM_END) throw std::runtime_error("recording: zlib could not compress a block");
+    to.resize(to.size() - out_left);
+}
+
+} // namespace
+
+Bytes make_block(BlockType type, std::uint32_t first_step, std::uint32_t step_count, std::span<const unsigned char> raw,
+                 std::uint64_t place, Effort effort) {
+    Bytes block(BlockHeader::size);
+    deflate_onto(block, raw, effort);
+    const std::uint64_t stored = block.size() - BlockHeader::size;
+    block.resize((block.size() + 7) & ~std::size_t{7});
+    Bytes header;
+    put(header, static_cast<std::uint32_t>(type));
+    put(header, coding_zlib);
+    put(header, stored);
+    put(header, static_cast<std::uint64_t>(raw.size()));
+    put(header, first_step);
+    put(header, step_count);
+    put(header, static_cast<std::uint64_t>(
+                    checksum_of(header, std::span<const unsigned char>(block).subspan(BlockHeader::size), place)));
+    std::copy(header.begin(), header.end(), block.begin());
+    return block;
+}
+
+BlockHeader read_block_header(std::span<const unsigned char> bytes) {
+    ByteSource from(bytes);
+    BlockHeader header;
+    header.type = static_cast<BlockType>(from.get<std::uint32_t>());
+    const auto coding = from.get<std::uint32_t>();
+    header.stored = from.get<std::uint64_t>();
+    header.raw = from.get<std::uint64_t>();
+    header.first_step = from.get<std::uint32_t>();
+    header.step_count = from.get<std::uint32_t>();
+    header.checksum = from.get<std::uint64_t>();
+    switch (header.type) {
+    case BlockType::info:
+    case BlockType::shape:
+    case BlockType::bodies:
+    case BlockType::steps:
+    case BlockType::end:
+        break;
+    default:
+        throw Damage("is of no known type");
+    }
+    if (coding != coding_zlib) throw Damage("is coded in a way this version does not know");
+    if (header.stored > UINT32_MAX || header.raw > (header.stored + 1) * most_expansion)
+        throw Damage("has an impossible length");
+    return header;
+}
+
+bool block_is_intact(const BlockHeader& header, std::span<const unsigned char> header_bytes,
+                     std::span<const unsigned char> stored, std::uint64_t place) {
+    return stored.size() == header.padded() && checksum_of(header_bytes, stored, place) == header.checksum;
+}
+
+Bytes unpack_block(const BlockHeader& header, std::span<const unsigned char> header_bytes,
+                   std::span<const unsigned char> stored, std::uint64_t place) {
+    if (!block_is_intact(header, header_bytes, stored, place)) throw Damage("does not match its checksum");
+    Bytes raw(static_cast<std::size_t>(header.raw));
+    z_stream stream{};
+    if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+    stream.next_in = const_cast<unsigned char*>(stored.data()); // zlib's type; it only reads
+    unsigned char nothing = 0;
+    stream.next_out = raw.empty() ? &nothing : raw.data();
+    std::size_t in_left = static_cast<std::size_t>(header.stored), out_left = raw.size();
+    int status = Z_OK;
+    while (status == Z_OK) {
+        stream.avail_in = piece(in_left);
+        stream.avail_out = piece(out_left);
+        const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
+        status = inflate(&stream, Z_NO_FLUSH);
+        in_left -= in_given - stream.avail_in;
+        out_left -= out_given - stream.avail_out;
+    }
+    inflateEnd(&stream);
+    if (status != Z_STREAM_END || in_left != 0 || out_left != 0) throw Damage("cannot be unpacked");
+    return raw;
+}
+
+} // namespace raycontact::recording

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <recording/layout.h>
+
+#include <raycontact/error.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycontact::recording {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Bytes to_bytes(const Json& document) {
+    const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return {text.begin(), text.end()};
+}
+
+} // namespace
+
+Bytes encode_events(std::span<const BodyEvent> events) {
+    Bytes to;
+    for (const BodyEvent& event : events)
+        for (const std::uint32_t word : {event.step, static_cast<std::uint32_t>(event.kind), event.body, event.shape})
+            put(to, word);
+    return to;
+}
+
+void apply_events(std::span<const unsigned char> payload, std::size_t shapes, std::vector<Body>& bodies) {
+    ByteSource from(payload);
+    while (from.left() > 0) {
+        const auto step = from.get<std::uint32_t>(), kind = from.get<std::uint32_t>();
+        const auto id = from.get<std::uint32_t>(), shape = from.get<std::uint32_t>();
+        if (kind == BodyEvent::comes && id == bodies.size() && shape < shapes) {
+            bodies.push_back({shape, step, Body::never});
+        } else if (kind == BodyEvent::goes && id < bodies.size() && bodies[id].end_step == Body::never
+                   && bodies[id].first_step <= step) {
+            bodies[id].end_step = step;
+        } else {
+            throw Damage("has bodies that come or go in a way that cannot be");
+        }
+    }
+}
+
+Bytes encode_info(const Info& info) {
+    return to_bytes({{"format", "raycontact recording"},
+                     {"version", format_version},
+                     {"scene", info.scene},
+                     {"seed", info.seed},
+                     {"bodies", info.bodies},
+                     {"dt", info.dt},
+                     {"method", to_string(info.settings.method)},
+                     {"caster", to_string(info.settings.caster)},
+                     {"direction", to_string(info.settings.direction)},
+                     {"device", info.settings.device},
+                     {"threads", info.settings.threads},
+                     {"mesh_source", info.mesh_source}});
+}
+
+Info decode_info(std::span<const unsigned char> payload) {
+    try {
+        const Json document = Json::parse(payload.begin(), payload.end());
+        Info info;
+        info.scene = document.at("scene").get<std::string>();
+        info.seed = document.at("seed").get<std::uint64_t>();
+        info.bodies = document.at("bodies").get<std::uint32_t>();
+        info.dt = document.at("dt").get<double>();
+        info.settings.method = method_from(document.at("method").get<std::string>());
+        info.settings.caster = caster_from(document.at("caster").get<std::string>());
+        info.settings.direction = direction_from(document.at("direction").get<std::string>());
+        info.settings.device = document.at("device").get<std::string>();
+        info.settings.threads = document.at("threads").get<std::uint32_t>();
+        info.mesh_source = document.at("mesh_source").get<std::string>();
+        if (!std::isfinite(info.dt) || info.dt <= 0) throw Damage("has a time step that is not positive");
+        return info;
+    } catch (const Json::exception&) {
+        throw Damage("does not describe a recording");
+    } catch (const InputError& error) {
+        throw Damage(std::string("has a setting this version does not know (") + error.what() + ")");
+    }
+}
+
+Bytes encode_end(std::uint32_t steps, std::string_view hash) {
+    return to_bytes({{"steps", steps}, {"hash", hash}});
+}
+
+std::string decode_end(std::span<const unsigned char> payload, std::uint32_t steps) {
+    try {
+        const Json document = Json::parse(payload.begin(), payload.end());
+        auto hash = document.at("hash").get<std::string>();
+        if (!is_hash(hash)) throw Damage("has a hash that is none");
+        if (document.at("steps").get<std::uint32_t>() != steps) throw Damage("counts other steps than there are");
+        return hash;
+    } catch (const Json::exception&) {
+        throw Damage("does not end a recording");
+    }
+}
+
+bool is_hash(std::string_view text) {
+    return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+} // namespace raycontact::recording

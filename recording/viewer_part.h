@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <recording/bytes.h>
+
+#include <raycontact/pose.h>
+#include <raycontact/shape.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace raycontact::recording {
+
+// The part of a recording that glTF viewers read: float32, metres, seconds; the recording's z becomes glTF's y.
+
+struct ViewerMesh {
+    std::string name;
+    std::vector<std::array<float, 3>> positions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+ViewerMesh viewer_mesh(const Shape& shape);
+
+struct ViewerBody {
+    std::uint32_t mesh = 0;
+    Pose start;
+};
+
+/// How one body moves; per time of the animation. Empty where it does not.
+struct ViewerTrack {
+    std::vector<std::array<float, 3>> translations;
+    std::vector<std::array<float, 4>> rotations; ///< unit quaternions x, y, z, w; neighbours on the same half sphere
+    std::vector<float> sizes;                    ///< 1 while the body is there, else 0; empty where it always is
+
+    void add(const Pose& pose);
+};
+
+/// Header, JSON chunk and BIN chunk of a GLB file, the lengths right for a file that ends there. `tracks` is empty (a
+/// still picture) or has one entry a body. Throws std::length_error beyond the 4 GiB of a GLB file.
+Bytes viewer_part(std::span<const ViewerMesh> meshes, std::span<const ViewerBody> bodies, std::span<const float> times,
+                  std::span<const ViewerTrack> tracks);
+
+namespace glb {
+constexpr std::uint32_t magic = 0x46546c67, version = 2;        // "glTF"
+constexpr std::uint32_t json = 0x4e4f534a, binary = 0x004e4942; // "JSON", "BIN\0"
+constexpr std::size_t header_bytes = 12, chunk_header_bytes = 8, length_at = 8;
+} // namespace glb
+
+} // namespace raycontact::recording
