@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every kernel by itself on a fixed input, one thread, for each instruction set this processor has; then building
+// shapes and the broad phase. Options are Google Benchmark's: --benchmark_filter=cast --benchmark_repetitions=5 ...
+#include "bench/micro/limits.h"
+#include "bench/micro/pipeline.h"
+#include "bench/micro/visits.h"
+
+#include "contacts/place.h"
+#include "device/cpu/kernel_table.h"
+#include "shape/shape_data.h"
+
+#include <benchmark/benchmark.h>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+
+namespace rb = raycontact::bench;
+namespace rc = raycontact;
+namespace rk = raycontact::kernels;
+
+namespace {
+
+/// What one call of a benchmark's body works through.
+struct Work {
+    std::string item; ///< singular
+    double items = 0;
+    double bytes = 0; ///< read and written, all items together, what lies in one array and is used counted once an item
+    double triangles = 0; ///< ray against triangle tests, where they are worth a figure
+};
+
+void add(const std::string& name, const Work& work, const std::function<void()>& body) {
+    benchmark::RegisterBenchmark(name.c_str(), [work, body](benchmark::State& state) {
+        for (auto _ : state) body();
+        using benchmark::Counter;
+        state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(work.items));
+        state.counters["per_" + work.item] = Counter(work.items, Counter::kIsIterationInvariantRate | Counter::kInvert);
+        if (work.bytes > 0) state.counters["bytes/" + work.item] = Counter(work.bytes / work.items);
+        if (work.triangles > 0)
+            state.counters["triangles"] = Counter(work.triangles, Counter::kIsIterationInvariantRate);
+    });
+}
+
+void add_kernels(rb::Pipeline& on, const rb::Batch& batch, const rb::Visits& visits, std::string_view instruction_set) {
+    const auto name = [&](const char* kernel) {
+        return std::string(kernel) + "/" + batch.name + "/" + std::string(instruction_set);
+    };
+    const double pairs = static_cast<double>(on.ordered_pairs()), blocks = static_cast<double>(on.vertex_blocks()),
+                 rays = static_cast<double>(on.rays()), contacts = static_cast<double>(on.contacts()),
+                 elements = static_cast<double>(on.elements()), scan_blocks = static_cast<double>(on.scan_blocks()),
+                 basic_rays = static_cast<double>(on.basic_rays());
+    const double pair = sizeof(rk::OrderedPair), header = sizeof(rk::ShapeHeader);
+    const bool small = batch.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+    const double cluster_blocks = visits.cluster_blocks * sizeof(rk::ClusterBlock);
+    const double vertex = 7 * sizeof(float);
+    const double ray = sizeof(rk::Ray) + pair + header + vertex + sizeof(rk::Hit);
+    const double all_blocks = batch.shape->data().header.triangle_block_count * double(sizeof(rk::TriangleBlock));
+
+    add(name("count_clusters"), {"pair", pairs, pairs * (pair + header + cluster_blocks + 4 + 8)},
+        [&] { on.count_clusters(); });
+    // A large source is walked again to write what was counted.
+    add(name("write_clusters"),
+        {"block", blocks, pairs * (pair + header + 4 + (small ? 8 : cluster_blocks)) + blocks * sizeof(rk::Cluster)},
+        [&] { on.write_clusters(); });
+    const double block_test = 2 * sizeof(rk::Cluster) + pair + 3 * sizeof(float) * VERTEX_LANES + 2 * 4;
+    add(name("count_rays"), {"block", blocks, blocks * block_test}, [&] { on.count_rays(false); });
+    // Last, so that its answer is the one that stays.
+    add(name("count_rays_grid"), {"block", blocks, blocks * (block_test + header + 4 * VERTEX_LANES)},
+        [&] { on.count_rays(true); });
+    add(name("write_rays"), {"ray", rays, blocks * (sizeof(rk::Cluster) + 4) + rays * sizeof(rk::Ray)},
+        [&] { on.write_rays(); });
+    add(name("cast_rays_bvh"),
+        {"ray", rays,
+         rays * (ray + visits.nodes * sizeof(rk::Node) + visits.triangle_blocks * sizeof(rk::TriangleBlock))},
+        [&] { on.cast_bvh(); });
+    add(name("cast_rays_basic"),
+        {"ray", basic_rays, basic_rays * (ray + all_blocks),
+         basic_rays * static_cast<double>(batch.shape->triangles().size())},
+        [&] { on.cast_basic(); });
+    add(name("count_contacts"), {"ray", rays, rays * (sizeof(rk::Hit) + 2 * 4)}, [&] { on.count_contacts(); });
+    add(name("write_contacts"),
+        {"contact", contacts,
+         rays * sizeof(rk::Hit)
+             + contacts * (sizeof(rk::Ray) + 4 + 4 + 4 + 4 + sizeof(rk::Packed3) + sizeof(rk::LocalContact))},
+        [&] { on.write_contacts(); });
+    add(name("scan_sums"), {"element", elements, elements * 4}, [&] { on.scan_sums(); });
+    add(name("scan_offsets"), {"element", scan_blocks, scan_blocks * 8}, [&] { on.scan_offsets(); });
+    add(name("scan_write"), {"element", elements, elements * 8}, [&] { on.scan_write(); });
+}
+
+void add_host(rc::Executor& executor, const rb::Batch& batch, const std::vector<rk::LocalContact>& contacts) {
+    add("order_pairs/" + batch.name,
+        {"pair", static_cast<double>(batch.pairs.size()),
+         static_cast<double>(batch.pairs.size()) * (2 * sizeof(rc::PlacedBody) + 2 * sizeof(rk::OrderedPair))},
+        [&executor, &batch, ordered = batch.ordered]() mutable {
+            rc::order_pairs(executor, batch.bodies, batch.pairs, ordered);
+        });
+    // The copy belongs to the work: the contacts are sorted where they lie.
+    add("place_contacts/" + batch.name,
+        {"contact", static_cast<double>(contacts.size()),
+         static_cast<double>(contacts.size()) * (2 * sizeof(rk::LocalContact) + sizeof(rc::Contact))},
+        [&executor, &batch, contacts, local = contacts, placed = std::vector<rc::Contact>()]() mutable {
+            local = contacts;
+            rc::place_contacts(executor, rc::Direction::reprojected, batch.bodies, batch.pairs, local, placed);
+        });
+    const double triangles = static_cast<double>(batch.mesh.triangles.size());
+    add("prepare_mesh/" + batch.name, {"triangle", triangles},
+        [&batch] { benchmark::DoNotOptimize(rc::prepare_mesh(batch.mesh)); });
+    add("make_shape/" + batch.name, {"triangle", triangles},
+        [mesh = rc::prepare_mesh(batch.mesh)] { benchmark::DoNotOptimize(rc::Shape::make(mesh)); });
+}
+
+void add_broad_phase(std::size_t count) {
+    // The copy belongs to the work: the boxes are sorted where they lie.
+    add("sweep_and_prune/" + std::to_string(count),
+        {"box", static_cast<double>(count), static_cast<double>(count) * 2 * sizeof(rc::WorldBox)},
+        [boxes = rb::make_boxes(count), sorted = std::vector<rc::WorldBox>(),
+         pairs = std::vector<rc::Pair>()]() mutable {
+            sorted = boxes;
+            rc::SweepAndPrune().find_pairs(sorted, pairs);
+        });
+}
+
+void add_limits() {
+    add("limit/clock", {"cycle", static_cast<double>(rb::spend_cycles(1000))}, [] { rb::spend_cycles(1000); });
+    for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables()) {
+        const std::string_view set = table->instruction_set;
+        add("limit/operations/" + std::string(set), {"operation", static_cast<double>(rb::spend_operations(set, 1000))},
+            [set] { rb::spend_operations(set, 1000); });
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    // Short runs, many of them, resist a busy machine better than long ones; an option given comes later and wins.
+    char min_time[] = "--benchmark_min_time=0.05";
+    std::vector<char*> arguments(argv, argv + argc);
+    arguments.insert(arguments.begin() + 1, min_time);
+    int count = static_cast<int>(arguments.size());
+    arguments.push_back(nullptr);
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+    rc::Executor executor(1);
+    const rb::Batch batches[] = {rb::make_batch(902, 256), rb::make_batch(20000, 32)};
+    std::vector<std::unique_ptr<rb::Pipeline>> pipelines;
+    add_limits();
+    for (const rb::Batch& batch : batches) {
+        std::vector<rk::Hit> expected;
+        for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables()) {
+            auto& on = *pipelines.emplace_back(std::make_unique<rb::Pipeline>(executor, table->instruction_set, batch));
+            const std::vector<rk::Hit> hits = on.host_hits();
+            if (expected.empty()) {
+                expected = hits;
+                const rb::Visits visits = rb::count_visits(batch, on.host_rays());
+                std::fprintf(stderr,
+                             "%s: %zu ordered pairs, %.2f cluster tests each; %zu vertex blocks, %zu rays; a ray meets "
+                             "%.2f nodes, %.2f triangle blocks, %.2f triangles closely; %zu contacts\n",
+                             batch.name.c_str(), on.ordered_pairs(), visits.cluster_blocks, on.vertex_blocks(),
+                             on.rays(), visits.nodes, visits.triangle_blocks, visits.close_looks, on.contacts());
+            }
+            if (std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(rk::Hit)) != 0)
+                throw std::logic_error(std::string(table->instruction_set) + ": other hits than the first set gave");
+            add_kernels(on, batch, rb::count_visits(batch, on.host_rays()), table->instruction_set);
+        }
+        add_host(executor, batch, pipelines.back()->host_contacts());
+    }
+    for (const std::size_t boxes : {512u, 4096u}) add_broad_phase(boxes);
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "raycontact_bench_kernels: %s\n", error.what());
+    return 1;
+}
