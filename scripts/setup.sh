@@ -9,7 +9,8 @@ packages_build=(
     libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev # the program, its scenes and report
 )
 packages_demo=(glmark2-data) # the Stanford bunny
-packages_test=(libgtest-dev libtinyobjloader-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers)
+packages_test=(libgtest-dev libtinyobjloader-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers
+    python3-pip) # brings the CUDA compiler that the kernels are checked with
 packages_all=(clang clang-tidy oclgrind libbenchmark-dev)
 
 say() { printf '== %s\n' "$*" >&2; }
