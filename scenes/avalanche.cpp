@@ -257,9 +257,6 @@ const StepStats& Avalanche::stats() const {
 const Scene& Avalanche::scene() const {
     return state_->dispatcher.scene();
 }
-const Scene& Avalanche::scene() const {
-    return state_->dispatcher.scene();
-}
 const bullet::DispatcherStats& Avalanche::manifold_stats() const {
     return state_->dispatcher.stats();
 }

@@ -65,7 +65,6 @@ public:
     std::span<const Contact> contacts() const; ///< of the last step; body ids count from 0, the ground is the last
     const StepStats& stats() const;            ///< of the last step
     const Scene& scene() const;                ///< poses and pairs of the last step, as contacts() came from them
-    const Scene& scene() const;                ///< poses and pairs of the last step, as contacts() came from them
     const bullet::DispatcherStats& manifold_stats() const;
     Pose pose(std::uint32_t body) const; ///< body frame: the model's, z up, at the centre of mass
     std::uint32_t body_count() const;    ///< without the ground
