@@ -98,7 +98,10 @@ std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& o
             });
         }
     }
-    works.emplace_back("avalanche", [&options] { return avalanche_work(options.avalanche); });
+    works.emplace_back("avalanche", [&options] {
+        return options.recording.empty() ? avalanche_work(options.avalanche)
+                                         : recorded_work(options.recording, options.avalanche);
+    });
     std::vector<std::string> names;
     for (const auto& work : works) names.push_back(work.first);
     refuse_unknown("--works", options.works, names);
@@ -158,6 +161,8 @@ void add_peers(CLI::App& bench) {
         ->type_name("NAMES")
         ->delimiter(',');
     command->add_option("--mesh", o->mesh, "approaching pairs of this mesh instead, scaled to 1 m (work \"mesh\")")
+        ->type_name("FILE");
+    command->add_option("--recording", o->recording, "take the avalanche's poses and pairs from there (run --record)")
         ->type_name("FILE");
     add_number(*command, "--bodies", o->avalanche.bodies, "of the avalanche", 1u, 1'000'000u);
     add_number(*command, "--avalanche-first", o->avalanche.first, "first of its steps", 0u, 1'000'000u);

@@ -11,6 +11,7 @@ packages_build=(
 packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers
     python3-pip) # brings the CUDA compiler that the kernels are checked with
+packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact bench peers`, both optional
 packages_all=(clang clang-tidy oclgrind libbenchmark-dev)
 
 say() { printf '== %s\n' "$*" >&2; }

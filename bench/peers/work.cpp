@@ -2,10 +2,12 @@
 #include <bench/peers/work.h>
 
 #include <raycontact/error.h>
+#include <recording/reader.h>
 #include <scenes/avalanche.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -199,6 +201,28 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
         scene.step();
     }
     find_pairs(work);
+    return work;
+}
+
+Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions& options) {
+    recording::Reader reader(file);
+    if (reader.steps() <= options.first)
+        throw InputError(file.string() + ": holds " + std::to_string(reader.steps())
+                         + " steps; ask for an earlier one with --avalanche-first");
+    Work work;
+    work.name = "avalanche";
+    work.shapes = reader.shapes();
+    for (const recording::Body& body : reader.bodies()) work.body_shape.push_back(body.shape);
+    const std::uint32_t end = std::min(reader.steps(), options.first + options.steps);
+    work.source = "recording of " + reader.info().scene + ", " + std::to_string(work.body_shape.size())
+                  + " bodies, steps " + std::to_string(options.first) + " to " + std::to_string(end - 1) + ", every "
+                  + std::to_string(options.stride) + "th; " + reader.info().mesh_source;
+    for (std::uint32_t k = options.first; k < end; k += options.stride) {
+        WorkStep& step = work.steps.emplace_back();
+        reader.read_step(k, step.poses, step.pairs);
+        for (std::size_t body = 0; body < step.poses.size(); ++body)
+            if (!reader.bodies()[body].alive(k)) step.poses[body] = {}; // arbitrary there, and no pair asks for it
+    }
     return work;
 }
 

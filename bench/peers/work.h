@@ -53,8 +53,12 @@ struct AvalancheWorkOptions {
     std::uint32_t stride = 20; ///< of those, every how many are given to the peers
 };
 
-/// Steps of the scene avalanche, simulated here and now.
+/// Steps of the scene avalanche, simulated here and now; its pairs by our own sweep and prune.
 Work avalanche_work(const AvalancheWorkOptions& options);
+
+/// The same steps of a recording of any scene, with the pairs that it holds; `bodies` is not looked at. Throws
+/// InputError for a file that is none or damaged, or that ends before `first`.
+Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions& options);
 
 /// A scene's bodies in one RayContact scene on one thread.
 std::unique_ptr<Scene> make_scene(const Work& work, Caster caster);
