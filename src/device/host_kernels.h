@@ -7,7 +7,7 @@
 namespace raycontact::kernels {
 #include "kernels/types.h"
 namespace prototype {
-#include "device/cpu/product_error.h"
+#include "device/cpu/instruction_set.h"
 
 #include "kernels/kernels.h"
 } // namespace prototype

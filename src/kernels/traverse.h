@@ -28,7 +28,7 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
     GLOBAL const float* RESTRICT far_z = node->bounds[ray->far_plane[2]];
     const float px = ray->raw_origin[0], py = ray->raw_origin[1], pz = ray->raw_origin[2];
     const float ix = ray->inverse[0], iy = ray->inverse[1], iz = ray->inverse[2];
-    uint children = 0u;
+    int hit[NODE_LANES];
     FOR_LANES(k, NODE_LANES) {
         const float nx = (near_x[k] - px) * ix, ny = (near_y[k] - py) * iy, nz = (near_z[k] - pz) * iz;
         const float fx = (far_x[k] - px) * ix, fy = (far_y[k] - py) * iy, fz = (far_z[k] - pz) * iz;
@@ -36,9 +36,9 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
         const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
         const float enter = nxy > nzt ? nxy : nzt;
         const float leave = fxy < fzt ? fxy : fzt;
-        children |= lane_bit(k) & (0u - (uint)(enter <= leave));
+        hit[k] = -(int)(enter <= leave);
     }
-    return children;
+    return pack_eight(hit);
 }
 
 // Stackless: eight bits a level remember the children still to visit, parents are linked (after Barringer and

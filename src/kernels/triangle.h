@@ -111,7 +111,7 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
     const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
     const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
     const float limit = closest->limit;
-    uint lanes = 0u;
+    int hit[TRIANGLE_LANES];
     FOR_LANES(k, TRIANGLE_LANES) {
         const float z0 = az[k] - oz, z1 = bz[k] - oz, z2 = cz[k] - oz;
         const float x0 = (ax[k] - ox) - sx * z0, y0 = (ay[k] - oy) - sy * z0;
@@ -129,8 +129,9 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
         const uint inside = (least >= 0.0f) | (most <= 0.0f);
         const uint ahead = far >= -tolerance * size - volume_tolerance;
         const uint within = far <= limit * size + volume_tolerance;
-        lanes |= lane_bit(k) & (0u - (inside & ahead & within));
+        hit[k] = -(int)(inside & ahead & within);
     }
+    uint lanes = pack_sixteen(hit);
     while (lanes != 0u) {
         const uint lane = lowest_bit(lanes);
         lanes &= lanes - 1u;

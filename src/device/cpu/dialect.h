@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 // The kernels' words in C++. FOR_EACH walks the slice that a thread was given; FOR_LANES promises that lanes do not
 // depend on each other.
@@ -14,7 +17,7 @@ struct Range {
 } // namespace raycontact::kernels
 
 #define KERNEL inline
-#define DEVICE [[maybe_unused]] static inline
+#define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define GLOBAL
 #define RESTRICT __restrict__
 #define RANGE [[maybe_unused]] Range range,

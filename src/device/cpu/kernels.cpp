@@ -3,7 +3,7 @@
 #include "device/cpu/kernel_table.h"
 
 namespace raycontact::kernels::RAYCONTACT_ISA {
-#include "device/cpu/product_error.h"
+#include "device/cpu/instruction_set.h"
 
 #include "kernels/kernels.h"
 } // namespace raycontact::kernels::RAYCONTACT_ISA
