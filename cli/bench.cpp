@@ -14,6 +14,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <unistd.h>
@@ -143,7 +144,10 @@ void bench_growth(const GrowthCommand& command) {
 template <class Number>
 void add_number(CLI::App& command, const std::string& name, Number& value, const std::string& help, Number least,
                 Number most) {
-    command.add_option(name, value, help)->type_name("N")->capture_default_str()->check(CLI::Range(least, most));
+    command.add_option(name, value, help)
+        ->type_name(std::is_integral_v<Number> ? "N" : "METRES")
+        ->capture_default_str()
+        ->check(CLI::Range(least, most));
 }
 
 void add_peers(CLI::App& bench) {
@@ -153,6 +157,7 @@ void add_peers(CLI::App& bench) {
     command->add_option("--out", o->out, "write DIR/<machine>/peers-<date>.csv and .svg")->type_name("DIR");
     add_number(*command, "--steps", o->approach.steps, "steps of the approaching pairs", 1u, 100'000u);
     add_number(*command, "--pairs", o->approach.pairs, "approaching pairs, all in one step", 1u, 10'000u);
+    add_number(*command, "--depth", o->approach.depth, "metres that they are pushed in beyond first touch", 0.0, 0.5);
     add_number(*command, "--runs", o->runs, "of everyone in turn; figures are medians", 1u, 1000u);
     command->add_option("--only", o->only, "who: bvh,basic,gimpact,fcl,ode,embree,rays,embree-rays")
         ->type_name("NAMES")

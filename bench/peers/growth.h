@@ -16,7 +16,8 @@ struct GrowthOptions {
     std::uint32_t threads = 1;
 };
 
-/// The narrow phase of `standard bvh` at one size, a step: medians for bodies, means for triangles.
+/// The narrow phase of `standard bvh` at one size, a step: medians over the steps for bodies, means for
+/// triangles (of each step the fastest of five runs).
 struct GrowthRow {
     std::string part;       ///< "bodies" or "triangles"
     std::uint32_t size = 0; ///< bodies in motion, or triangles of each mesh
