@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Behind a right checksum may still be nonsense: decoders throw Damage, whatever the bytes.
+#include "sample.h"
+
+#include <recording/layout.h>
+#include <recording/shape_codec.h>
+#include <recording/step_codec.h>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace raycontact;
+using namespace raycontact::recording;
+
+namespace {
+
+/// Of changed payloads; how many of them were refused. Anything but Damage ends the test.
+template <class Decode>
+int refused(const Bytes& payload, int rounds, Decode decode) {
+    std::mt19937_64 numbers(17);
+    int count = 0;
+    for (int i = 0; i < rounds; ++i) {
+        Bytes bytes = payload;
+        for (std::uint64_t k = numbers() % 4 + 1; k > 0; --k)
+            bytes[numbers() % bytes.size()] = static_cast<unsigned char>(numbers());
+        if (i % 3 == 0) bytes.resize(numbers() % bytes.size());
+        try {
+            decode(bytes);
+        } catch (const Damage&) {
+            ++count;
+        }
+    }
+    return count;
+}
+
+} // namespace
+
+TEST(Codec, MeshesFromNonsense) {
+    const Sample sample = make_sample(1);
+    const Bytes payload = encode_mesh(remade_mesh(*sample.shapes[0]));
+    EXPECT_NO_THROW(decode_mesh(payload));
+    EXPECT_GT(refused(payload, 3000, [](const Bytes& bytes) { decode_mesh(bytes); }), 1000);
+    EXPECT_THROW(decode_mesh({}), Damage);
+}
+
+TEST(Codec, StepsFromNonsense) {
+    const Sample sample = make_sample(6);
+    const std::vector<BodyId> live{0, 1, 2, 3, 4};
+    StepEncoder encoder;
+    for (std::uint32_t i = 0; i < 6; ++i) encoder.add(live, sample.poses[i], sample.pairs[i]);
+    const Bytes payload = encoder.take();
+    const auto decode = [&](const Bytes& bytes) {
+        StepDecoder decoder;
+        decoder.open(bytes, 6 * 12 * live.size(), sample.bodies.size());
+        std::vector<Pose> poses(sample.bodies.size());
+        for (int i = 0; i < 6; ++i) decoder.next(live, poses);
+        for (const Pair& pair : decoder.pairs()) EXPECT_TRUE(pair.first < pair.second && pair.second < 7);
+    };
+    EXPECT_NO_THROW(decode(payload));
+    EXPECT_GT(refused(payload, 3000, decode), 900);
+
+    // The pairs alone: the first bytes behind the residuals.
+    const Bytes pairs(payload.begin() + 8 * 6 * 12 * 5, payload.end());
+    const auto decode_pairs = [&](const Bytes& bytes) {
+        Bytes whole(payload.begin(), payload.begin() + 8 * 6 * 12 * 5);
+        whole.insert(whole.end(), bytes.begin(), bytes.end());
+        decode(whole);
+    };
+    EXPECT_GT(refused(pairs, 3000, decode_pairs), 1000);
+}
+
+TEST(Codec, EventsAndTextsFromNonsense) {
+    const BodyEvent events[] = {{0, BodyEvent::comes, 0, 1}, {0, BodyEvent::comes, 1, 0}, {4, BodyEvent::goes, 0, 0}};
+    const Bytes payload = encode_events(events);
+    std::vector<Body> bodies;
+    apply_events(payload, 2, bodies);
+    ASSERT_EQ(bodies.size(), 2u);
+    EXPECT_EQ(bodies[0].end_step, 4u);
+    EXPECT_FALSE(bodies[0].alive(4));
+    EXPECT_TRUE(bodies[0].alive(3));
+    const auto decode = [](const Bytes& bytes) {
+        std::vector<Body> list;
+        apply_events(bytes, 2, list);
+    };
+    EXPECT_GT(refused(payload, 1000, decode), 500);
+    EXPECT_GT(refused(encode_info(make_sample(1).info), 1000, [](const Bytes& bytes) { decode_info(bytes); }), 500);
+    EXPECT_GT(refused(encode_end(5, "0123456789abcdef"), 1000, [](const Bytes& bytes) { decode_end(bytes, 5); }), 500);
+}
+
+TEST(Codec, BlocksAreCheckedByTheirPlaceToo) {
+    const Bytes payload{1, 2, 3, 4, 5, 6, 7};
+    const Bytes block = make_block(BlockType::steps, 3, 4, payload, 64, Effort::quick);
+    const std::span<const unsigned char> header_bytes = std::span(block).first(BlockHeader::size);
+    const std::span<const unsigned char> stored = std::span(block).subspan(BlockHeader::size);
+    const BlockHeader header = read_block_header(header_bytes);
+    EXPECT_EQ(header.first_step, 3u);
+    EXPECT_EQ(header.step_count, 4u);
+    EXPECT_EQ(unpack_block(header, header_bytes, stored, 64), payload);
+    EXPECT_THROW(unpack_block(header, header_bytes, stored, 72), Damage);
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorder that is killed leaves every step it had flushed; a reader may look on at any moment.
+#include "sample.h"
+
+#include <raycontact/error.h>
+
+#include <gtest/gtest.h>
+#include <tiny_gltf.h>
+
+#include <csignal>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace raycontact;
+using namespace raycontact::recording;
+
+namespace {
+
+/// A process that records and tells how many steps it has done, a byte each, until it is killed or done.
+class Child {
+public:
+    Child(const Sample& sample, const std::filesystem::path& file, bool finish) {
+        int ends[2];
+        if (pipe(ends) != 0) throw std::runtime_error("pipe");
+        process_ = fork();
+        if (process_ == 0) {
+            close(ends[0]);
+            work(sample, file, finish, ends[1]);
+        }
+        close(ends[1]);
+        from_ = ends[0];
+    }
+    ~Child() {
+        kill();
+        close(from_);
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    /// Waits for one more step; false when there is none.
+    bool step() const {
+        char byte = 0;
+        return read(from_, &byte, 1) == 1;
+    }
+    void kill() {
+        if (process_ <= 0) return;
+        ::kill(process_, SIGKILL);
+        wait();
+    }
+    /// The exit status.
+    int wait() {
+        int status = -1;
+        waitpid(process_, &status, 0);
+        process_ = -1;
+        return status;
+    }
+
+private:
+    [[noreturn]] static void work(const Sample& sample, const std::filesystem::path& file, bool finish, int to) {
+        try {
+            Writer writer(file, sample.info, {5, 1e9, 1u << 20});
+            Feeder feeder(sample, writer);
+            while (feeder.steps() < sample.steps()) {
+                feeder.step();
+                if (write(to, "s", 1) != 1) _exit(3);
+            }
+            if (!finish) pause();
+            writer.finish(sample.hash);
+        } catch (const std::exception&) {
+            _exit(4);
+        }
+        _exit(0);
+    }
+
+    pid_t process_ = -1;
+    int from_ = -1;
+};
+
+} // namespace
+
+TEST(Crash, KeepsEveryFlushedStep) {
+    const Sample sample = make_sample(60);
+    for (const std::uint32_t done : {1u, 4u, 6u, 23u, 41u, 60u}) {
+        const TemporaryFile file;
+        Child child(sample, file.path(), false);
+        for (std::uint32_t i = 0; i < done; ++i) ASSERT_TRUE(child.step());
+        child.kill();
+        Reader reader(file.path());
+        const std::uint32_t flushed = 1 + (done - 1) / 5 * 5;
+        EXPECT_GE(reader.steps(), flushed); // it may have gone on before it died
+        EXPECT_EQ(difference(sample, reader, reader.steps()), "");
+        EXPECT_FALSE(reader.hash().has_value());
+        tinygltf::TinyGLTF loader;
+        tinygltf::Model model;
+        std::string error, warning;
+        EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, file.path().string())) << error;
+    }
+}
+
+TEST(Crash, WholeBlocksBehindTheCommittedOnesCount) {
+    const Sample sample = make_sample(30);
+    const TemporaryFile file;
+    record(sample, file.path(), false);
+    // Died between writing a block and making it part of the chunk: the lengths of an earlier moment, and a torn end.
+    const TemporaryFile earlier;
+    Sample shorter = sample;
+    shorter.poses.resize(21);
+    shorter.pairs.resize(21);
+    record(shorter, earlier.path(), false);
+    std::vector<unsigned char> bytes = bytes_of(file.path());
+    const std::vector<unsigned char> before = bytes_of(earlier.path());
+    const std::size_t side = side_chunk_at(bytes);
+    ASSERT_EQ(side, side_chunk_at(before));
+    std::copy_n(before.begin() + 8, 4, bytes.begin() + 8);
+    std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(side), 4,
+                bytes.begin() + static_cast<std::ptrdiff_t>(side));
+    write_bytes(file.path(), bytes);
+    Reader whole(file.path());
+    EXPECT_EQ(difference(sample, whole, 30), "");
+    bytes.resize(bytes.size() - 9);
+    write_bytes(file.path(), bytes);
+    Reader torn(file.path());
+    EXPECT_EQ(difference(sample, torn, 26), "");
+}
+
+TEST(Crash, AnyMomentIsAGoodOneToLook) {
+    const Sample sample = make_sample(600);
+    const TemporaryFile file;
+    Child child(sample, file.path(), true);
+    ASSERT_TRUE(child.step());
+    std::uint32_t seen = 0, looks = 0;
+    bool ended = false;
+    while (!ended) {
+        Reader reader(file.path());
+        EXPECT_GE(reader.steps(), seen);
+        seen = reader.steps();
+        ASSERT_EQ(difference(sample, reader, seen), "");
+        ended = reader.hash().has_value();
+        ++looks;
+        for (int i = 0; i < 40 && child.step(); ++i) {
+        }
+    }
+    EXPECT_EQ(seen, 600u);
+    EXPECT_GT(looks, 3u);
+    EXPECT_EQ(child.wait(), 0);
+    Reader reader(file.path());
+    EXPECT_EQ(difference(sample, reader, 600), "");
+}
