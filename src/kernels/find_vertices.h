@@ -35,7 +35,7 @@ DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
 
 // Child boxes that may reach into the bounds: no face of either box separates them.
 DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RESTRICT block) {
-    uint lanes = 0u;
+    int hit[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
         const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
@@ -51,14 +51,14 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
         const uint in_target = (x_size <= ex) & (y_size <= ey) & (z_size <= ez);
         const uint in_source = (away_x <= hx + b->source_half_size[0]) & (away_y <= hy + b->source_half_size[1])
                                & (away_z <= hz + b->source_half_size[2]);
-        lanes |= lane_bit(k) & (0u - (in_target & in_source));
+        hit[k] = -(int)(in_target & in_source);
     }
-    return lanes;
+    return pack_sixteen(hit);
 }
 
 typedef struct {
     float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES]; // target frame
-    uint lanes;
+    int inside[VERTEX_LANES];                                // -1 or 0
 } InsideLanes;
 
 // Vertices inside the bounds, exactly as the ray will see them.
@@ -68,19 +68,17 @@ DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL 
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    uint lanes = 0u;
     FOR_LANES(k, VERTEX_LANES) {
         const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
         const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        lanes |= lane_bit(k) & (0u - inside);
+        found.inside[k] = -(int)inside;
         found.x[k] = x;
         found.y[k] = y;
         found.z[k] = z;
     }
-    found.lanes = lanes;
     return found;
 }
 
@@ -91,11 +89,10 @@ DEVICE uint outside_lanes(const InsideLanes* found, const ShapeHeader* target,
     const float scale = target->grid_scale;
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
     const uint size_x = target->grid_size[0], size_y = target->grid_size[1];
-    const uint inside = found->lanes;
     GLOBAL const uint* RESTRICT words = outside_cells + target->grid_first;
-    uint lanes = 0u;
+    int outside[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
-        const bool known = (inside & lane_bit(k)) != 0u;
+        const bool known = found->inside[k] != 0;
         // Other lanes, which may hold NaN, look at the first cell.
         const float px = known ? found->x[k] : low_x, py = known ? found->y[k] : low_y,
                     pz = known ? found->z[k] : low_z;
@@ -103,10 +100,9 @@ DEVICE uint outside_lanes(const InsideLanes* found, const ShapeHeader* target,
         const uint y = (uint)(int)((py - low_y) * scale);
         const uint z = (uint)(int)((pz - low_z) * scale);
         const uint cell = (z * size_y + y) * size_x + x;
-        const uint outside = (words[cell >> 5] >> (cell & 31u)) & 1u;
-        lanes |= lane_bit(k) & (0u - outside);
+        outside[k] = -(int)((words[cell >> 5] >> (cell & 31u)) & 1u);
     }
-    return lanes & inside;
+    return pack_sixteen(outside);
 }
 
 // Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
@@ -211,11 +207,12 @@ KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair
         GLOBAL const OrderedPair* pair = pairs + clusters[i].pair;
         const InsideLanes found = inside_lanes(pair, vertices + clusters[i].vertex_block);
         const ShapeHeader target = shapes[pair->target];
-        uint lanes = found.lanes;
+        const uint inside_mask = pack_sixteen(found.inside);
+        uint lanes = inside_mask;
         if (lanes != 0u && use_grid != 0u && target.grid_size[0] != 0u)
             lanes &= ~outside_lanes(&found, &target, outside_cells);
         clusters[i].lanes = lanes;
-        inside[i] = bit_count(found.lanes);
+        inside[i] = bit_count(inside_mask);
         counts[i] = bit_count(lanes);
     }
 }

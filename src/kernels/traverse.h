@@ -38,10 +38,10 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
         const float leave = fxy < fzt ? fxy : fzt;
         hit[k] = -(int)(enter <= leave);
     }
-    return pack_eight(hit);
+    return pack_sixteen(hit);
 }
 
-// Stackless: eight bits a level remember the children still to visit, parents are linked (after Barringer and
+// Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
 DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, const ShapeHeader* shape,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
@@ -66,7 +66,7 @@ DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, const ShapeHeader*
         }
         if (at == 0u) return closest;
         at = tree[at].parent;
-        children = (uint)(trail & 0xffu);
+        children = (uint)(trail & 0xffffu);
         trail >>= NODE_LANES;
     }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
 #define TRIANGLE_LANES 16
-#define NODE_LANES 8
+#define NODE_LANES 16
 #define VERTEX_LANES 16
 #define CLUSTER_LEVELS 4
-#define NODE_LEVELS 8
+#define NODE_LEVELS 5
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
@@ -18,15 +18,15 @@ typedef struct {
 } TriangleBlock;
 WIRE_SIZE(TriangleBlock, 640);
 
-// Eight child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
+// Sixteen child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
 // lower, bounds[3 + axis] the upper planes. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
 typedef struct {
     float bounds[6][NODE_LANES];
     uint child[NODE_LANES];
     uint parent;
-    uint unused[7];
+    uint unused[15];
 } Node;
-WIRE_SIZE(Node, 256);
+WIRE_SIZE(Node, 512);
 
 // Sixteen vertices that cast rays. direction is the inward normal; exit the distance at which it leaves its own mesh.
 typedef struct {

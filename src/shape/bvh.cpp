@@ -3,6 +3,8 @@
 
 #include "mesh/vector.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -150,11 +152,11 @@ private:
         return static_cast<uint>(shape_.triangle_blocks.size() - 1);
     }
 
-    // Up to eight descendants become the children of one wide node: the largest is opened first, or, to bound the
-    // depth, three levels at once.
+    // Up to sixteen descendants become the children of one wide node: the largest is opened first, or, to bound the
+    // depth, four levels at once.
     std::vector<int> children_of(int branch) const {
         std::vector<int> children{branch};
-        for (int opened = 0; children.size() < NODE_LANES && opened < (balanced_ ? 7 : 64); ++opened) {
+        for (int opened = 0; children.size() < NODE_LANES && opened < NODE_LANES - 1; ++opened) {
             int largest = -1;
             double area = -1;
             for (std::size_t i = 0; i < children.size(); ++i) {
@@ -238,8 +240,9 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> face_normals, double grow
     for (const bool balanced : {false, true}) {
         shape.triangle_blocks.clear();
         shape.nodes.clear();
-        if (Builder(shape, grow, balanced).build(items)) break;
+        if (Builder(shape, grow, balanced).build(items)) return;
     }
+    throw InputError("mesh '" + shape.mesh.name + "': more than 16 million triangles; split it into several meshes");
 }
 
 } // namespace raycontact

@@ -69,8 +69,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
 
 std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
-    if (mesh.triangles.empty())
-        throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
+    if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
     shape.mesh = mesh;
@@ -81,6 +80,8 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     offsets.reserve(shape.points.size());
     for (const Point3f& p : shape.points) offsets.push_back({p.x, p.y, p.z});
     const std::vector<Vec3> normals = face_normals(offsets, shape.mesh.triangles);
+    if (std::all_of(normals.begin(), normals.end(), [](const Vec3& n) { return n == Vec3{}; }))
+        throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
     shape.neighbours = triangle_neighbours(shape.mesh.triangles);
     shape.vertex_normals = angle_weighted_normals(offsets, shape.mesh.triangles, normals);
     for (const Vec3& n : normals)
@@ -93,7 +94,6 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     shape.header.volume_tolerance = static_cast<float>(64 * rounding * edge * edge * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
-    if (shape.nodes.empty()) throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
     shape.exit_distances = measure_exits(shape, normals);

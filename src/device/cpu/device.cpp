@@ -55,8 +55,7 @@ kernels::uint grain_of(KernelId kernel) {
 
 class HostDevice : public Device, private Queue {
 public:
-    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table)
-    {
+    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table) {
         info_.driver = "native, " + std::string(table.instruction_set);
     }
 

@@ -29,12 +29,13 @@ struct Range {
 #endif
 
 namespace raycontact::kernels {
-DEVICE uint lowest_bit(uint bits) { return static_cast<uint>(__builtin_ctz(bits)); }
-DEVICE uint bit_count(uint bits) { return static_cast<uint>(__builtin_popcount(bits)); }
-DEVICE float magnitude_of(float x) { return __builtin_fabsf(x); }
-
-// A table, since narrow instruction sets cannot shift each lane by its own count.
-inline constexpr uint lane_bits[16] = {1,      2,      4,      8,      0x10,   0x20,   0x40,   0x80,
-                                       0x100,  0x200,  0x400,  0x800,  0x1000, 0x2000, 0x4000, 0x8000};
-DEVICE uint lane_bit(int lane) { return lane_bits[lane]; }
+DEVICE uint lowest_bit(uint bits) {
+    return static_cast<uint>(__builtin_ctz(bits));
+}
+DEVICE uint bit_count(uint bits) {
+    return static_cast<uint>(__builtin_popcount(bits));
+}
+DEVICE float magnitude_of(float x) {
+    return __builtin_fabsf(x);
+}
 } // namespace raycontact::kernels

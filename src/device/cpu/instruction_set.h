@@ -16,36 +16,24 @@ DEVICE float product_error(float a, float b, float p) {
 }
 #endif
 
-// A bit for each lane that is not 0: compilers reduce sixteen lanes in eight instructions where one or two do.
-#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+// A bit for each lane that is -1, the others being 0: compilers reduce sixteen lanes in eight instructions where one or
+// two do.
 DEVICE uint pack_sixteen(const int* lanes) {
+#if defined(__AVX512DQ__)
     return _mm512_movepi32_mask(_mm512_loadu_si512(lanes));
-}
-DEVICE uint pack_eight(const int* lanes) {
-    return _mm256_movepi32_mask(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(lanes)));
-}
 #elif defined(__AVX2__)
-DEVICE uint pack_eight(const int* lanes) {
-    return static_cast<uint>(_mm256_movemask_ps(_mm256_loadu_ps(reinterpret_cast<const float*>(lanes))));
-}
-DEVICE uint pack_sixteen(const int* lanes) {
-    return pack_eight(lanes) | pack_eight(lanes + 8) << 8;
-}
+    const auto eight = [](const int* from) {
+        return static_cast<uint>(_mm256_movemask_ps(_mm256_loadu_ps(reinterpret_cast<const float*>(from))));
+    };
+    return eight(lanes) | eight(lanes + 8) << 8;
 #elif defined(__SSE2__)
-DEVICE uint pack_eight(const int* lanes) {
-    const float* bits = reinterpret_cast<const float*>(lanes);
-    return static_cast<uint>(_mm_movemask_ps(_mm_loadu_ps(bits)) | _mm_movemask_ps(_mm_loadu_ps(bits + 4)) << 4);
-}
-DEVICE uint pack_sixteen(const int* lanes) {
-    return pack_eight(lanes) | pack_eight(lanes + 8) << 8;
-}
+    const auto four = [](const int* from) {
+        return static_cast<uint>(_mm_movemask_ps(_mm_loadu_ps(reinterpret_cast<const float*>(from))));
+    };
+    return four(lanes) | four(lanes + 4) << 4 | four(lanes + 8) << 8 | four(lanes + 12) << 12;
 #else
-DEVICE uint pack_eight(const int* lanes) {
     uint bits = 0;
-    for (int k = 0; k < 8; ++k) bits |= lane_bit(k) & static_cast<uint>(lanes[k]);
+    for (int k = 0; k < 16; ++k) bits |= static_cast<uint>(lanes[k]) & (1u << k);
     return bits;
-}
-DEVICE uint pack_sixteen(const int* lanes) {
-    return pack_eight(lanes) | pack_eight(lanes + 8) << 8;
-}
 #endif
+}

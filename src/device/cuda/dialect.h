@@ -20,8 +20,10 @@ DEVICE uint bit_count(uint bits) {
 DEVICE float magnitude_of(float x) {
     return fabsf(x);
 }
-DEVICE uint lane_bit(int lane) {
-    return 1u << lane;
+DEVICE uint pack_sixteen(const int* lanes) {
+    uint bits = 0u;
+    for (int k = 0; k < 16; ++k) bits |= (uint)lanes[k] & (1u << k);
+    return bits;
 }
 
 // What rounding took from p = fl(a * b), exactly; the only fused multiply-add there is.
