@@ -22,21 +22,19 @@ namespace {
 
 /// What one call of a benchmark's body works through.
 struct Work {
-    std::string item; ///< singular
+    std::string item; ///< singular; the label of the line
     double items = 0;
-    double bytes = 0; ///< read and written, all items together, what lies in one array and is used counted once an item
-    double triangles = 0; ///< ray against triangle tests, where they are worth a figure
+    double bytes = 0; ///< an item, read and written; what several items share is counted for each
 };
 
 void add(const std::string& name, const Work& work, const std::function<void()>& body) {
     benchmark::RegisterBenchmark(name.c_str(), [work, body](benchmark::State& state) {
         for (auto _ : state) body();
         using benchmark::Counter;
+        state.SetLabel(work.item);
         state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(work.items));
-        state.counters["per_" + work.item] = Counter(work.items, Counter::kIsIterationInvariantRate | Counter::kInvert);
-        if (work.bytes > 0) state.counters["bytes/" + work.item] = Counter(work.bytes / work.items);
-        if (work.triangles > 0)
-            state.counters["triangles"] = Counter(work.triangles, Counter::kIsIterationInvariantRate);
+        state.counters["per_item"] = Counter(work.items, Counter::kIsIterationInvariantRate | Counter::kInvert);
+        state.counters["bytes_per_item"] = Counter(work.bytes);
     });
 }
 
@@ -53,66 +51,64 @@ void add_kernels(rb::Pipeline& on, const rb::Batch& batch, const rb::Visits& vis
     const double cluster_blocks = visits.cluster_blocks * sizeof(rk::ClusterBlock);
     const double vertex = 7 * sizeof(float);
     const double ray = sizeof(rk::Ray) + pair + header + vertex + sizeof(rk::Hit);
+    const double triangles = static_cast<double>(batch.shape->triangles().size());
     const double all_blocks = batch.shape->data().header.triangle_block_count * double(sizeof(rk::TriangleBlock));
 
-    add(name("count_clusters"), {"pair", pairs, pairs * (pair + header + cluster_blocks + 4 + 8)},
+    add(name("count_clusters"), {"pair and direction", pairs, pair + header + cluster_blocks + 4 + 8},
         [&] { on.count_clusters(); });
     // A large source is walked again to write what was counted.
     add(name("write_clusters"),
-        {"block", blocks, pairs * (pair + header + 4 + (small ? 8 : cluster_blocks)) + blocks * sizeof(rk::Cluster)},
+        {"vertex block", blocks,
+         sizeof(rk::Cluster) + pairs / blocks * (pair + header + 4 + (small ? 8 : cluster_blocks))},
         [&] { on.write_clusters(); });
     const double block_test = 2 * sizeof(rk::Cluster) + pair + 3 * sizeof(float) * VERTEX_LANES + 2 * 4;
-    add(name("count_rays"), {"block", blocks, blocks * block_test}, [&] { on.count_rays(false); });
-    // Last, so that its answer is the one that stays.
-    add(name("count_rays_grid"), {"block", blocks, blocks * (block_test + header + 4 * VERTEX_LANES)},
+    add(name("count_rays"), {"vertex block", blocks, block_test}, [&] { on.count_rays(false); });
+    add(name("count_rays_grid"), {"vertex block", blocks, block_test + header + 4 * VERTEX_LANES},
         [&] { on.count_rays(true); });
-    add(name("write_rays"), {"ray", rays, blocks * (sizeof(rk::Cluster) + 4) + rays * sizeof(rk::Ray)},
+    add(name("write_rays"), {"ray", rays, sizeof(rk::Ray) + blocks / rays * (sizeof(rk::Cluster) + 4)},
         [&] { on.write_rays(); });
     add(name("cast_rays_bvh"),
-        {"ray", rays,
-         rays * (ray + visits.nodes * sizeof(rk::Node) + visits.triangle_blocks * sizeof(rk::TriangleBlock))},
+        {"ray", rays, ray + visits.nodes * sizeof(rk::Node) + visits.triangle_blocks * sizeof(rk::TriangleBlock)},
         [&] { on.cast_bvh(); });
-    add(name("cast_rays_basic"),
-        {"ray", basic_rays, basic_rays * (ray + all_blocks),
-         basic_rays * static_cast<double>(batch.shape->triangles().size())},
+    add(name("cast_rays_basic"), {"triangle test", basic_rays * triangles, (ray + all_blocks) / triangles},
         [&] { on.cast_basic(); });
-    add(name("count_contacts"), {"ray", rays, rays * (sizeof(rk::Hit) + 2 * 4)}, [&] { on.count_contacts(); });
+    add(name("count_contacts"), {"ray", rays, sizeof(rk::Hit) + 2 * 4}, [&] { on.count_contacts(); });
     add(name("write_contacts"),
         {"contact", contacts,
-         rays * sizeof(rk::Hit)
-             + contacts * (sizeof(rk::Ray) + 4 + 4 + 4 + 4 + sizeof(rk::Packed3) + sizeof(rk::LocalContact))},
+         rays / contacts * sizeof(rk::Hit) + sizeof(rk::Ray) + 4 * sizeof(rk::uint) + sizeof(rk::Packed3)
+             + sizeof(rk::LocalContact)},
         [&] { on.write_contacts(); });
-    add(name("scan_sums"), {"element", elements, elements * 4}, [&] { on.scan_sums(); });
-    add(name("scan_offsets"), {"element", scan_blocks, scan_blocks * 8}, [&] { on.scan_offsets(); });
-    add(name("scan_write"), {"element", elements, elements * 8}, [&] { on.scan_write(); });
+    add(name("scan_sums"), {"element", elements, 4}, [&] { on.scan_sums(); });
+    add(name("scan_offsets"), {"block of elements", scan_blocks, 8}, [&] { on.scan_offsets(); });
+    add(name("scan_write"), {"element", elements, 8}, [&] { on.scan_write(); });
 }
 
 void add_host(rc::Executor& executor, const rb::Batch& batch, const std::vector<rk::LocalContact>& contacts) {
     add("order_pairs/" + batch.name,
-        {"pair", static_cast<double>(batch.pairs.size()),
-         static_cast<double>(batch.pairs.size()) * (2 * sizeof(rc::PlacedBody) + 2 * sizeof(rk::OrderedPair))},
+        {"pair", static_cast<double>(batch.pairs.size()), 2 * sizeof(rc::PlacedBody) + 2 * sizeof(rk::OrderedPair)},
         [&executor, &batch, ordered = batch.ordered]() mutable {
             rc::order_pairs(executor, batch.bodies, batch.pairs, ordered);
         });
     // The copy belongs to the work: the contacts are sorted where they lie.
     add("place_contacts/" + batch.name,
-        {"contact", static_cast<double>(contacts.size()),
-         static_cast<double>(contacts.size()) * (2 * sizeof(rk::LocalContact) + sizeof(rc::Contact))},
+        {"contact", static_cast<double>(contacts.size()), 2 * sizeof(rk::LocalContact) + sizeof(rc::Contact)},
         [&executor, &batch, contacts, local = contacts, placed = std::vector<rc::Contact>()]() mutable {
             local = contacts;
             rc::place_contacts(executor, rc::Direction::reprojected, batch.bodies, batch.pairs, local, placed);
         });
     const double triangles = static_cast<double>(batch.mesh.triangles.size());
-    add("prepare_mesh/" + batch.name, {"triangle", triangles},
+    const double vertices = static_cast<double>(batch.mesh.vertices.size());
+    const double mesh_bytes = 12 + sizeof(rc::Vec3) * vertices / triangles;
+    add("prepare_mesh/" + batch.name, {"triangle", triangles, 2 * mesh_bytes},
         [&batch] { benchmark::DoNotOptimize(rc::prepare_mesh(batch.mesh)); });
-    add("make_shape/" + batch.name, {"triangle", triangles},
+    add("make_shape/" + batch.name,
+        {"triangle", triangles, mesh_bytes + static_cast<double>(batch.shape->memory_bytes()) / triangles},
         [mesh = rc::prepare_mesh(batch.mesh)] { benchmark::DoNotOptimize(rc::Shape::make(mesh)); });
 }
 
 void add_broad_phase(std::size_t count) {
     // The copy belongs to the work: the boxes are sorted where they lie.
-    add("sweep_and_prune/" + std::to_string(count),
-        {"box", static_cast<double>(count), static_cast<double>(count) * 2 * sizeof(rc::WorldBox)},
+    add("sweep_and_prune/" + std::to_string(count), {"box", static_cast<double>(count), 2 * sizeof(rc::WorldBox)},
         [boxes = rb::make_boxes(count), sorted = std::vector<rc::WorldBox>(),
          pairs = std::vector<rc::Pair>()]() mutable {
             sorted = boxes;
@@ -121,10 +117,11 @@ void add_broad_phase(std::size_t count) {
 }
 
 void add_limits() {
-    add("limit/clock", {"cycle", static_cast<double>(rb::spend_cycles(1000))}, [] { rb::spend_cycles(1000); });
+    add("limit/clock", {"cycle", static_cast<double>(rb::spend_cycles(1000)), 0}, [] { rb::spend_cycles(1000); });
     for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables()) {
         const std::string_view set = table->instruction_set;
-        add("limit/operations/" + std::string(set), {"operation", static_cast<double>(rb::spend_operations(set, 1000))},
+        add("limit/operations/" + std::string(set),
+            {"operation of one float", static_cast<double>(rb::spend_operations(set, 1000)), 0},
             [set] { rb::spend_operations(set, 1000); });
     }
 }

@@ -15,6 +15,10 @@ Pipeline::Pipeline(Executor& executor, std::string_view instruction_set, const B
     pair_clusters_.resize(*device_, pairs_.size());
     small_.resize(*device_, pairs_.size());
     find_clusters();
+    std::vector<kernels::Cluster> clusters(clusters_.size());
+    clusters_.read(*device_, clusters);
+    all_clusters_.write(*device_, clusters);
+    all_block_rays_.resize(*device_, clusters.size());
     find_rays();
     hits_.resize(*device_, rays_.size());
     cast_bvh();
@@ -44,10 +48,12 @@ void Pipeline::write_clusters() {
                                      cluster_firsts_, clusters_);
 }
 
+// Without the grid there are more rays than the later arrays have room for: that answer is kept apart.
 void Pipeline::count_rays(bool use_grid) {
     const auto& shapes = store_.arrays();
     launch<KernelId::count_rays>(*device_, clusters_.size(), use_grid ? 1u : 0u, pairs_, shapes.headers,
-                                 shapes.vertex_blocks, shapes.outside_cells, clusters_, block_inside_, block_rays_);
+                                 shapes.vertex_blocks, shapes.outside_cells, use_grid ? clusters_ : all_clusters_,
+                                 block_inside_, use_grid ? block_rays_ : all_block_rays_);
 }
 
 void Pipeline::write_rays() {

@@ -55,8 +55,8 @@ private:
     Array<kernels::OrderedPair> pairs_;
     Array<kernels::uint> pair_clusters_, cluster_firsts_;
     Array<kernels::ulong> small_;
-    Array<kernels::Cluster> clusters_;
-    Array<kernels::uint> block_inside_, block_rays_, ray_firsts_;
+    Array<kernels::Cluster> clusters_, all_clusters_;
+    Array<kernels::uint> block_inside_, block_rays_, all_block_rays_, ray_firsts_;
     Array<kernels::Ray> rays_;
     Array<kernels::Hit> hits_, basic_hits_;
     Array<kernels::uint> ray_contacts_, ray_sides_, contact_firsts_;
