@@ -10,6 +10,9 @@
 using namespace raycontact;
 
 struct Recorder::State {
+    State(const std::string& f, const scenes::Avalanche& s, const recording::Info& info)
+        : file(f), scene(s), writer(f, info) {}
+
     std::string file;
     const scenes::Avalanche& scene;
     recording::Writer writer;
@@ -26,7 +29,7 @@ Recorder::Recorder(const std::string& file, const scenes::Avalanche& scene, std:
     info.dt = log.dt;
     info.settings = settings;
     info.mesh_source = log.mesh_source;
-    state_ = std::unique_ptr<State>(new State{file, scene, {file, info}});
+    state_ = std::make_unique<State>(file, scene, info);
     for (const auto& shape : log.shapes) state_->writer.add_shape(*shape);
     for (const std::uint32_t shape : log.body_shape) state_->writer.add_body(shape);
 }

@@ -31,6 +31,7 @@ struct ReplayCommand {
 
 Json median_and_p95(const std::vector<recording::ReplayStep>& steps, double recording::ReplayStep::*value) {
     std::vector<double> all;
+    all.reserve(steps.size());
     for (const recording::ReplayStep& step : steps) all.push_back(step.*value);
     std::sort(all.begin(), all.end());
     const auto at = [&](double part) {

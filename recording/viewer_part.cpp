@@ -55,7 +55,7 @@ public:
 
     /// The index of the accessor.
     template <class Record>
-    std::size_t add(std::span<const Record> records, const char* type, Json extra = Json::object()) {
+    std::size_t add(std::span<const Record> records, const char* type, const Json& extra = Json::object()) {
         constexpr std::size_t per_record = sizeof(Record) / 4;
         Json& view = views_.back();
         const std::size_t start = view["byteOffset"].get<std::size_t>();
