@@ -72,7 +72,7 @@ struct Reader::State {
     void read_step(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs);
 
     File file;
-    std::uint64_t size;                 ///< when it was opened
+    std::uint64_t size;                 ///< when it was last asked
     std::uint64_t data = 0, length = 0; ///< of the side chunk, as far as it was committed
     bool described = false;
     Info info;
@@ -105,6 +105,8 @@ void Reader::State::find_side_chunk() {
         data = at + glb::chunk_header_bytes;
         break;
     }
+    // Asked again: it may have grown since, and the length counts what has been written.
+    size = file.size();
     if (data + length > size) fail_truncated(size);
     auto start = side_chunk_start;
     if (length < start.size()) fail_damaged(data, "the side chunk is too short");
@@ -164,6 +166,9 @@ void Reader::State::enter(const Found& block) {
         apply_events(unpack(block), shapes.size(), bodies);
         break;
     case BlockType::steps:
+        // Already here, though it is unpacked later: the count of steps must be right before any is read.
+        if (!block_is_intact(header, block.header_bytes, stored_bytes(block), block.offset - data))
+            throw Damage("does not match its checksum");
         if (header.first_step != steps || header.step_count == 0 || header.step_count > Body::never - steps)
             throw Damage("does not follow on the steps before");
         steps += header.step_count;

@@ -16,7 +16,8 @@
 namespace raycontact::recording {
 
 /// Reads a recording, finished or not, also while it is written (then what was flushed when it was opened). Keeps one
-/// block of steps in memory. Every byte it relies on is checked: InputError names the file and the place of damage.
+/// block of steps in memory. Every byte it relies on is checked when it is opened: InputError names the file and the
+/// place of damage.
 class Reader {
 public:
     /// Throws InputError when the file is missing, no recording, of a newer version, truncated or damaged.

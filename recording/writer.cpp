@@ -80,13 +80,17 @@ struct Writer::State {
 // two lengths are ever overwritten.
 void Writer::State::begin() {
     Bytes start = viewer_part(meshes, viewer_bodies, {}, {});
+    const Bytes description =
+        make_block(BlockType::info, 0, 0, encode_info(info), side_chunk_start.size(), Effort::thorough);
     data = start.size() + glb::chunk_header_bytes;
-    end = data + side_chunk_start.size();
-    append(start, word(0));
+    end = data + side_chunk_start.size() + description.size();
+    append(start, word(end - data));
     append(start, word(side_chunk));
     start.insert(start.end(), side_chunk_start.begin(), side_chunk_start.end());
+    append(start, description);
+    const Bytes whole = word(end);
+    std::copy(whole.begin(), whole.end(), start.begin() + glb::length_at);
     file.write(0, start);
-    commit(make_block(BlockType::info, 0, 0, encode_info(info), place(), Effort::thorough));
     begun = true;
 }
 

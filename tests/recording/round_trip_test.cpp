@@ -122,7 +122,7 @@ TEST(RoundTrip, BadInputIsRefusedInOneLine) {
     info.dt = 0;
     EXPECT_THROW(Writer(file.path(), info), InputError);
     EXPECT_THROW(Reader("/nonexistent/x.glb"), InputError);
-    EXPECT_THROW(Reader(std::filesystem::temp_directory_path()), InputError);
+    EXPECT_THROW(Reader{std::filesystem::temp_directory_path()}, InputError);
 
     Writer writer(file.path(), sample.info);
     EXPECT_THROW(writer.add_body(0), InputError);
