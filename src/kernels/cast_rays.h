@@ -40,7 +40,7 @@ DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
     return closest->back + tolerance < closest->front ? 1 : 0;
 }
 
-DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, const ShapeHeader* shape,
+DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                         GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     if (caster == CASTER_BASIC) return traverse_basic(ray, reach, shape, blocks);
     return traverse_bvh(ray, reach, shape, nodes, blocks);
@@ -50,8 +50,9 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, con
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
 // An open mesh has no inside, so there such a ray is no contact.
-DEVICE Hit cast_ray(const uint caster, const SourceRay ray, const ShapeHeader* shape, GLOBAL const Node* RESTRICT nodes,
-                    GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+DEVICE Hit cast_ray(const uint caster, const SourceRay ray, GLOBAL const ShapeHeader* RESTRICT shape,
+                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                    GLOBAL const Packed3* RESTRICT normals) {
     RayFrame frame = frame_ray(ray.position, ray.direction);
     const Closest own = traverse(caster, &frame, ray.reach, shape, nodes, blocks);
     int decided = verdict(&own, ray.reach, shape->tolerance);
@@ -84,9 +85,9 @@ KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
                           GLOBAL Hit* RESTRICT hits) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        const ShapeHeader shape = shapes[pair->target];
+        GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BVH, ray, &shape, nodes, blocks, normals);
+        hits[i] = cast_ray(CASTER_BVH, ray, shape, nodes, blocks, normals);
     }
 }
 
@@ -97,8 +98,8 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                             GLOBAL Hit* RESTRICT hits) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        const ShapeHeader shape = shapes[pair->target];
+        GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BASIC, ray, &shape, nodes, blocks, normals);
+        hits[i] = cast_ray(CASTER_BASIC, ray, shape, nodes, blocks, normals);
     }
 }

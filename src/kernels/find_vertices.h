@@ -84,7 +84,7 @@ DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL 
 
 // Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
 // outside.
-DEVICE uint outside_lanes(const InsideLanes* found, const ShapeHeader* target,
+DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
                           GLOBAL const uint* RESTRICT outside_cells) {
     const float scale = target->grid_scale;
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
@@ -118,7 +118,7 @@ DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
 
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
 // from `first` on when asked to.
-DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, const ShapeHeader* shape,
+DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shape,
                            GLOBAL const ClusterBlock* RESTRICT clusters, const bool write, uint first,
                            GLOBAL Cluster* RESTRICT found) {
     const PairBounds bounds = bounds_of(pairs + p);
@@ -157,20 +157,20 @@ KERNEL void count_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
                            GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
     FOR_EACH(p, count) {
-        const ShapeHeader shape = shapes[pairs[p].source];
-        if (shape.vertex_block_count <= SMALL_BLOCKS) {
+        GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
+        if (shape->vertex_block_count <= SMALL_BLOCKS) {
             const PairBounds bounds = bounds_of(pairs + p);
             ulong blocks = 0u;
             uint number = 0u;
-            for (uint i = 0u; i < shape.cluster_count[0]; ++i) {
-                const uint lanes = overlapping_lanes(&bounds, clusters + shape.cluster_first[0] + i);
+            for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
+                const uint lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[0] + i);
                 blocks |= (ulong)lanes << (VERTEX_LANES * i);
                 number += bit_count(lanes);
             }
             small[p] = blocks;
             counts[p] = number;
         } else {
-            counts[p] = reach_clusters(p, pairs, &shape, clusters, false, 0u, (GLOBAL Cluster*)0);
+            counts[p] = reach_clusters(p, pairs, shape, clusters, false, 0u, (GLOBAL Cluster*)0);
         }
     }
 }
@@ -192,8 +192,7 @@ KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
                 }
             }
         } else {
-            const ShapeHeader large = *shape;
-            reach_clusters(p, pairs, &large, clusters, true, firsts[p], found);
+            reach_clusters(p, pairs, shape, clusters, true, firsts[p], found);
         }
     }
 }
@@ -206,11 +205,11 @@ KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + clusters[i].pair;
         const InsideLanes found = inside_lanes(pair, vertices + clusters[i].vertex_block);
-        const ShapeHeader target = shapes[pair->target];
+        GLOBAL const ShapeHeader* target = shapes + pair->target;
         const uint inside_mask = pack_sixteen(found.inside);
         uint lanes = inside_mask;
-        if (lanes != 0u && use_grid != 0u && target.grid_size[0] != 0u)
-            lanes &= ~outside_lanes(&found, &target, outside_cells);
+        if (lanes != 0u && use_grid != 0u && target->grid_size[0] != 0u)
+            lanes &= ~outside_lanes(&found, target, outside_cells);
         clusters[i].lanes = lanes;
         inside[i] = bit_count(inside_mask);
         counts[i] = bit_count(lanes);

@@ -10,7 +10,7 @@ DEVICE Closest nothing_hit(float reach, float tolerance) {
     return closest;
 }
 
-DEVICE Closest traverse_basic(const RayFrame* ray, float reach, const ShapeHeader* shape,
+DEVICE Closest traverse_basic(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                               GLOBAL const TriangleBlock* RESTRICT blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
     for (uint b = 0u; b < shape->triangle_block_count; ++b)
@@ -43,7 +43,7 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
 
 // Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
-DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, const ShapeHeader* shape,
+DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;

@@ -40,9 +40,6 @@ DEVICE RayFrame frame_ray(const float* p, const float* d) {
     ray.axis[0] = x;
     ray.axis[1] = y;
     ray.axis[2] = z;
-    ray.shear[2] = 1.0f / d[z];
-    ray.shear[0] = d[x] / d[z];
-    ray.shear[1] = d[y] / d[z];
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
@@ -50,6 +47,9 @@ DEVICE RayFrame frame_ray(const float* p, const float* d) {
         ray.near_plane[i] = ray.inverse[i] < 0.0f ? 3u + (uint)i : (uint)i;
         ray.far_plane[i] = ray.inverse[i] < 0.0f ? (uint)i : 3u + (uint)i;
     }
+    ray.shear[2] = ray.inverse[z];
+    ray.shear[0] = d[x] * ray.inverse[z];
+    ray.shear[1] = d[y] * ray.inverse[z];
     return ray;
 }
 
