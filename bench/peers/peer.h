@@ -57,6 +57,7 @@ Entrant fcl();
 Entrant ode();
 Entrant embree();
 Entrant rays_of_ours();
+Entrant spared_rays_of_ours();
 Entrant rays_of_embree();
 
 } // namespace raycontact::bench

@@ -17,7 +17,9 @@ namespace {
 
 std::vector<Entrant> entrants() {
     return {
-        ours(true), ours(false),    gimpact(),
+        ours(true),
+        ours(false),
+        gimpact(),
 #ifdef RAYCONTACT_HAS_FCL
         fcl(),
 #else
@@ -28,7 +30,10 @@ std::vector<Entrant> entrants() {
 #else
         not_built("ode", "ODE", "libode-dev"),
 #endif
-        embree(),   rays_of_ours(), rays_of_embree(),
+        embree(),
+        rays_of_ours(),
+        spared_rays_of_ours(),
+        rays_of_embree(),
     };
 }
 
