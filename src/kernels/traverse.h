@@ -10,11 +10,22 @@ DEVICE Closest nothing_hit(float reach, float tolerance) {
     return closest;
 }
 
+DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lanes,
+                      float tolerance, const bool near) {
+    while (lanes != 0u) {
+        hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, near);
+        lanes &= lanes - 1u;
+    }
+}
+
 DEVICE Closest traverse_basic(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                               GLOBAL const TriangleBlock* RESTRICT blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
-    for (uint b = 0u; b < shape->triangle_block_count; ++b)
-        hit_block(&closest, ray, blocks + shape->triangle_block_first + b, shape->tolerance, shape->volume_tolerance);
+    for (uint b = 0u; b < shape->triangle_block_count; ++b) {
+        GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + b;
+        const uint lanes = hit_block(&closest, ray, block, shape->tolerance, false);
+        hit_lanes(&closest, ray, block, lanes, shape->tolerance, false);
+    }
     return closest;
 }
 
@@ -56,8 +67,9 @@ DEVICE Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const Shape
             const uint child = tree[at].child[lane];
             children &= children - 1u;
             if ((child & LEAF) != 0u) {
-                hit_block(&closest, ray, blocks + shape->triangle_block_first + (child & ~LEAF), shape->tolerance,
-                          shape->volume_tolerance);
+                GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + (child & ~LEAF);
+                const uint lanes = hit_block(&closest, ray, block, shape->tolerance, true);
+                hit_lanes(&closest, ray, block, lanes, shape->tolerance, true);
             } else {
                 trail = (trail << NODE_LANES) | (ulong)children;
                 at = child;

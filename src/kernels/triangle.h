@@ -74,10 +74,15 @@ DEVICE float cross_accurate(float a, float b, float c, float d) {
 
 // One lane again, with accurate barycentrics, so that the distance found lies in every box that holds the triangle.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
-                     float tolerance) {
+                     float tolerance, const bool near) {
     float x[3], y[3], z[3];
+    for (int c = 0; c < 3; ++c) z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+    if (!near) {
+        const float t0 = z[0] * ray->shear[2], t1 = z[1] * ray->shear[2], t2 = z[2] * ray->shear[2];
+        const float beyond = closest->limit + tolerance, behind = -2.0f * tolerance;
+        if ((t0 > beyond && t1 > beyond && t2 > beyond) || (t0 < behind && t1 < behind && t2 < behind)) return;
+    }
     for (int c = 0; c < 3; ++c) {
-        z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
         x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * z[c];
         y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * z[c];
     }
@@ -95,10 +100,11 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
     consider(closest, t, back_side, block->triangle[lane], tolerance);
 }
 
-// Sixteen triangles at once: which lanes may be hit no farther than the limit? Lanes let through in excess are
-// harmless.
-DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
-                      float tolerance, float volume_tolerance) {
+// Sixteen triangles at once: which does the ray's line pass through? A hit is a mean of its corners: with `near`, lanes
+// whose corners are all behind, or all too far, by more than rounding could hide are left out here already. That pays
+// where the block is near; where every block is tried, few lanes get so far.
+DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
+                      float tolerance, const bool near) {
     GLOBAL const float* RESTRICT ax = block->corner[0 + ray->axis[0]];
     GLOBAL const float* RESTRICT ay = block->corner[0 + ray->axis[1]];
     GLOBAL const float* RESTRICT az = block->corner[0 + ray->axis[2]];
@@ -110,7 +116,6 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
     GLOBAL const float* RESTRICT cz = block->corner[6 + ray->axis[2]];
     const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
     const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
-    const float limit = closest->limit;
     int hit[TRIANGLE_LANES];
     FOR_LANES(k, TRIANGLE_LANES) {
         const float z0 = az[k] - oz, z1 = bz[k] - oz, z2 = cz[k] - oz;
@@ -122,19 +127,15 @@ DEVICE void hit_block(Closest* closest, const RayFrame* ray, GLOBAL const Triang
         const float w = x1 * y0 - y1 * x0;
         const float least_uv = u < v ? u : v, most_uv = u > v ? u : v;
         const float least = least_uv < w ? least_uv : w, most = most_uv > w ? most_uv : w;
-        const float area = (u + v) + w;
-        const float reach = (u * z0 + v * z1 + w * z2) * sz;
-        const float size = magnitude_of(area);
-        const float far = area < 0.0f ? -reach : reach;
         const uint inside = (least >= 0.0f) | (most <= 0.0f);
-        const uint ahead = far >= -tolerance * size - volume_tolerance;
-        const uint within = far <= limit * size + volume_tolerance;
-        hit[k] = -(int)(inside & ahead & within);
+        uint reached = 1u;
+        if (near) {
+            const float t0 = z0 * sz, t1 = z1 * sz, t2 = z2 * sz;
+            const float first_01 = t0 < t1 ? t0 : t1, last_01 = t0 > t1 ? t0 : t1;
+            const float first = first_01 < t2 ? first_01 : t2, last = last_01 > t2 ? last_01 : t2;
+            reached = (first <= closest->limit + tolerance) & (last >= -2.0f * tolerance);
+        }
+        hit[k] = -(int)(inside & reached);
     }
-    uint lanes = pack_sixteen(hit);
-    while (lanes != 0u) {
-        const uint lane = lowest_bit(lanes);
-        lanes &= lanes - 1u;
-        hit_lane(closest, ray, block, lane, tolerance);
-    }
+    return pack_sixteen(hit);
 }

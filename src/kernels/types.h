@@ -56,14 +56,13 @@ typedef struct {
     uint cluster_levels;
     uint normal_first;
     uint closed;
-    float tolerance;        // metres: distances of two hits closer than this are not told apart
-    float volume_tolerance; // metres^3: slack of the division-free distance test
-    uint grid_first;        // words of outside_cells, a bit for each cell, x fastest
-    uint grid_size[3];      // cells; 0: no grid
+    float tolerance;   // metres: distances of two hits closer than this are not told apart
+    uint grid_first;   // words of outside_cells, a bit for each cell, x fastest
+    uint grid_size[3]; // cells; 0: no grid
     float grid_low[3];
     float grid_scale; // cells a metre
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 104);
+WIRE_SIZE(ShapeHeader, 100);
 
 // Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
 typedef struct {

@@ -51,13 +51,6 @@ void round_vertices(ShapeData& shape) {
     shape.box_max = shape.centre + high;
 }
 
-double longest_edge(const ShapeData& shape, std::span<const Vec3> offsets) {
-    double longest = 0;
-    for (const auto& t : shape.mesh.triangles)
-        for (int c = 0; c < 3; ++c) longest = std::max(longest, length(offsets[t[c]] - offsets[t[(c + 1) % 3]]));
-    return longest;
-}
-
 } // namespace
 
 Shape::Shape(std::unique_ptr<ShapeData> data) : data_(std::move(data)) {}
@@ -89,10 +82,8 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
 
     // How far float32 may err in a ray test, with a margin: docs/design.md derives these. Into an open mesh rays may
     // start well outside its box.
-    const double edge = longest_edge(shape, offsets);
     shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
-    shape.header.volume_tolerance = static_cast<float>(64 * rounding * edge * edge * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
