@@ -72,10 +72,15 @@ std::vector<Entrant> choose_entrants(const std::vector<std::string>& only) {
             some.push_back(std::move(entrant));
         else if (!only.empty())
             throw InputError("--only: " + entrant.name + ": " + entrant.why_not);
-        else
-            std::cerr << "without " << entrant.name << ": " << entrant.why_not << '\n';
     }
     return some;
+}
+
+/// Said at the end: one line is all that bad input may print.
+void name_absent(const std::vector<std::string>& only) {
+    if (!only.empty()) return;
+    for (const Entrant& entrant : entrants())
+        if (!entrant.make) std::cerr << "without " << entrant.name << ": " << entrant.why_not << '\n';
 }
 
 using MakeWork = std::function<Work()>;
@@ -124,6 +129,7 @@ void bench_peers(const PeersOptions& options) {
     }
     machine.load = this_machine().load;
     tell("");
+    name_absent(options.only);
     if (!options.out.empty())
         std::cerr << "written: " << write_results(options.out, machine, notes, results).string() << " and .svg\n";
     std::cout << (options.json ? json(machine, notes, results) : table(machine, notes, results));
@@ -159,7 +165,7 @@ void add_peers(CLI::App& bench) {
     add_number(*command, "--pairs", o->approach.pairs, "approaching pairs, all in one step", 1u, 10'000u);
     add_number(*command, "--depth", o->approach.depth, "metres that they are pushed in beyond first touch", 0.0, 0.5);
     add_number(*command, "--runs", o->runs, "of everyone in turn; figures are medians", 1u, 1000u);
-    command->add_option("--only", o->only, "who: bvh,basic,gimpact,fcl,ode,embree,rays,embree-rays")
+    command->add_option("--only", o->only, "who: bvh,basic,gimpact,fcl,ode,embree,rays,grid-rays,embree-rays")
         ->type_name("NAMES")
         ->delimiter(',');
     command->add_option("--works", o->works, "what: pairs-453,pairs-1598,pairs-10000,avalanche")
@@ -197,7 +203,11 @@ void add_growth(CLI::App& bench) {
 
 void add_bench(CLI::App& app) {
     CLI::App* bench = app.add_subcommand("bench", "What contacts cost: against other libraries, and at other sizes");
-    bench->require_subcommand(1);
+    bench->require_subcommand(0, 1); // none is refused below, with the names to choose from
+    bench->callback([bench] {
+        if (bench->get_subcommands().empty())
+            throw InputError("bench: a subcommand is required: peers or growth (see raycontact bench --help)");
+    });
     add_peers(*bench);
     add_growth(*bench);
 }

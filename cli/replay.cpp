@@ -145,11 +145,11 @@ void add_replay(CLI::App& app) {
     auto given = std::make_shared<ReplayCommand>();
     command->add_option("RECORDING", given->file, "a file made by `raycontact run --record`")->required();
     command
-        ->add_option("--compare", given->compare,
-                     "standard: count the rays that end otherwise than with every ray cast in full")
+        ->add_option("--compare", given->compare, "standard: count the rays that end otherwise than with that method")
         ->type_name("METHOD");
     command->add_flag("--json", given->json, "print one JSON object on stdout");
     add_common_options(*command, given->settings);
-    command->footer("Method, caster and direction are the recording's unless given.");
+    command->footer("Method, caster and direction are the recording's unless given.\n"
+                    "Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
     command->callback([command, given] { replay(*command, *given); });
 }

@@ -176,9 +176,14 @@ void add_run(CLI::App& app) {
     command->add_option("--seed", options->seed, "of the bodies' small offsets and tilts; same seed, same hash")
         ->type_name("S")
         ->capture_default_str();
-    command->add_option("--record", options->record, "write a recording there: `raycontact replay` and any glTF viewer play it")
-        ->type_name("FILE");
-    command->add_option("--out", options->out, "write report.html, pictures and steps.csv there")->type_name("DIR");
+    command
+        ->add_option("--record", options->record,
+                     "write a recording there: for `raycontact replay`, and any glTF viewer")
+        ->type_name("FILE.glb");
+    command
+        ->add_option("--out", options->out,
+                     "write report.html, pictures and steps.csv there; drawing takes some seconds")
+        ->type_name("DIR");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     add_common_options(*command, options->settings);
     command->callback([options] { run(*options); });

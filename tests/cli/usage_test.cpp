@@ -16,14 +16,24 @@ protected:
 TEST_F(Usage, HelpEverywhere) {
     const auto whole = run({"--help"});
     EXPECT_EQ(whole.status, 0);
-    for (const char* command : {"devices", "mesh", "collide", "run"}) {
-        EXPECT_NE(whole.out.find(command), std::string::npos) << command;
+    for (const char* command : {"devices", "mesh", "collide", "run", "replay"}) {
+        EXPECT_NE(whole.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
         const auto help = run({command, "--help"});
         EXPECT_EQ(help.status, 0) << command;
         EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(help.err, "") << command;
     }
-    for (const char* command : {"collide", "run"}) {
+    EXPECT_NE(whole.out.find("\n  bench "), std::string::npos);
+    const auto bench = run({"bench", "--help"});
+    EXPECT_EQ(bench.status, 0);
+    for (const char* command : {"peers", "growth"}) {
+        EXPECT_NE(bench.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
+        const auto help = run({"bench", command, "--help"});
+        EXPECT_EQ(help.status, 0) << command;
+        EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
+        EXPECT_EQ(help.err, "") << command;
+    }
+    for (const char* command : {"collide", "run", "replay"}) {
         const auto help = run({command, "--help"});
         for (const char* option : {"--method", "--caster", "--direction", "--devices", "--threads"}) {
             EXPECT_NE(help.out.find(option), std::string::npos) << command << " " << option;
@@ -38,7 +48,14 @@ TEST_F(Usage, Version) {
 }
 
 TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
-    expect_refused(run({}), "subcommand");
+    for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "bench"}) {
+        expect_refused(run({}), command);
+    }
+    expect_refused(run({"bench"}), "peers or growth");
+    expect_refused(run({"bench", "peer"}), "peer");
+    expect_refused(run({"bench", "peers", "--only", "nobody"}), "nobody");
+    expect_refused(run({"bench", "peers", "--works", "nothing"}), "nothing");
+    expect_refused(run({"bench", "growth", "--steps", "0"}), "--steps");
     expect_refused(run({"colide"}), "colide");
     expect_refused(run({"--jsn"}), "--jsn");
     expect_refused(run({"devices", "extra"}), "extra");
@@ -47,6 +64,12 @@ TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
     expect_refused(run({"collide"}), "collide");
     expect_refused(run({"collide", "cube.obj"}), "two mesh files");
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--pairs", "pairs.json"}), "--pairs");
+    expect_refused(run({"run"}), "SCENE");
+    expect_refused(run({"run", "landslide"}), "landslide");
+    expect_refused(run({"replay"}), "RECORDING");
+    expect_refused(run({"replay", "missing.glb"}), "missing.glb");
+    expect_refused(run({"replay", "cube.obj"}), "cube.obj");
+    expect_refused(run({"replay", "cube.obj", "--compare", "quick"}), "--compare");
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--threads", "-1"}), "--threads");
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--threads", "two"}), "--threads");
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--caster"}), "--caster");
