@@ -23,9 +23,11 @@ public:
         const double longest = std::max({extent[0], extent[1], extent[2]});
         // Cells about half as long as an edge of the surface's triangles: memory stays a small part of the triangles'.
         const double wanted = std::clamp(1.6 * std::sqrt(double(shape.mesh.triangles.size())), 8.0, 256.0);
-        // A float32 scale: the kernels must find the very cells that are tested here.
+        // A float32 scale: the kernels must find the very cells that are tested here. The farthest look-up is that of
+        // the upper corner, and in float32 it may round up into one cell more than in double.
         scale_ = static_cast<float>(wanted / longest);
-        for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(extent[axis] * double(scale_)) + 1;
+        const float far[3] = {shape.high.x - shape.low.x, shape.high.y - shape.low.y, shape.high.z - shape.low.z};
+        for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(far[axis] * scale_) + 1;
         cells_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], Unknown);
     }
 
