@@ -37,11 +37,11 @@ int widest_axis(const std::vector<WorldBox>& boxes) {
 WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow) {
     const auto& r = pose.rotation;
     const Vec3 middle{0.5 * (box_min.x + box_max.x), 0.5 * (box_min.y + box_max.y), 0.5 * (box_min.z + box_max.z)};
-    const Vec3 half{0.5 * (box_max.x - box_min.x), 0.5 * (box_max.y - box_min.y), 0.5 * (box_max.z - box_min.z)};
+    const Vec3 half{0.5 * (box_max.x - box_min.x) + grow, 0.5 * (box_max.y - box_min.y) + grow,
+                    0.5 * (box_max.z - box_min.z) + grow};
     const Vec3 c = transform_point(pose, middle);
     // A billionth of the box covers the rounding of this very computation.
-    const double slack =
-        grow + 1e-9 * (half.x + half.y + half.z) + 1e-15 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z));
+    const double slack = 1e-9 * (half.x + half.y + half.z) + 1e-15 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z));
     const Vec3 e{std::fabs(r[0]) * half.x + std::fabs(r[1]) * half.y + std::fabs(r[2]) * half.z + slack,
                  std::fabs(r[3]) * half.x + std::fabs(r[4]) * half.y + std::fabs(r[5]) * half.z + slack,
                  std::fabs(r[6]) * half.x + std::fabs(r[7]) * half.y + std::fabs(r[8]) * half.z + slack};

@@ -14,7 +14,7 @@ struct WorldBox {
     Vec3 low, high;
 };
 
-/// The box around a body-frame box placed by a pose, widened by `grow` metres.
+/// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.
 WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow);
 
 /// Sweep and prune along the axis on which the boxes lie farthest apart: O(n log n) plus the overlaps on that axis.

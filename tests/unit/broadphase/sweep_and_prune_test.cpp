@@ -61,5 +61,19 @@ TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
     }
 }
 
+// The narrow phase looks for vertices in the widened box of the body frame: its corners count too.
+TEST(WorldBox, HoldsTheCornersOfTheWidenedBox) {
+    const Pose pose = pose_from_quaternion({1, 2, 3}, 0.9, 0.2, -0.3, 0.25);
+    const double grow = 0.7;
+    const WorldBox box = world_box(0, {-1, -2, -3}, {1, 2, 3}, pose, grow);
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner{(i & 1 ? 1 : -1) * (1 + grow), (i & 2 ? 1 : -1) * (2 + grow), (i & 4 ? 1 : -1) * (3 + grow)};
+        const Vec3 p = transform_point(pose, corner);
+        EXPECT_TRUE(p.x >= box.low.x && p.x <= box.high.x && p.y >= box.low.y && p.y <= box.high.y && p.z >= box.low.z
+                    && p.z <= box.high.z)
+            << "corner " << i;
+    }
+}
+
 } // namespace
 } // namespace raycontact
