@@ -21,10 +21,15 @@ kernels::uint first_index(std::size_t size, std::size_t more) {
 } // namespace
 
 void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
-    Entry& entry = entries_[shape.get()];
-    if (entry.users++ > 0) return;
-    entry.shape = shape;
+    if (const auto found = entries_.find(shape.get()); found != entries_.end()) {
+        ++found->second.users;
+        return;
+    }
+    // Entered last: a shape that the device has no memory for leaves nothing behind.
+    Entry entry{shape, 0, 1};
     upload(entry);
+    order_.reserve(order_.size() + 1);
+    entries_.emplace(shape.get(), std::move(entry));
     order_.push_back(shape.get());
 }
 

@@ -5,6 +5,8 @@
 #include "shape/shape_data.h"
 
 #include <gtest/gtest.h>
+#include <new>
+#include <stdexcept>
 
 namespace raycontact {
 namespace {
@@ -35,6 +37,42 @@ TEST(ShapeStore, SharesPacksAndFindsAgain) {
         EXPECT_EQ(header.triangle_block_count, shape->data().triangle_blocks.size());
         EXPECT_EQ(blocks[header.triangle_block_first].triangle[0], shape->data().triangle_blocks[0].triangle[0]);
     }
+}
+
+// A device whose memory runs out after so many buffers.
+class ScarceDevice : public Device {
+public:
+    ScarceDevice(Device& real, int buffers) : left(buffers), real_(real) {}
+    const DeviceInfo& info() const override { return real_.info(); }
+    std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
+        if (left-- == 0) throw std::bad_alloc();
+        return real_.make_buffer(bytes);
+    }
+    Queue& queue() override { return real_.queue(); }
+    int left;
+
+private:
+    Device& real_;
+};
+
+TEST(ShapeStore, ShapeThatDidNotFitLeavesNothingBehind) {
+    const OpenDevice opened = open_device("cpu", 1);
+    ScarceDevice scarce(*opened.device, 3);
+    ShapeStore store(scarce);
+    const auto shape = Shape::make(scenes::scene_model("gear", 80).mesh);
+    EXPECT_THROW(store.add(shape), std::bad_alloc);
+    EXPECT_THROW(store.index_of(shape.get()), std::out_of_range);
+
+    scarce.left = 100;
+    store.add(shape);
+    std::vector<kernels::ShapeHeader> headers(store.arrays().headers.size());
+    store.arrays().headers.read(scarce, headers);
+    const kernels::ShapeHeader& header = headers[store.index_of(shape.get())];
+    EXPECT_EQ(header.vertex_block_first + header.vertex_block_count, store.arrays().vertex_blocks.size());
+    EXPECT_EQ(header.node_first + shape->data().nodes.size(), store.arrays().nodes.size());
+    store.remove(shape.get());
+    EXPECT_TRUE(store.pack());
+    EXPECT_EQ(store.arrays().headers.size(), 0u);
 }
 
 } // namespace
