@@ -63,6 +63,7 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
         {"bodies", scene.body_count()},
         {"pairs_max", scene.pairs_max()},
         {"rays", scene.rays_total()},
+        {"rays_cast", scene.rays_cast_total()},
         {"contacts", scene.contacts_total()},
         {"ray_length", scene.ray_length_total()},
         {"penetration_max", health.penetration_max},

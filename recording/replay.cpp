@@ -53,6 +53,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
     if (options.compare) {
         Settings standard = options.settings;
         standard.method = Method::standard;
+        standard.skip_outside = false; // the reference casts every ray
         reference.emplace(reader, standard);
         result.wrong_rays.emplace();
     }

@@ -24,7 +24,7 @@ constexpr Known known[] = {
     {"seed", "Seed", "", "of the bodies' first poses"},
     {"pairs_max", "Pairs, most in a step", "pairs", "bodies whose boxes overlap"},
     {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps: the pile at rest"},
-    {"rays", "Rays", "rays", "cast in all steps together"},
+    {"rays", "Rays", "rays", "of the rule, in all steps together"},
     {"contacts", "Contacts", "contacts", "found in all steps together"},
     {"ray_length", "Ray length", "m", "of all contacts of all steps, added up"},
     {"penetration_max", "Penetration, deepest", "mm", "deepest contact of the whole run", 1000},

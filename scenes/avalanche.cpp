@@ -101,7 +101,7 @@ struct Avalanche::State {
     std::uint32_t done = 0;
     ContactHash hash;
     DepthWatch depths{0};
-    std::uint64_t contacts = 0, rays = 0, pairs_max = 0;
+    std::uint64_t contacts = 0, rays = 0, rays_cast = 0, pairs_max = 0;
     double ray_length = 0;
     std::vector<Vec3> before;
     RunLog log;
@@ -194,6 +194,7 @@ void Avalanche::State::measure(StepRow& row) {
     depths.add(row.step, found);
     contacts += found.size();
     rays += s.rays;
+    rays_cast += s.rays_cast;
     ray_length += s.ray_length;
     pairs_max = std::max(pairs_max, s.pairs);
     row.pairs = s.pairs;
@@ -274,6 +275,10 @@ std::uint64_t Avalanche::contacts_total() const {
 }
 std::uint64_t Avalanche::rays_total() const {
     return state_->rays;
+}
+
+std::uint64_t Avalanche::rays_cast_total() const {
+    return state_->rays_cast;
 }
 double Avalanche::ray_length_total() const {
     return state_->ray_length;
