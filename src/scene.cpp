@@ -2,9 +2,9 @@
 #include <raycontact/scene.h>
 
 #include "broadphase/sweep_and_prune.h"
+#include "executor/float_environment.h"
 #include "pose_fault.h"
 #include "shape/shape_data.h"
-#include "executor/float_environment.h"
 #include "step.h"
 
 #include <raycontact/error.h>
@@ -90,6 +90,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     if (!shape) throw InputError("body " + std::to_string(id) + ": the shape is null");
     refuse_faulty(pose, id);
     state_->narrow.shapes().add(shape);
+    state_->placed.resize(id); // should an earlier add have failed half-way
     state_->placed.push_back({shape.get(), state_->narrow.shapes().index_of(shape.get()), pose, pose});
     state_->bodies.push_back({std::move(shape), pose});
     return id;

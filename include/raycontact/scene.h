@@ -19,16 +19,17 @@ using Pair = std::pair<BodyId, BodyId>;
 
 /// What the last step did.
 struct StepStats {
-    std::uint64_t pairs = 0;         ///< unordered pairs in the narrow phase
-    std::uint64_t vertices = 0;      ///< vertices tested against bounds, after whole clusters were ruled out
-    std::uint64_t rays = 0;          ///< rays of the rule: vertices inside the other body's bounds
-    std::uint64_t rays_cast = 0;     ///< of these, cast; the vertices of the rest are known to be outside the other mesh
-    std::uint64_t side_tests = 0;    ///< rays whose closest front and back hit lay within rounding, decided by side
+    std::uint64_t pairs = 0;     ///< unordered pairs in the narrow phase
+    std::uint64_t vertices = 0;  ///< vertices tested against bounds, after whole clusters were ruled out
+    std::uint64_t rays = 0;      ///< rays of the rule: vertices inside the other body's bounds
+    std::uint64_t rays_cast = 0; ///< of these, cast; the vertices of the rest are known to be outside the other mesh
+    std::uint64_t side_tests =
+        0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
     std::uint64_t contacts = 0;
-    double ray_length = 0;           ///< sum of the contacts' ray lengths, metres (paper section 5.2)
-    double depth_max = 0;            ///< metres
-    double broad_ms = 0;             ///< our broad phase; 0 when pairs were given
-    double narrow_ms = 0;            ///< everything after the broad phase
+    double ray_length = 0; ///< sum of the contacts' ray lengths, metres (paper section 5.2)
+    double depth_max = 0;  ///< metres
+    double broad_ms = 0;   ///< our broad phase; 0 when pairs were given
+    double narrow_ms = 0;  ///< everything after the broad phase
 };
 
 /// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.

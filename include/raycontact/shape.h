@@ -28,7 +28,7 @@ public:
     const MeshReport& report() const;
 
     /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far from
-    /// their origin lose nothing; these positions are exactly centre + float32 offset, in double.
+    /// their origin lose nothing; these positions are centre + float32 offset, in double.
     std::span<const Vec3> vertices() const;
     std::span<const std::array<std::uint32_t, 3>> triangles() const;
     std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex

@@ -3,6 +3,8 @@
 
 #include "device/array.h"
 
+#include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 namespace raycontact {
@@ -44,6 +46,8 @@ private:
 /// array of the wrong element type, does not compile.
 template <KernelId kernel, typename... Given>
 void launch(Device& device, std::size_t count, const Given&... given) {
+    if (count > std::numeric_limits<kernels::uint>::max())
+        throw std::length_error("more than 2^32 work items in one launch; give a step fewer pairs");
     detail::Launch<typename Prototype<kernel>::type>::run(device, kernel, static_cast<kernels::uint>(count), given...);
 }
 

@@ -17,6 +17,7 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads) {
     // For tests and measurements: a narrower instruction set gives the same bits.
     const char* wanted = std::getenv("RAYCONTACT_INSTRUCTION_SET");
     const std::string_view instruction_set = wanted ? wanted : "";
+    if (threads > 1024) throw InputError("threads: " + std::to_string(threads) + " is too many; give at most 1024");
     const auto on_cpu = [&](int core) {
         auto executor = std::make_unique<Executor>(threads, core);
         auto device = cpu::open(*executor, instruction_set);
@@ -28,7 +29,7 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads) {
         std::uint32_t core = 0;
         const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), core);
         if (error == std::errc() && end == part.data() + part.size() && core < usable_cores())
-            return on_cpu(static_cast<int>(core));
+            return on_cpu(usable_core(core));
         throw InputError("device '" + std::string(name) + "': this machine has " + std::to_string(usable_cores())
                          + " cores; use cpu/0 to cpu/" + std::to_string(usable_cores() - 1));
     }

@@ -8,7 +8,8 @@ namespace raycontact {
 /// Exclusive prefix sum on a device; keeps its scratch memory between calls.
 class Scan {
 public:
-    /// firsts[i] = values[0] + ... + values[i - 1]; returns the total.
+    /// firsts[i] = values[0] + ... + values[i - 1]; returns the total. Throws std::length_error where 32 bits cannot
+    /// hold it.
     kernels::uint run(Device& device, const Array<kernels::uint>& values, Array<kernels::uint>& firsts);
 
 private:

@@ -11,7 +11,8 @@ namespace raycontact {
 /// Built on oneTBB, or on plain std::thread where a sanitizer must see every lock (RAYCONTACT_EXECUTOR=std).
 class Executor {
 public:
-    /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core.
+    /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core (the
+    /// system's number, see usable_core).
     explicit Executor(std::uint32_t threads, int core = -1);
     ~Executor();
     Executor(const Executor&) = delete;
@@ -41,6 +42,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// How many cores this process may use, and the system's number of the k-th of them (-1: there are not so many).
 std::uint32_t usable_cores();
+int usable_core(std::uint32_t k);
 
 } // namespace raycontact

@@ -11,16 +11,16 @@ KERNEL void scan_sums(RANGE uint blocks, uint count, GLOBAL const uint* RESTRICT
     }
 }
 
-// One work item; sums[blocks] becomes the total.
+// One work item; sums[blocks] becomes the total, NONE where 32 bits cannot hold it.
 KERNEL void scan_offsets(RANGE uint one, uint blocks, GLOBAL uint* RESTRICT sums) {
     FOR_EACH(only, one) {
-        uint sum = only;
+        ulong sum = only;
         for (uint b = 0u; b < blocks; ++b) {
             const uint own = sums[b];
-            sums[b] = sum;
+            sums[b] = (uint)sum;
             sum += own;
         }
-        sums[blocks] = sum;
+        sums[blocks] = sum < (ulong)NONE ? (uint)sum : NONE;
     }
 }
 

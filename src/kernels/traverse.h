@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two casters (paper section 5.1). Both end with the same closest hits: the boxes hold every hit that counts.
+// The two casters (paper section 5.1). Both give the same hit: the boxes hold every one that counts.
 
 DEVICE Closest nothing_hit(float reach, float tolerance) {
     Closest closest;

@@ -2,6 +2,7 @@
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 
+#include "executor/float_environment.h"
 #include "mesh/adjacency.h"
 #include "mesh/check.h"
 #include "mesh/input_file.h"
@@ -108,6 +109,7 @@ void fill_report(const Mesh& mesh, PreparedMesh& prepared, const std::vector<Vec
 } // namespace
 
 PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
+    const FloatEnvironment environment; // the predicates need rounding to nearest
     check_input(mesh);
     PreparedMesh prepared = weld(mesh);
     std::vector<Vec3> exact(mesh.vertices.size());

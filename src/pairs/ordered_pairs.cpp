@@ -3,6 +3,9 @@
 
 #include "shape/shape_data.h"
 
+#include <limits>
+#include <stdexcept>
+
 namespace raycontact {
 
 namespace {
@@ -37,6 +40,8 @@ kernels::OrderedPair order(const PlacedBody& source, const PlacedBody& target) {
 
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered) {
+    if (pairs.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
+        throw std::length_error("more than 2^31 pairs in one step; give fewer");
     ordered.resize(2 * pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t p = begin; p < end; ++p) {

@@ -100,8 +100,10 @@ void build_clusters(ShapeData& shape) {
                 for (int axis = 0; axis < 3; ++axis) {
                     const float low = bounds.low[axis], high = bounds.high[axis];
                     const float centre = 0.5f * low + 0.5f * high;
+                    // A share of the shape's size, so that no rounding on the way into any target's frame matters.
+                    const float slack = 1.0e-6f * static_cast<float>(shape.diagonal);
                     block.centre[axis][lane] = centre;
-                    block.half_size[axis][lane] = std::nextafter(std::max(high - centre, centre - low), UNBOUNDED);
+                    block.half_size[axis][lane] = std::max(high - centre, centre - low) + slack;
                     if (low <= high) all.add(axis, low, high);
                 }
             }

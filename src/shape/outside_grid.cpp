@@ -29,9 +29,11 @@ public:
         const float far[3] = {shape.high.x - shape.low.x, shape.high.y - shape.low.y, shape.high.z - shape.low.z};
         for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(far[axis] * scale_) + 1;
         cells_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], Unknown);
+        visits_left_ = 20 * cells_.size() + 1000 * shape.mesh.triangles.size();
     }
 
-    void mark_surface(const Vec3& a, const Vec3& b, const Vec3& c) {
+    // False once the triangles are so long that going through the cells around them costs more than a grid could save.
+    bool mark_surface(const Vec3& a, const Vec3& b, const Vec3& c) {
         const double corner[3][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}};
         int from[3], to[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -39,13 +41,19 @@ public:
             from[axis] = cell_of(axis, least, -margin);
             to[axis] = cell_of(axis, most, margin);
         }
-        Vec3 n = cross(b - a, c - a);
+        const std::size_t visits = static_cast<std::size_t>(to[0] - from[0] + 1)
+                                   * static_cast<std::size_t>(to[1] - from[1] + 1)
+                                   * static_cast<std::size_t>(to[2] - from[2] + 1);
+        if (visits > visits_left_) return false;
+        visits_left_ -= visits;
+        const Vec3 n = cross(b - a, c - a);
         const double half = (0.5 + margin) / double(scale_);
         const double reach = half * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
         for (int z = from[2]; z <= to[2]; ++z)
             for (int y = from[1]; y <= to[1]; ++y)
                 for (int x = from[0]; x <= to[0]; ++x)
                     if (std::fabs(dot(n, middle(x, y, z) - a)) <= reach) cells_[index(x, y, z)] = Surface;
+        return true;
     }
 
     // From the faces of the box inwards: a cell there that no triangle touches is outside, and so is every cell that
@@ -104,6 +112,7 @@ private:
     float scale_;
     int size_[3];
     std::vector<State> cells_;
+    std::size_t visits_left_;
 };
 
 } // namespace
@@ -112,7 +121,8 @@ void build_outside_grid(ShapeData& shape) {
     if (!shape.mesh.report.outward || shape.header.closed == 0) return;
     Grid grid(shape);
     const auto point = [&](std::uint32_t v) { return Vec3{shape.points[v].x, shape.points[v].y, shape.points[v].z}; };
-    for (const auto& [a, b, c] : shape.mesh.triangles) grid.mark_surface(point(a), point(b), point(c));
+    for (const auto& [a, b, c] : shape.mesh.triangles)
+        if (!grid.mark_surface(point(a), point(b), point(c))) return;
     grid.flood();
     grid.write(shape);
 }

@@ -63,6 +63,12 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
 std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
+    if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
+        throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t v : triangle)
+            if (v >= mesh.vertices.size())
+                throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " does not exist");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
     shape.mesh = mesh;

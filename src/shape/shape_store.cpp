@@ -14,7 +14,7 @@ namespace {
 // Kernels count in 32 bits.
 kernels::uint first_index(std::size_t size, std::size_t more) {
     if (size + more >= std::numeric_limits<kernels::uint>::max() / VERTEX_LANES)
-        throw std::length_error("the shapes of this scene hold more than 2^32 vertices or triangles");
+        throw std::length_error("the shapes of this scene hold more than 2^28 vertices or triangles");
     return static_cast<kernels::uint>(size);
 }
 
