@@ -20,7 +20,7 @@ struct DeviceInfo {
     std::string why_not; ///< empty when usable
 };
 
-/// Every device found on this machine; drivers are looked for at run time. Never throws for a missing driver.
+/// Every device that this version knows how to use: the CPU alone so far. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact
