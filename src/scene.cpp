@@ -82,7 +82,10 @@ struct Scene::State {
     StepStats stats;
 };
 
-Scene::Scene(const Settings& settings) : state_(std::make_unique<State>(settings)) {}
+Scene::Scene(const Settings& settings) {
+    check_settings(settings);
+    state_ = std::make_unique<State>(settings);
+}
 Scene::~Scene() = default;
 
 BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
@@ -111,6 +114,16 @@ void Scene::set_pose(BodyId body, const Pose& pose) {
 
 const Pose& Scene::pose(BodyId body) const {
     return state_->existing(body).pose;
+}
+void Scene::set_settings(const Settings& settings) {
+    check_settings(settings);
+    const Settings& old = state_->narrow.settings();
+    if (settings.device != old.device || settings.threads != old.threads)
+        throw InputError("device and threads are fixed when a scene is made; make another scene for others");
+    state_->narrow.set_settings(settings);
+}
+const Settings& Scene::settings() const {
+    return state_->narrow.settings();
 }
 const Shape& Scene::shape(BodyId body) const {
     return *state_->existing(body).shape;
@@ -153,6 +166,9 @@ std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
 
 std::span<const Contact> Scene::contacts() const {
     return state_->contacts;
+}
+std::span<const LostContact> Scene::lost_contacts() const {
+    return state_->narrow.lost_contacts();
 }
 const StepStats& Scene::stats() const {
     return state_->stats;

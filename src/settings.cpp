@@ -4,13 +4,17 @@
 #include <raycontact/error.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace raycontact {
 
 namespace {
 
-constexpr std::array methods{std::pair{Method::standard, std::string_view("standard")}};
+constexpr std::array methods{std::pair{Method::standard, std::string_view("standard")},
+                             std::pair{Method::iterative, std::string_view("iterative")},
+                             std::pair{Method::predictive, std::string_view("predictive")},
+                             std::pair{Method::certified, std::string_view("certified")}};
 constexpr std::array casters{std::pair{Caster::basic, std::string_view("basic")},
                              std::pair{Caster::bvh, std::string_view("bvh")}};
 constexpr std::array directions{std::pair{Direction::ray, std::string_view("ray")},
@@ -34,7 +38,30 @@ std::string_view name_of(const Table& table, Value wanted) {
     return "?";
 }
 
+void need_length(const char* name, const std::optional<double>& metres, bool zero_too) {
+    if (!metres) return;
+    if (!std::isfinite(*metres) || *metres < 0 || (*metres == 0 && !zero_too))
+        throw InputError(std::string(name) + " must be a finite length "
+                         + (zero_too ? "of at least 0 metres" : "above 0 metres") + ", not " + std::to_string(*metres));
+}
+
 } // namespace
+
+void check_settings(const Settings& settings) {
+    need_length("displacement_threshold", settings.displacement_threshold, true);
+    need_length("culling_distance", settings.culling_distance, true);
+    need_length("distance_extension", settings.distance_extension, true);
+    if (!(std::isfinite(settings.confidence) && settings.confidence >= 1))
+        throw InputError("confidence must be at least 1 (paper equation 1), not " + std::to_string(settings.confidence));
+    if (settings.max_iterations == 0)
+        throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
+    if (settings.displacement_threshold && settings.distance_extension
+        && *settings.distance_extension < *settings.displacement_threshold)
+        throw InputError("distance_extension (" + std::to_string(*settings.distance_extension)
+                         + " m) must not be below displacement_threshold ("
+                         + std::to_string(*settings.displacement_threshold)
+                         + " m), or vertices could arrive unseen (paper section 3.1)");
+}
 
 Method method_from(std::string_view word) {
     return find(methods, word, "method");

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contacts/changes.h"
 #include "contacts/gather.h"
 #include "contacts/place.h"
+#include "rays/certified.h"
 #include "rays/ray_queue.h"
 
 #include <raycontact/scene.h>
@@ -18,21 +20,32 @@ public:
     Device& device() { return *opened_.device; }
     Executor& executor() { return *opened_.executor; }
     ShapeStore& shapes() { return shapes_; }
+    const Settings& settings() const { return settings_; }
+    /// Forgets what the method before kept.
+    void set_settings(const Settings& settings);
 
     /// pairs: sorted, each once, indices into bodies. Fills contacts and stats except broad_ms.
     void step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
               StepStats& stats);
+    std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
 
 private:
+    void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    void forget();
+
     Settings settings_;
     OpenDevice opened_;
     ShapeStore shapes_;
     std::vector<kernels::OrderedPair> ordered_;
     Array<kernels::OrderedPair> device_pairs_;
     RayQueue queue_;
+    Motion motion_;
+    CertifiedRays certified_;
     Array<kernels::Hit> hits_;
     Gather gather_;
     std::vector<kernels::LocalContact> local_;
+    Changes changes_;
 };
 
 } // namespace raycontact

@@ -24,11 +24,21 @@ struct Contact {
     std::array<float, 3> normal{};      ///< unit, world frame, from A to B
     float depth = 0;                    ///< > 0, metres along the normal (section 3.2: r . n)
     float ray_length = 0;               ///< |r|, metres from the vertex to the hit
+    bool is_new = true;                 ///< the step before had no contact with this key in this pair
+};
+
+/// A contact that the step before had and this one has not.
+struct LostContact {
+    std::uint32_t body_a = 0; ///< body_a < body_b
+    std::uint32_t body_b = 0;
+    VertexBody vertex_body = VertexBody::a;
+    std::uint32_t vertex = 0; ///< source vertex, index of its file
 };
 
 /// Names the same physical contact from step to step, unique within its pair: source body ('a' or 'b'), feature type
 /// (0 vertex), feature index, as 2 + 8 hex digits.
 std::string contact_key(const Contact& contact);
+std::string contact_key(const LostContact& contact);
 
 /// XXH64 over every contact of every step in order; the same for every device, caster and thread count.
 /// Layout per contact: step, body_a, body_b, vertex_body, vertex, triangle as little-endian uint32; normal, depth,

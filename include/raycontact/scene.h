@@ -21,11 +21,22 @@ using Pair = std::pair<BodyId, BodyId>;
 struct StepStats {
     std::uint64_t pairs = 0;     ///< unordered pairs in the narrow phase
     std::uint64_t vertices = 0;  ///< vertices tested against bounds, after whole clusters were ruled out
-    std::uint64_t rays = 0;      ///< rays of the rule: vertices inside the other body's bounds
-    std::uint64_t rays_cast = 0; ///< of these, cast; the vertices of the rest are known to be outside the other mesh
+    /// Rays of the rule, vertices inside the other body's bounds; with another method than `standard` those among the
+    /// vertices it looked at, since it does not look at the rest.
+    std::uint64_t rays = 0;
+    std::uint64_t rays_cast = 0; ///< in full; the vertices of the rest are known to be outside the other mesh
     std::uint64_t side_tests =
         0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
+    std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: new ones, and those that moved far enough
+    std::uint64_t pairs_asleep = 0; ///< ordered pairs of which nothing was looked at
+    std::uint64_t walks = 0;        ///< rays followed from last step's triangle (iterative, predictive)
+    std::uint64_t walks_lost = 0;   ///< of these, how many ended nowhere
+    std::uint64_t walk_casts = 0;   ///< of those, how many were cast in full instead
+    std::uint64_t predictions = 0;  ///< vertices followed without contact (predictive)
+    std::uint64_t pair_bytes = 0;   ///< memory of what is kept for the open pairs
     std::uint64_t contacts = 0;
+    std::uint64_t contacts_new = 0;  ///< whose key the step before did not have
+    std::uint64_t contacts_lost = 0; ///< of the step before, whose key this one does not have
     double ray_length = 0; ///< sum of the contacts' ray lengths, metres (paper section 5.2)
     double depth_max = 0;  ///< metres
     double broad_ms = 0;   ///< our broad phase; 0 when pairs were given
@@ -49,6 +60,10 @@ public:
     const Pose& pose(BodyId body) const;
     const Shape& shape(BodyId body) const;
     std::uint32_t body_count() const;
+    /// Changes method, caster, direction or thresholds between two steps; nothing that another method kept is used.
+    /// Throws InputError for settings that make no sense, or for another device or number of threads than before.
+    void set_settings(const Settings& settings);
+    const Settings& settings() const;
 
     /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts.
     std::span<const Contact> step();
@@ -58,6 +73,8 @@ public:
 
     /// Of the last step; sorted by (body_a, body_b, vertex_body, vertex). Valid until the next step.
     std::span<const Contact> contacts() const;
+    /// Contacts of the step before that are gone, in the same order; `Contact::is_new` says which ones came.
+    std::span<const LostContact> lost_contacts() const;
     const StepStats& stats() const;
     /// The pairs of the last step, sorted.
     std::span<const Pair> pairs() const;

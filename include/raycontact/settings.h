@@ -2,13 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace raycontact {
 
-/// How rays are kept from step to step. Only `standard` exists so far: every ray in full, every step.
-enum class Method { standard };
+/// What is kept from step to step.
+enum class Method {
+    standard,   ///< nothing: every ray in full, every step; the reference
+    iterative,  ///< a pair that moved little re-casts last step's contacts alone (LGA13; paper section 3)
+    predictive, ///< as iterative, and also follows vertices about to touch (paper section 3.1, Algorithm 1)
+    certified,  ///< leaves alone what cannot touch yet; the contacts are those of `standard` (docs/certified.md)
+};
 
 /// How a ray meets a mesh. Both give the same bits.
 enum class Caster {
@@ -23,15 +29,35 @@ enum class Direction {
 };
 
 struct Settings {
-    Method method = Method::standard;
+    Method method = Method::certified;
     Caster caster = Caster::bvh;
     Direction direction = Direction::reprojected;
+
+    /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
+    /// its size, its speed and the counted cost of either kind of step, and chosen again as it moves. With `certified`
+    /// no contact depends on it.
+    std::optional<double> displacement_threshold;
+    /// How far ahead of a vertex its predictive ray looks, in displacement thresholds; at least 1 (paper equation 1).
+    double confidence = 2;
+    /// The same in metres, in place of confidence x displacement threshold.
+    std::optional<double> culling_distance;
+    /// Metres by which `predictive` widens the bounds whose vertices it looks at (paper section 3.1); at least the
+    /// displacement threshold. Empty: the culling distance.
+    std::optional<double> distance_extension;
+    /// Triangles a ray may visit when it is followed from step to step (maxIt of Algorithm 1); at least 1.
+    std::uint32_t max_iterations = 16;
+    /// Where a walk ends nowhere, cast that ray in full instead of giving it up; counted in StepStats.
+    bool cast_lost_walks = true;
+
     /// Leave out the rays of vertices that a mesh's outside grid knows to be outside (caster bvh; docs/design.md). No
     /// contact depends on it; off, every ray is cast.
     bool skip_outside = true;
     std::string device = "auto"; ///< "auto", "cpu" or "cpu/k" (the k-th core alone)
     std::uint32_t threads = 0;   ///< of the CPU device; 0: one per core. No count changes a bit of the result
 };
+
+/// Throws InputError naming the setting that makes no sense, and what would.
+void check_settings(const Settings& settings);
 
 /// The words of the command line; throw InputError naming what is known.
 Method method_from(std::string_view word);

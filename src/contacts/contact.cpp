@@ -9,10 +9,21 @@
 
 namespace raycontact {
 
-std::string contact_key(const Contact& contact) {
+namespace {
+
+std::string key_of(VertexBody body, std::uint32_t vertex) {
     char text[11];
-    std::snprintf(text, sizeof text, "%c0%08x", contact.vertex_body == VertexBody::a ? 'a' : 'b', contact.vertex);
+    std::snprintf(text, sizeof text, "%c0%08x", body == VertexBody::a ? 'a' : 'b', vertex);
     return text;
+}
+
+} // namespace
+
+std::string contact_key(const Contact& contact) {
+    return key_of(contact.vertex_body, contact.vertex);
+}
+std::string contact_key(const LostContact& contact) {
+    return key_of(contact.vertex_body, contact.vertex);
 }
 
 ContactHash::ContactHash() : state_(XXH64_createState()) {

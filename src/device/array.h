@@ -30,16 +30,21 @@ public:
         if (!values.empty()) device.queue().write(*buffer_, 0, values.data(), values.size_bytes());
     }
 
+    /// Keeps what is there; the rest holds anything.
+    void extend(Device& device, std::size_t size) {
+        if (size > capacity_) {
+            Array grown;
+            grown.resize(device, size);
+            if (size_ > 0) device.queue().copy(*grown.buffer_, *buffer_, size_ * sizeof(T));
+            *this = std::move(grown);
+        }
+        size_ = size;
+    }
+
     /// Keeps what is there.
     void append(Device& device, std::span<const T> values) {
         const std::size_t old_size = size_;
-        if (old_size + values.size() > capacity_) {
-            Array grown;
-            grown.resize(device, old_size + values.size());
-            if (old_size > 0) device.queue().copy(*grown.buffer_, *buffer_, old_size * sizeof(T));
-            *this = std::move(grown);
-        }
-        size_ = old_size + values.size();
+        extend(device, old_size + values.size());
         if (!values.empty()) device.queue().write(*buffer_, old_size * sizeof(T), values.data(), values.size_bytes());
     }
 

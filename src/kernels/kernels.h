@@ -7,6 +7,8 @@
 
 #include "kernels/find_vertices.h"
 
+#include "kernels/watch.h"
+
 #include "kernels/cast_rays.h"
 
 #include "kernels/emit_contacts.h"

@@ -8,6 +8,8 @@
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
+// Of a byte of a clearance grid: the middle of the cell is outside. The lower bits are a length.
+#define CLEARANCE_OUTSIDE 128u
 
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
@@ -56,13 +58,20 @@ typedef struct {
     uint cluster_levels;
     uint normal_first;
     uint closed;
+    uint outward;      // closed, and wound once around its inside: a vertex beyond its surface cannot touch
     float tolerance;   // metres: distances of two hits closer than this are not told apart
     uint grid_first;   // words of outside_cells, a bit for each cell, x fastest
     uint grid_size[3]; // cells; 0: no grid
     float grid_low[3];
-    float grid_scale; // cells a metre
+    float grid_scale;       // cells a metre
+    uint clearance_first;   // words of clearances, four cells each, x fastest
+    uint clearance_size[3]; // cells; 0: none
+    float clearance_low[3], clearance_high[3]; // the box of the shape
+    float clearance_scale;                     // cells a metre
+    float clearance_cell;                      // metres a cell
+    float clearance_unit;                      // metres a step of the stored lengths
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 100);
+WIRE_SIZE(ShapeHeader, 156);
 
 // Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
 typedef struct {
@@ -80,6 +89,32 @@ typedef struct {
     uint lanes;        // a bit for each vertex that casts a ray
 } Cluster;
 WIRE_SIZE(Cluster, 12);
+
+// A vertex block that its pair watches: nothing in it can touch before the pair's clock exceeds `wake`. lanes: the
+// vertices that cast a ray, valid in a step that looked at it.
+typedef struct {
+    uint vertex_block; // absolute
+    float wake;        // metres
+    uint lanes;
+} Watch;
+WIRE_SIZE(Watch, 12);
+
+// Part of a pair's watches. margin: metres of rounding that a certificate must exceed.
+typedef struct {
+    uint pair;
+    uint first, count; // watches
+    float clock;       // metres the pair has moved at most
+    float margin;
+} Segment;
+WIRE_SIZE(Segment, 20);
+
+// What looking at a segment found. wake: the least of its watches. blocks: looked at. inside: vertices in the bounds.
+typedef struct {
+    float wake;
+    uint blocks;
+    uint inside;
+} Look;
+WIRE_SIZE(Look, 12);
 
 typedef struct {
     uint pair;

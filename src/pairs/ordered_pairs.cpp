@@ -16,7 +16,9 @@ float reach_into(const ShapeData& target, const ShapeData& source) {
     return source.exit_max > 0 ? source.exit_max : static_cast<float>(source.diagonal);
 }
 
-kernels::OrderedPair order(const PlacedBody& source, const PlacedBody& target) {
+} // namespace
+
+kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target) {
     const Pose relative = relative_pose(target.centred, source.centred);
     const ShapeData& shape = target.shape->data();
     const float grow = reach_into(shape, source.shape->data());
@@ -36,8 +38,6 @@ kernels::OrderedPair order(const PlacedBody& source, const PlacedBody& target) {
     return pair;
 }
 
-} // namespace
-
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered) {
     if (pairs.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
@@ -47,8 +47,8 @@ void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::sp
         for (std::uint32_t p = begin; p < end; ++p) {
             const PlacedBody& a = bodies[pairs[p].first];
             const PlacedBody& b = bodies[pairs[p].second];
-            ordered[2 * p] = order(a, b);
-            ordered[2 * p + 1] = order(b, a);
+            ordered[2 * p] = order_pair(a, b);
+            ordered[2 * p + 1] = order_pair(b, a);
         }
     });
 }

@@ -18,8 +18,11 @@ struct PlacedBody {
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
 };
 
-/// Each pair twice, a into b and b into a, in the order of `pairs`: relative poses are formed in double and only then
-/// rounded, so that nothing is lost far from the origin.
+/// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is
+/// lost far from the origin.
+kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target);
+
+/// Each pair twice, a into b and b into a, in the order of `pairs`.
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered);
 

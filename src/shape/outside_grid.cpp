@@ -118,7 +118,7 @@ private:
 } // namespace
 
 void build_outside_grid(ShapeData& shape) {
-    if (!shape.mesh.report.outward || shape.header.closed == 0) return;
+    if (shape.header.outward == 0) return;
     Grid grid(shape);
     const auto point = [&](std::uint32_t v) { return Vec3{shape.points[v].x, shape.points[v].y, shape.points[v].z}; };
     for (const auto& [a, b, c] : shape.mesh.triangles)

@@ -5,6 +5,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/vector.h"
 #include "shape/bvh.h"
+#include "shape/clearance_grid.h"
 #include "shape/clusters.h"
 #include "shape/exit_distances.h"
 #include "shape/outside_grid.h"
@@ -41,6 +42,7 @@ void round_vertices(ShapeData& shape) {
         shape.points.push_back(p);
         v = shape.centre + Vec3{p.x, p.y, p.z};
         shape.radius = std::max(shape.radius, length(v));
+        shape.reach = std::max(shape.reach, length(Vec3{p.x, p.y, p.z}));
         low = {std::min(low.x, double(p.x)), std::min(low.y, double(p.y)), std::min(low.z, double(p.z))};
         high = {std::max(high.x, double(p.x)), std::max(high.y, double(p.y)), std::max(high.z, double(p.z))};
     }
@@ -89,6 +91,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     // How far float32 may err in a ray test, with a margin: docs/design.md derives these. Into an open mesh rays may
     // start well outside its box.
     shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
+    shape.header.outward = shape.header.closed != 0 && mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
@@ -98,6 +101,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
         if (std::isfinite(exit)) shape.exit_max = std::max(shape.exit_max, exit);
     build_clusters(shape);
     build_outside_grid(shape);
+    build_clearance_grid(shape);
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));
 }
 
@@ -147,7 +151,7 @@ std::uint64_t Shape::memory_bytes() const {
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.exit_distances)
            + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells);
+           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells) + bytes(d.clearances);
 }
 
 } // namespace raycontact

@@ -43,6 +43,7 @@ void ShapeStore::remove(const Shape* shape) {
 
 bool ShapeStore::pack() {
     if (2 * bytes_dropped_ <= bytes_used_) return false;
+    ++packed_;
     arrays_ = {};
     bytes_used_ = bytes_dropped_ = 0;
     for (const Shape* shape : order_) upload(entries_.at(shape));
@@ -56,6 +57,7 @@ void ShapeStore::upload(Entry& entry) {
     header.triangle_block_first = first_index(arrays_.triangle_blocks.size(), data.triangle_blocks.size());
     header.vertex_block_first = first_index(arrays_.vertex_blocks.size(), data.vertex_blocks.size());
     header.normal_first = first_index(arrays_.face_normals.size(), data.face_normals.size());
+    header.clearance_first = first_index(arrays_.clearances.size(), data.clearances.size());
     header.grid_first = first_index(arrays_.outside_cells.size(), data.outside_cells.size());
     for (kernels::uint& first : header.cluster_first)
         first += first_index(arrays_.clusters.size(), data.clusters.size());
@@ -67,6 +69,7 @@ void ShapeStore::upload(Entry& entry) {
     arrays_.clusters.append(device_, std::span(data.clusters));
     arrays_.face_normals.append(device_, std::span(data.face_normals));
     arrays_.outside_cells.append(device_, std::span(data.outside_cells));
+    arrays_.clearances.append(device_, std::span(data.clearances));
     bytes_used_ += entry.shape->memory_bytes();
 }
 

@@ -22,6 +22,7 @@ public:
         Array<kernels::ClusterBlock> clusters;
         Array<kernels::Packed3> face_normals;
         Array<kernels::uint> outside_cells;
+        Array<kernels::uint> clearances;
     };
 
     explicit ShapeStore(Device& device) : device_(device) {}
@@ -32,6 +33,8 @@ public:
     kernels::uint index_of(const Shape* shape) const { return entries_.at(shape).index; }
     /// Frees the memory of dropped shapes once they outweigh the rest. Indices change when it returns true.
     bool pack();
+    /// Counts the times that indices changed.
+    std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
 
 private:
@@ -47,6 +50,7 @@ private:
     std::vector<const Shape*> order_; ///< of upload, so that no result depends on addresses
     Arrays arrays_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
+    std::uint64_t packed_ = 0;
 };
 
 } // namespace raycontact

@@ -38,4 +38,7 @@ DEVICE uint bit_count(uint bits) {
 DEVICE float magnitude_of(float x) {
     return __builtin_fabsf(x);
 }
+DEVICE float root_of(float x) {
+    return __builtin_sqrtf(x);
+}
 } // namespace raycontact::kernels

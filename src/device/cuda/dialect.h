@@ -20,6 +20,9 @@ DEVICE uint bit_count(uint bits) {
 DEVICE float magnitude_of(float x) {
     return fabsf(x);
 }
+DEVICE float root_of(float x) {
+    return __fsqrt_rn(x);
+}
 DEVICE uint pack_sixteen(const int* lanes) {
     uint bits = 0u;
     for (int k = 0; k < 16; ++k) bits |= (uint)lanes[k] & (1u << k);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "executor/executor.h"
+#include "pairs/ordered_pairs.h"
+
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// How each body moved since the last step, and from it a bound for a pair that costs a few operations: no relative
+/// pose is formed.
+class Motion {
+public:
+    /// Once a step, with every body of the scene.
+    void update(Executor& executor, std::span<const PlacedBody> bodies);
+
+    /// No less than what any vertex of either body moved in the frame of the other, metres.
+    double pair_bound(std::span<const PlacedBody> bodies, const Pair& pair) const;
+    /// About how fast the two bodies' surfaces move past each other, metres a step.
+    double pair_speed(std::span<const PlacedBody> bodies, const Pair& pair) const;
+    /// How far the pair's relative rotation may be from an orthonormal matrix.
+    double pair_shear(const Pair& pair) const { return bodies_[pair.first].shear + bodies_[pair.second].shear + 1e-15; }
+
+private:
+    struct Body {
+        Pose centred; ///< of the last step
+        bool known = false;
+        Vec3 shift;       ///< of the centre, metres
+        double origin = 0; ///< its length
+        double turn = 0;  ///< turn_bound
+        double shear = 0;
+    };
+    std::vector<Body> bodies_;
+};
+
+} // namespace raycontact

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/certified.h"
+
+#include "mesh/vector.h"
+#include "pairs/displacement.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+
+namespace raycontact {
+
+namespace {
+
+constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes keeps every thread busy
+
+enum Due : std::uint8_t { look_0 = 1, list_0 = 4 };
+
+// The translation of the inverse pose, but for its sign.
+Vec3 seen_from_other(const Pose& pose) {
+    const auto& r = pose.rotation;
+    const Vec3& t = pose.translation;
+    return {(r[0] * t.x + r[3] * t.y) + r[6] * t.z, (r[1] * t.x + r[4] * t.y) + r[7] * t.z,
+            (r[2] * t.x + r[5] * t.y) + r[8] * t.z};
+}
+
+// Rounding of two float32 transforms, of the ray test and of the clock: docs/certified.md adds them up; here they
+// count several times over.
+double rounding_of(const PlacedBody& source, const PlacedBody& target) {
+    const double apart = length(source.centred.translation - target.centred.translation);
+    return 1e-5 * target.shape->data().diagonal + 4e-6 * (source.shape->data().reach + apart);
+}
+
+// How far beyond the bounds a new list reaches: some steps' worth, so that lists are short where a pair is slow and
+// last where it is fast.
+double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
+    const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+    return std::clamp(12 * speed, 0.01 * size, 0.2 * size);
+}
+
+} // namespace
+
+void CertifiedRays::clear() {
+    table_.clear();
+    pool_.clear();
+}
+
+// Decides for each pair, in double, what must be looked at; a cheap bound first, which most pairs at rest pass.
+void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                            const Motion& motion, std::optional<double> threshold) {
+    due_.resize(pairs.size());
+    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            PairState& state = table_.state(i);
+            due_[i] = 0;
+            const bool fresh = state.directed[0].expiry < 0;
+            state.slack -= motion.pair_bound(bodies, pairs[i]);
+            if (!fresh && state.slack > 0) continue;
+
+            const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
+            const Pose now = relative_pose(b.centred, a.centred);
+            double clock[2] = {0, 0};
+            if (!fresh) {
+                const double turn = turn_bound(state.reference, now, motion.pair_shear(pairs[i]));
+                const double shift_0 = length(now.translation - state.reference.translation);
+                const double shift_1 = length(seen_from_other(now) - seen_from_other(state.reference));
+                clock[0] = state.directed[0].clock + shift_0 + turn * a.shape->data().reach;
+                clock[1] = state.directed[1].clock + shift_1 + turn * b.shape->data().reach;
+            }
+            double slack = 1e300;
+            for (int d = 0; d < 2; ++d) {
+                const DirectedState& own = state.directed[d];
+                if (fresh || clock[d] >= own.expiry)
+                    due_[i] |= static_cast<std::uint8_t>(list_0 << d);
+                else if (clock[d] >= own.wake)
+                    due_[i] |= static_cast<std::uint8_t>(look_0 << d);
+                slack = std::min(slack, std::min(own.wake, own.expiry) - clock[d]);
+            }
+            state.slack = slack;
+            if (due_[i] == 0) continue; // the reference stays, so that a jitter adds up to nothing
+            state.reference = now;
+            const double speed = motion.pair_speed(bodies, pairs[i]);
+            state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
+            for (int d = 0; d < 2; ++d) {
+                DirectedState& own = state.directed[d];
+                own.clock = clock[d];
+                if ((due_[i] & (list_0 << d)) == 0) continue;
+                own.clock = 0;
+                own.expiry = threshold ? *threshold : look_ahead(a, b, state.speed);
+            }
+        }
+    });
+
+    active_.clear();
+    stale_.clear();
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        if (due_[i] == 0) continue;
+        for (std::uint32_t d = 0; d < 2; ++d) {
+            if ((due_[i] & ((look_0 | list_0) << d)) == 0) continue;
+            if ((due_[i] & (list_0 << d)) != 0) stale_.push_back(static_cast<std::uint32_t>(active_.size()));
+            active_.push_back(2 * i + d);
+        }
+    }
+    host_pairs_.resize(active_.size());
+    margins_.resize(active_.size());
+    executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const Pair& pair = pairs[active_[i] / 2];
+            const bool from_a = active_[i] % 2 == 0;
+            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            host_pairs_[i] = order_pair(source, target);
+            margins_[i] = static_cast<float>(rounding_of(source, target));
+        }
+    });
+}
+
+// The blocks of each stale pair that reach into its bounds widened by what the list is to last.
+void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
+    const ShapeStore::Arrays& arrays = shapes.arrays();
+    wide_pairs_.resize(stale_.size());
+    for (std::size_t i = 0; i < stale_.size(); ++i) {
+        wide_pairs_[i] = host_pairs_[stale_[i]];
+        const DirectedState& own = directed(active_[stale_[i]]);
+        const float wide = static_cast<float>(own.expiry) + margins_[stale_[i]];
+        for (int k = 0; k < 3; ++k) {
+            wide_pairs_[i].bounds[k] -= wide;
+            wide_pairs_[i].bounds[3 + k] += wide;
+        }
+    }
+    device_wide_.write(device, wide_pairs_);
+    counts_.resize(device, stale_.size());
+    small_.resize(device, stale_.size());
+    launch<KernelId::count_clusters>(device, stale_.size(), device_wide_, arrays.headers, arrays.clusters, counts_,
+                                     small_);
+    clusters_.resize(device, scan_.run(device, counts_, firsts_));
+    host_counts_.resize(stale_.size());
+    counts_.read(device, host_counts_);
+
+    places_.resize(stale_.size());
+    for (std::size_t i = 0; i < stale_.size(); ++i) {
+        DirectedState& own = directed(active_[stale_[i]]);
+        pool_.give_back({own.first, own.capacity});
+        own.capacity = 0; // should the next line fail
+        const RangePool::Range range = pool_.take(host_counts_[i]);
+        places_[i] = own.first = range.first;
+        own.capacity = range.capacity;
+        own.count = host_counts_[i];
+    }
+    if (clusters_.size() == 0) return;
+    watches_.extend(device, pool_.end());
+    device_places_.write(device, places_);
+    launch<KernelId::write_clusters>(device, stale_.size(), device_wide_, arrays.headers, arrays.clusters, small_,
+                                     firsts_, clusters_);
+    launch<KernelId::begin_watches>(device, clusters_.size(), clusters_, firsts_, device_places_, watches_);
+}
+
+void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
+    const ShapeStore::Arrays& arrays = shapes.arrays();
+    host_segments_.clear();
+    for (std::uint32_t i = 0; i < active_.size(); ++i) {
+        DirectedState& own = directed(active_[i]);
+        own.wake = own.expiry;
+        for (std::uint32_t done = 0; done < own.count; done += segment_size)
+            host_segments_.push_back({i, own.first + done, std::min(segment_size, own.count - done),
+                                      static_cast<float>(own.clock), margins_[i]});
+    }
+    device_pairs_.write(device, host_pairs_);
+    segments_.write(device, host_segments_);
+    looks_.resize(device, host_segments_.size());
+    counts_.resize(device, host_segments_.size());
+    launch<KernelId::look_at_watches>(device, host_segments_.size(), device_pairs_, arrays.headers,
+                                      arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, segments_,
+                                      watches_, looks_, counts_);
+    rays_.resize(device, scan_.run(device, counts_, firsts_));
+    launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
+                                       firsts_, rays_);
+    host_looks_.resize(host_segments_.size());
+    looks_.read(device, host_looks_);
+    inside_ = blocks_ = 0;
+    for (std::size_t s = 0; s < host_segments_.size(); ++s) {
+        DirectedState& own = directed(active_[host_segments_[s].pair]);
+        own.wake = std::min(own.wake, double(host_looks_[s].wake));
+        inside_ += host_looks_[s].inside;
+        blocks_ += host_looks_[s].blocks;
+    }
+    for (const std::uint32_t ordered : active_) {
+        PairState& state = table_.state(ordered / 2);
+        state.slack = 1e300;
+        for (const DirectedState& own : state.directed) state.slack = std::min(state.slack, own.wake - own.clock);
+    }
+}
+
+void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
+                         std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Motion& motion,
+                         std::optional<double> threshold) {
+    if (packed_ != shapes.packed()) clear(); // lists name vertex blocks by their place
+    packed_ = shapes.packed();
+    table_.match(pairs, [this](PairState& state) {
+        for (const DirectedState& own : state.directed) pool_.give_back({own.first, own.capacity});
+    });
+    wake_up(executor, bodies, pairs, motion, threshold);
+    make_lists(device, shapes);
+    look(device, shapes);
+}
+
+} // namespace raycontact
