@@ -18,6 +18,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
 
 void NarrowPhase::forget() {
     certified_.clear();
+    coherent_.clear();
 }
 
 // Every vertex in the other body's bounds casts its ray, unless a grid knows that it is outside.
@@ -50,6 +51,23 @@ void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const 
     stats.pair_bytes = certified_.bytes();
 }
 
+// Contacts followed from the last step, and in full for pairs that moved too far; not always those of `standard`.
+void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+    Device& on = device();
+    motion_.update(executor(), bodies);
+    coherent_.follow(on, executor(), shapes_, bodies, pairs, motion_, settings_);
+    stats.side_tests =
+        gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
+    // Two runs, pairs looked at in full and followed ones, each in the order of the pairs.
+    for (kernels::LocalContact& contact : local_) contact.pair = coherent_.ordered()[contact.pair];
+    const auto by_pair = [](const auto& a, const auto& b) { return a.pair < b.pair; };
+    const auto second = std::is_sorted_until(local_.begin(), local_.end(), by_pair);
+    merged_.resize(local_.size());
+    std::merge(local_.begin(), second, second, local_.end(), merged_.begin(), by_pair);
+    local_.swap(merged_);
+    coherent_.count(stats);
+}
+
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
                        StepStats& stats) {
     const auto start = std::chrono::steady_clock::now();
@@ -57,6 +75,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
     try {
         if (settings_.method == Method::certified)
             certified(bodies, pairs, stats);
+        else if (settings_.method != Method::standard)
+            coherent(bodies, pairs, stats);
         else
             standard(bodies, pairs, stats);
     } catch (...) {

@@ -5,6 +5,7 @@
 #include "contacts/gather.h"
 #include "contacts/place.h"
 #include "rays/certified.h"
+#include "rays/coherent.h"
 #include "rays/ray_queue.h"
 
 #include <raycontact/scene.h>
@@ -32,6 +33,7 @@ public:
 private:
     void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void forget();
 
     Settings settings_;
@@ -42,9 +44,10 @@ private:
     RayQueue queue_;
     Motion motion_;
     CertifiedRays certified_;
+    CoherentRays coherent_;
     Array<kernels::Hit> hits_;
     Gather gather_;
-    std::vector<kernels::LocalContact> local_;
+    std::vector<kernels::LocalContact> local_, merged_;
     Changes changes_;
 };
 

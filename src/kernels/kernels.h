@@ -11,6 +11,8 @@
 
 #include "kernels/cast_rays.h"
 
+#include "kernels/follow.h"
+
 #include "kernels/emit_contacts.h"
 
 #include "kernels/scan.h"

@@ -64,6 +64,7 @@ typedef struct {
     uint grid_size[3]; // cells; 0: no grid
     float grid_low[3];
     float grid_scale;       // cells a metre
+    uint face_first;
     uint clearance_first;   // words of clearances, four cells each, x fastest
     uint clearance_size[3]; // cells; 0: none
     float clearance_low[3], clearance_high[3]; // the box of the shape
@@ -71,7 +72,7 @@ typedef struct {
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 156);
+WIRE_SIZE(ShapeHeader, 160);
 
 // Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
 typedef struct {
@@ -89,6 +90,32 @@ typedef struct {
     uint lanes;        // a bit for each vertex that casts a ray
 } Cluster;
 WIRE_SIZE(Cluster, 12);
+
+// Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across its
+// edges 0-1, 1-2, 2-0 (NONE at a border).
+typedef struct {
+    uint slot;
+    uint neighbour[3];
+} Face;
+WIRE_SIZE(Face, 16);
+
+// A ray that is followed from step to step: its vertex, and the triangle it met last.
+typedef struct {
+    uint slot; // absolute: VERTEX_LANES * vertex block + lane
+    uint triangle;
+} Candidate;
+WIRE_SIZE(Candidate, 8);
+
+// How a pair's rays ended: candidates kept for the next step, of them without contact; walks, of them lost, of those
+// cast in full.
+typedef struct {
+    uint kept;
+    uint predictions;
+    uint walks;
+    uint lost;
+    uint cast;
+} Followed;
+WIRE_SIZE(Followed, 20);
 
 // A vertex block that its pair watches: nothing in it can touch before the pair's clock exceeds `wake`. lanes: the
 // vertices that cast a ray, valid in a step that looked at it.

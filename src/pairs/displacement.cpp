@@ -30,6 +30,16 @@ double turn_bound(const Pose& from, const Pose& to, double shear) {
     return std::min(frobenius, frobenius * 0.70710678118654757 + 3.4143 * shear);
 }
 
+Pose inverse_pose(const Pose& pose) {
+    const auto& r = pose.rotation;
+    const Vec3& t = pose.translation;
+    Pose inverse;
+    inverse.rotation = {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
+    inverse.translation = {-((r[0] * t.x + r[3] * t.y) + r[6] * t.z), -((r[1] * t.x + r[4] * t.y) + r[7] * t.z),
+                           -((r[2] * t.x + r[5] * t.y) + r[8] * t.z)};
+    return inverse;
+}
+
 double displacement_bound(const Pose& from, const Pose& to, double reach, double shear) {
     return length(to.translation - from.translation) + turn_bound(from, to, shear) * reach;
 }

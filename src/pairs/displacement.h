@@ -13,6 +13,9 @@ double shear_bound(const Pose& pose);
 /// matrices that are rotations only nearly. 0 where both are the same.
 double turn_bound(const Pose& from, const Pose& to, double shear);
 
+/// The outer frame seen from the inner one.
+Pose inverse_pose(const Pose& pose);
+
 /// How far any point within `reach` of the frame's origin moved at most between two poses, metres.
 double displacement_bound(const Pose& from, const Pose& to, double reach, double shear);
 

@@ -25,6 +25,7 @@ struct PairState {
     Pose reference;
     double slack = -1; ///< how far the pair may move, by a cheap bound, before the exact one is asked
     double speed = 0;  ///< metres a step, smoothed; decides how far a full look looks ahead
+    double culling = 0; ///< metres a predictive ray looks ahead
     DirectedState directed[2];
 };
 

@@ -3,6 +3,7 @@
 
 #include "mesh/vector.h"
 #include "pairs/displacement.h"
+#include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -21,13 +22,6 @@ Vec3 seen_from_other(const Pose& pose) {
     const Vec3& t = pose.translation;
     return {(r[0] * t.x + r[3] * t.y) + r[6] * t.z, (r[1] * t.x + r[4] * t.y) + r[7] * t.z,
             (r[2] * t.x + r[5] * t.y) + r[8] * t.z};
-}
-
-// Rounding of two float32 transforms, of the ray test and of the clock: docs/certified.md adds them up; here they
-// count several times over.
-double rounding_of(const PlacedBody& source, const PlacedBody& target) {
-    const double apart = length(source.centred.translation - target.centred.translation);
-    return 1e-5 * target.shape->data().diagonal + 4e-6 * (source.shape->data().reach + apart);
 }
 
 // How far beyond the bounds a new list reaches: some steps' worth, so that lists are short where a pair is slow and
@@ -109,7 +103,7 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
             const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
             host_pairs_[i] = order_pair(source, target);
-            margins_[i] = static_cast<float>(rounding_of(source, target));
+            margins_[i] = static_cast<float>(rounding_margin(source, target));
         }
     });
 }

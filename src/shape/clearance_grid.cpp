@@ -27,7 +27,7 @@ public:
                                   double(shape.high.z) - low_[2]};
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
         // About as many cells as keep them half as long as an edge, up to what stays in a processor's cache.
-        const double wanted = std::clamp(120.0 * double(shape.mesh.triangles.size()), 2e4, 6e5);
+        const double wanted = std::clamp(300.0 * double(shape.mesh.triangles.size()), 2e4, 15e5);
         const double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 256);
         scale_ = static_cast<float>(1 / side);
         for (int axis = 0; axis < 3; ++axis)

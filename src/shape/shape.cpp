@@ -53,6 +53,19 @@ void round_vertices(ShapeData& shape) {
     shape.box_max = shape.centre + high;
 }
 
+// For walks from triangle to triangle.
+void link_faces(ShapeData& shape) {
+    shape.faces.resize(shape.mesh.triangles.size());
+    for (std::size_t t = 0; t < shape.faces.size(); ++t)
+        shape.faces[t] = {NONE, {shape.neighbours[t][0], shape.neighbours[t][1], shape.neighbours[t][2]}};
+    for (std::size_t b = 0; b < shape.triangle_blocks.size(); ++b)
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+            const kernels::uint triangle = shape.triangle_blocks[b].triangle[lane];
+            if (triangle != NONE)
+                shape.faces[triangle].slot = static_cast<kernels::uint>(TRIANGLE_LANES * b + lane);
+        }
+}
+
 } // namespace
 
 Shape::Shape(std::unique_ptr<ShapeData> data) : data_(std::move(data)) {}
@@ -95,6 +108,8 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
+
+    link_faces(shape);
 
     shape.exit_distances = measure_exits(shape, normals);
     for (const float exit : shape.exit_distances)
@@ -150,7 +165,7 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.exit_distances)
-           + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.nodes) + bytes(d.vertex_blocks)
+           + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
            + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells) + bytes(d.clearances);
 }
 

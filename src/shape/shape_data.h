@@ -29,6 +29,7 @@ struct ShapeData {
 
     std::vector<kernels::TriangleBlock> triangle_blocks;
     std::vector<kernels::Node> nodes;
+    std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle

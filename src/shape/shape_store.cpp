@@ -57,6 +57,7 @@ void ShapeStore::upload(Entry& entry) {
     header.triangle_block_first = first_index(arrays_.triangle_blocks.size(), data.triangle_blocks.size());
     header.vertex_block_first = first_index(arrays_.vertex_blocks.size(), data.vertex_blocks.size());
     header.normal_first = first_index(arrays_.face_normals.size(), data.face_normals.size());
+    header.face_first = first_index(arrays_.faces.size(), data.faces.size());
     header.clearance_first = first_index(arrays_.clearances.size(), data.clearances.size());
     header.grid_first = first_index(arrays_.outside_cells.size(), data.outside_cells.size());
     for (kernels::uint& first : header.cluster_first)
@@ -65,6 +66,7 @@ void ShapeStore::upload(Entry& entry) {
     arrays_.headers.append(device_, std::span(&header, 1));
     arrays_.triangle_blocks.append(device_, std::span(data.triangle_blocks));
     arrays_.nodes.append(device_, std::span(data.nodes));
+    arrays_.faces.append(device_, std::span(data.faces));
     arrays_.vertex_blocks.append(device_, std::span(data.vertex_blocks));
     arrays_.clusters.append(device_, std::span(data.clusters));
     arrays_.face_normals.append(device_, std::span(data.face_normals));

@@ -18,6 +18,7 @@ public:
         Array<kernels::ShapeHeader> headers;
         Array<kernels::TriangleBlock> triangle_blocks;
         Array<kernels::Node> nodes;
+        Array<kernels::Face> faces;
         Array<kernels::VertexBlock> vertex_blocks;
         Array<kernels::ClusterBlock> clusters;
         Array<kernels::Packed3> face_normals;

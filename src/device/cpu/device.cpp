@@ -38,12 +38,20 @@ std::byte* bytes_of(const Buffer& buffer) {
 kernels::uint grain_of(KernelId kernel) {
     switch (kernel) {
     case KernelId::cast_rays_basic:
+    case KernelId::follow_rays_basic:
         return 4;
     case KernelId::cast_rays_bvh:
+    case KernelId::follow_rays_bvh:
+    case KernelId::look_at_watches:
         return 128;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
     case KernelId::count_rays:
+    case KernelId::count_near_rays:
+    case KernelId::write_watch_rays:
+    case KernelId::copy_candidates:
+    case KernelId::count_candidates:
+    case KernelId::write_candidates:
         return 256;
     case KernelId::scan_sums:
     case KernelId::scan_write:

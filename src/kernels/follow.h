@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3), and
+// predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
+
+// How a ray ended: bits of Outcome.how.
+#define WALKED 1u
+#define LOST 2u
+#define CAST 4u
+
+typedef struct {
+    Hit hit;
+    uint next; // triangle to begin at in the next step, NONE: not followed
+    uint how;
+} Outcome;
+
+DEVICE uint is_inside(GLOBAL const float* RESTRICT bounds, const float* p) {
+    return (uint)(p[0] >= bounds[0]) & (uint)(p[0] <= bounds[3]) & (uint)(p[1] >= bounds[1]) & (uint)(p[1] <= bounds[4])
+           & (uint)(p[2] >= bounds[2]) & (uint)(p[2] <= bounds[5]);
+}
+
+DEVICE Hit no_hit(uint sides) {
+    Hit hit;
+    hit.triangle = NONE;
+    hit.distance = 0.0f;
+    hit.facing = 0.0f;
+    hit.sides = sides;
+    return hit;
+}
+
+// The frame of the opposite ray, mirrored, so that faces keep the side they show to the ray itself.
+DEVICE RayFrame opposite_frame(const SourceRay* ray) {
+    const float direction[3] = {-ray->direction[0], -ray->direction[1], -ray->direction[2]};
+    RayFrame frame = frame_ray(ray->position, direction);
+    const uint axis = frame.axis[0];
+    frame.axis[0] = frame.axis[1];
+    frame.axis[1] = axis;
+    const float origin = frame.origin[0], shear = frame.shear[0];
+    frame.origin[0] = frame.origin[1];
+    frame.origin[1] = origin;
+    frame.shear[0] = frame.shear[1];
+    frame.shear[1] = shear;
+    return frame;
+}
+
+// The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
+// (paper equation 1), where the ray is cut (paper section 5.3).
+DEVICE uint predict(const uint caster, const SourceRay* ray, float culling, GLOBAL const ShapeHeader* RESTRICT shape,
+                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    const RayFrame frame = opposite_frame(ray);
+    const Closest ahead = traverse(caster, &frame, culling, shape, nodes, blocks);
+    return ahead.back <= culling && ahead.back <= ahead.front ? ahead.back_triangle : NONE;
+}
+
+// One step of a walk: where the ray's line passes, as seen from one triangle.
+typedef struct {
+    uint through; // the line passes through it, from inside out as the ray goes
+    uint across;  // else the edge beyond which it passes, farthest first; NONE: none
+    float t;
+} Passage;
+
+DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane, uint came_by) {
+    float x[3], y[3], z[3], edge[3], beyond[3];
+    for (int c = 0; c < 3; ++c) {
+        z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+        x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * z[c];
+        y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * z[c];
+    }
+    // edge[e] belongs to the edge from corner e to the next.
+    edge[1] = cross_accurate(x[2], y[1], y[2], x[1]);
+    edge[2] = cross_accurate(x[0], y[2], y[0], x[2]);
+    edge[0] = cross_accurate(x[1], y[0], y[1], x[0]);
+    const float area = (edge[1] + edge[2]) + edge[0];
+    Passage passage;
+    passage.through = (uint)(edge[0] <= 0.0f) & (uint)(edge[1] <= 0.0f) & (uint)(edge[2] <= 0.0f) & (uint)(area != 0.0f);
+    passage.across = NONE;
+    passage.t = ((edge[1] * z[0] + edge[2] * z[1] + edge[0] * z[2]) / area) * ray->shear[2];
+    if (passage.through == 0u) {
+        float farthest = 0.0f;
+        for (uint e = 0u; e < 3u; ++e) {
+            const uint f = e == 2u ? 0u : e + 1u;
+            const float ex = x[f] - x[e], ey = y[f] - y[e];
+            const float length2 = ex * ex + ey * ey;
+            const float off = area > 0.0f ? -edge[e] : edge[e];
+            // Squared distance of the line from the edge; the way back is no way on.
+            beyond[e] = off > 0.0f && length2 > 0.0f ? off * (off / length2) : 0.0f;
+            if (e != came_by && beyond[e] > farthest) {
+                farthest = beyond[e];
+                passage.across = e;
+            }
+        }
+    }
+    return passage;
+}
+
+// Algorithm 1: from the last triangle over neighbours, nearest edge first, until the line passes through one that it
+// leaves through. Ends after max_iterations, at a border, and where it would turn back.
+DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_iterations, const uint predictive,
+                    float culling, GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Face* RESTRICT faces,
+                    GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+    Outcome end;
+    end.hit = no_hit(0u);
+    end.next = NONE;
+    end.how = WALKED | LOST;
+    const RayFrame frame = frame_ray(ray->position, ray->direction);
+    uint at = triangle, came_from = NONE;
+    for (uint i = 0u; i < max_iterations; ++i) {
+        const Face face = faces[shape->face_first + at];
+        if (face.slot == NONE) return end;
+        uint came_by = NONE;
+        for (uint e = 0u; e < 3u; ++e)
+            if (came_from != NONE && face.neighbour[e] == came_from) came_by = e;
+        GLOBAL const TriangleBlock* RESTRICT block =
+            blocks + shape->triangle_block_first + face.slot / TRIANGLE_LANES;
+        const Passage passage = pass_triangle(&frame, block, face.slot % TRIANGLE_LANES, came_by);
+        if (passage.through != 0u) {
+            const Packed3 n = normals[shape->normal_first + at];
+            const float facing =
+                (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
+            end.how = WALKED;
+            if (passage.t >= 0.0f && passage.t <= ray->reach && inside != 0u) {
+                end.hit.triangle = at;
+                end.hit.distance = passage.t;
+                end.hit.facing = facing;
+                end.next = at;
+            } else if (predictive != 0u && passage.t >= -culling) {
+                end.next = at;
+            }
+            return end;
+        }
+        if (passage.across == NONE) return end;
+        came_from = at;
+        at = face.neighbour[passage.across];
+        if (at == NONE) return end;
+    }
+    return end;
+}
+
+DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, uint start, uint max_iterations,
+                          const uint predictive, const uint cast_lost, float culling,
+                          GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
+                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+                          GLOBAL const Packed3* RESTRICT normals) {
+    Outcome end;
+    end.how = 0u;
+    if (start != NONE) {
+        end = walk(&ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
+        if ((end.how & LOST) == 0u || cast_lost == 0u) return end;
+    }
+    end.how |= CAST;
+    end.hit = inside != 0u ? cast_ray(caster, ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.next = end.hit.triangle;
+    if (end.next == NONE && predictive != 0u) end.next = predict(caster, &ray, culling, shape, nodes, blocks);
+    return end;
+}
+
+// The vertices of a full look that could be in contact, or come nearer than the culling distance. `wide`: the pairs with
+// the bounds of the look, `reach[pair]`: that distance.
+KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT wide,
+                            GLOBAL const float* RESTRICT reach, GLOBAL const ShapeHeader* RESTRICT shapes,
+                            GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
+                            GLOBAL Cluster* RESTRICT clusters, GLOBAL uint* RESTRICT inside,
+                            GLOBAL uint* RESTRICT counts) {
+    FOR_EACH(i, count) {
+        GLOBAL const OrderedPair* pair = wide + clusters[i].pair;
+        const WatchLanes found =
+            watch_lanes(pair, vertices + clusters[i].vertex_block, shapes + pair->target, clearances);
+        const float near = reach[clusters[i].pair];
+        int close[VERTEX_LANES];
+        FOR_LANES(k, VERTEX_LANES) close[k] = -(int)!(found.safe[k] > near);
+        const uint inside_mask = pack_sixteen(found.inside);
+        const uint lanes = inside_mask & pack_sixteen(close);
+        clusters[i].lanes = lanes;
+        inside[i] = bit_count(inside_mask);
+        counts[i] = bit_count(lanes);
+    }
+}
+
+// Candidates of the last step become rays of this one. Segment.first: of the candidates; firsts[s]: of the rays.
+KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
+                            GLOBAL const uint* RESTRICT firsts, GLOBAL const Candidate* RESTRICT candidates,
+                            GLOBAL Ray* RESTRICT rays, GLOBAL uint* RESTRICT starts) {
+    FOR_EACH(s, count) {
+        const Segment segment = segments[s];
+        for (uint i = 0u; i < segment.count; ++i) {
+            const Candidate candidate = candidates[segment.first + i];
+            Ray ray;
+            ray.pair = segment.pair;
+            ray.slot = candidate.slot;
+            rays[firsts[s] + i] = ray;
+            starts[firsts[s] + i] = candidate.triangle;
+        }
+    }
+}
+
+// The first `full` rays have no triangle to begin at. hows and nexts: see Outcome.
+KERNEL void follow_rays_bvh(RANGE uint count, uint full, uint max_iterations, uint predictive, uint cast_lost,
+                            GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
+                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                            GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
+                            GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
+                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
+    FOR_EACH(i, count) {
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        const Outcome end = follow_ray(CASTER_BVH, ray, is_inside(pair->bounds, ray.position),
+                                       i < full ? NONE : starts[i], max_iterations, predictive, cast_lost,
+                                       cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        hits[i] = end.hit;
+        nexts[i] = end.next;
+        hows[i] = end.how;
+    }
+}
+
+KERNEL void follow_rays_basic(RANGE uint count, uint full, uint max_iterations, uint predictive, uint cast_lost,
+                              GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
+                              GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                              GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                              GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
+                              GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
+                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
+    FOR_EACH(i, count) {
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        const Outcome end = follow_ray(CASTER_BASIC, ray, is_inside(pair->bounds, ray.position),
+                                       i < full ? NONE : starts[i], max_iterations, predictive, cast_lost,
+                                       cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        hits[i] = end.hit;
+        nexts[i] = end.next;
+        hows[i] = end.how;
+    }
+}
+
+// Rays of a pair lie together. ranges: first and end of each pair, zero where it has none.
+KERNEL void find_ranges(RANGE uint count, GLOBAL const Ray* RESTRICT rays, GLOBAL uint* RESTRICT ranges) {
+    FOR_EACH(i, count) {
+        const uint pair = rays[i].pair;
+        if (i == 0u || rays[i - 1u].pair != pair) ranges[2u * pair] = i;
+        if (i + 1u == count || rays[i + 1u].pair != pair) ranges[2u * pair + 1u] = i + 1u;
+    }
+}
+
+KERNEL void count_candidates(RANGE uint count, GLOBAL const uint* RESTRICT ranges, GLOBAL const Hit* RESTRICT hits,
+                             GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT hows,
+                             GLOBAL Followed* RESTRICT followed, GLOBAL uint* RESTRICT counts) {
+    FOR_EACH(p, count) {
+        Followed sum;
+        sum.kept = 0u;
+        sum.predictions = 0u;
+        sum.walks = 0u;
+        sum.lost = 0u;
+        sum.cast = 0u;
+        for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
+            const uint kept = (uint)(nexts[i] != NONE), how = hows[i];
+            sum.kept += kept;
+            sum.predictions += kept & (uint)(hits[i].triangle == NONE);
+            sum.walks += (uint)((how & WALKED) != 0u);
+            sum.lost += (uint)((how & LOST) != 0u);
+            sum.cast += (uint)((how & CAST) != 0u);
+        }
+        followed[p] = sum;
+        counts[p] = sum.kept;
+    }
+}
+
+KERNEL void write_candidates(RANGE uint count, GLOBAL const uint* RESTRICT ranges, GLOBAL const Ray* RESTRICT rays,
+                             GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT firsts,
+                             GLOBAL Candidate* RESTRICT candidates) {
+    FOR_EACH(p, count) {
+        uint at = firsts[p];
+        for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
+            if (nexts[i] != NONE) {
+                Candidate candidate;
+                candidate.slot = rays[i].slot;
+                candidate.triangle = nexts[i];
+                candidates[at] = candidate;
+                ++at;
+            }
+        }
+    }
+}

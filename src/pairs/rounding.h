@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/vector.h"
+#include "pairs/ordered_pairs.h"
+#include "shape/shape_data.h"
+
+namespace raycontact {
+
+/// What float32 could hide from a certificate, metres: the rounding of two transforms, of the ray test and of a clock.
+/// docs/certified.md adds them up; here they count several times over.
+inline double rounding_margin(const PlacedBody& source, const PlacedBody& target) {
+    const double apart = length(source.centred.translation - target.centred.translation);
+    return 1e-5 * target.shape->data().diagonal + 4e-6 * (source.shape->data().reach + apart);
+}
+
+} // namespace raycontact

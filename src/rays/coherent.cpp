@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/coherent.h"
+
+#include "mesh/vector.h"
+#include "pairs/displacement.h"
+#include "pairs/rounding.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace raycontact {
+
+namespace {
+
+// How far a pair may move before it is looked at in full again, where no setting says so: some steps' worth.
+double threshold_for(const PlacedBody& a, const PlacedBody& b, double speed) {
+    const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+    return std::clamp(6 * speed, 0.002 * size, 0.03 * size);
+}
+
+} // namespace
+
+// Decides for each pair, in double, whether it is looked at in full or followed.
+void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                           const Motion& motion, const Settings& settings) {
+    const bool predictive = settings.method == Method::predictive;
+    full_.resize(pairs.size());
+    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            PairState& state = table_.state(i);
+            full_[i] = 0;
+            const bool fresh = state.directed[0].expiry < 0;
+            state.slack -= motion.pair_bound(bodies, pairs[i]);
+            if (!fresh && state.slack >= 0) continue;
+
+            const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
+            const Pose now = relative_pose(b.centred, a.centred);
+            if (!fresh) {
+                const double shear = motion.pair_shear(pairs[i]);
+                const double moved =
+                    std::max(displacement_bound(state.reference, now, a.shape->data().reach, shear),
+                             displacement_bound(inverse_pose(state.reference), inverse_pose(now),
+                                                b.shape->data().reach, shear));
+                state.slack = state.directed[0].expiry - moved;
+                if (state.slack >= 0) continue; // the paper: looked at in full once it exceeds the threshold
+            }
+            full_[i] = 1;
+            state.reference = now;
+            const double speed = motion.pair_speed(bodies, pairs[i]);
+            state.speed = fresh ? speed : 0.5 * state.speed + 0.5 * speed;
+            const double threshold =
+                settings.displacement_threshold ? *settings.displacement_threshold : threshold_for(a, b, state.speed);
+            state.slack = threshold;
+            state.culling = 0;
+            if (predictive)
+                state.culling =
+                    settings.culling_distance ? *settings.culling_distance : settings.confidence * threshold;
+            for (DirectedState& own : state.directed) own.expiry = threshold;
+        }
+    });
+
+    active_.clear();
+    for (std::uint32_t i = 0; i < pairs.size(); ++i)
+        if (full_[i] != 0) active_.insert(active_.end(), {2 * i, 2 * i + 1});
+    full_count_ = active_.size();
+    for (std::uint32_t i = 0; i < pairs.size(); ++i)
+        for (std::uint32_t d = 0; full_[i] == 0 && d < 2; ++d)
+            if (table_.state(i).directed[d].count > 0) active_.push_back(2 * i + d);
+
+    host_pairs_.resize(active_.size());
+    cullings_.resize(active_.size());
+    wide_pairs_.resize(full_count_);
+    reaches_.resize(full_count_);
+    executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const Pair& pair = pairs[active_[i] / 2];
+            const bool from_a = active_[i] % 2 == 0;
+            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            host_pairs_[i] = order_pair(source, target);
+            cullings_[i] = static_cast<float>(table_.state(active_[i] / 2).culling);
+            if (i >= full_count_) continue;
+            const double extension =
+                predictive && settings.distance_extension ? *settings.distance_extension : double(cullings_[i]);
+            wide_pairs_[i] = host_pairs_[i];
+            for (int k = 0; k < 3; ++k) {
+                wide_pairs_[i].bounds[k] -= static_cast<float>(extension);
+                wide_pairs_[i].bounds[3 + k] += static_cast<float>(extension);
+            }
+            reaches_[i] = cullings_[i] + static_cast<float>(rounding_margin(source, target));
+        }
+    });
+}
+
+// Full looks first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
+void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
+    device_pairs_.write(device, host_pairs_);
+    device_cullings_.write(device, cullings_);
+    device_wide_.write(device, wide_pairs_);
+    device_reaches_.write(device, reaches_);
+    counts_.resize(device, full_count_);
+    small_.resize(device, full_count_);
+    launch<KernelId::count_clusters>(device, full_count_, device_wide_, arrays.headers, arrays.clusters, counts_,
+                                     small_);
+    clusters_.resize(device, scan_.run(device, counts_, firsts_));
+    launch<KernelId::write_clusters>(device, clusters_.size() > 0 ? full_count_ : 0, device_wide_, arrays.headers,
+                                     arrays.clusters, small_, firsts_, clusters_);
+    counts_.resize(device, clusters_.size());
+    inside_.resize(device, clusters_.size());
+    launch<KernelId::count_near_rays>(device, clusters_.size(), device_wide_, device_reaches_, arrays.headers,
+                                      arrays.vertex_blocks, arrays.clearances, clusters_, inside_, counts_);
+    sums_.vertices = VERTEX_LANES * clusters_.size();
+    sums_.rays = scan_.run(device, inside_, firsts_);
+    full_rays_ = scan_.run(device, counts_, firsts_);
+
+    host_segments_.clear();
+    host_firsts_.clear();
+    std::uint64_t end = full_rays_;
+    for (std::size_t i = full_count_; i < active_.size(); ++i) {
+        const DirectedState& own = directed(active_[i]);
+        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0});
+        host_firsts_.push_back(static_cast<kernels::uint>(end));
+        end += own.count;
+    }
+    if (end >= std::numeric_limits<kernels::uint>::max())
+        throw std::length_error("more than 2^32 rays in one step; give it fewer pairs");
+    sums_.rays += end - full_rays_;
+    rays_.resize(device, end);
+    starts_.resize(device, end);
+    launch<KernelId::write_rays>(device, full_rays_ > 0 ? clusters_.size() : 0, clusters_, firsts_, rays_);
+    segments_.write(device, host_segments_);
+    segment_firsts_.write(device, host_firsts_);
+    launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_, rays_,
+                                      starts_);
+}
+
+void CoherentRays::cast(Device& device, const ShapeStore::Arrays& arrays, const Settings& settings) {
+    hits_.resize(device, rays_.size());
+    nexts_.resize(device, rays_.size());
+    hows_.resize(device, rays_.size());
+    const auto full = static_cast<kernels::uint>(full_rays_);
+    const kernels::uint predictive = settings.method == Method::predictive ? 1 : 0;
+    const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
+    if (settings.caster == Caster::basic)
+        launch<KernelId::follow_rays_basic>(device, rays_.size(), full, settings.max_iterations, predictive, cast_lost,
+                                            device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
+                                            arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
+                                            rays_, starts_, hits_, nexts_, hows_);
+    else
+        launch<KernelId::follow_rays_bvh>(device, rays_.size(), full, settings.max_iterations, predictive, cast_lost,
+                                          device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
+                                          arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
+                                          rays_, starts_, hits_, nexts_, hows_);
+}
+
+// What each pair follows in the next step.
+void CoherentRays::keep(Device& device) {
+    host_ranges_.assign(2 * active_.size(), 0);
+    ranges_.write(device, host_ranges_);
+    launch<KernelId::find_ranges>(device, rays_.size(), rays_, ranges_);
+    followed_.resize(device, active_.size());
+    counts_.resize(device, active_.size());
+    launch<KernelId::count_candidates>(device, active_.size(), ranges_, hits_, nexts_, hows_, followed_, counts_);
+    candidates_.resize(device, scan_.run(device, counts_, firsts_));
+    launch<KernelId::write_candidates>(device, candidates_.size() > 0 ? active_.size() : 0, ranges_, rays_, nexts_,
+                                       firsts_, candidates_);
+    host_followed_.resize(active_.size());
+    followed_.read(device, host_followed_);
+    kernels::uint first = 0;
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        const kernels::Followed& sum = host_followed_[i];
+        DirectedState& own = directed(active_[i]);
+        own.first = first;
+        own.count = sum.kept;
+        first += sum.kept;
+        sums_.predictions += sum.predictions;
+        sums_.walks += sum.walks;
+        sums_.walks_lost += sum.lost;
+        sums_.rays_cast += sum.cast;
+    }
+    sums_.walk_casts = sums_.rays_cast - full_rays_;
+    candidates_kept_ = first;
+}
+
+void CoherentRays::follow(Device& device, Executor& executor, const ShapeStore& shapes,
+                          std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Motion& motion,
+                          const Settings& settings) {
+    if (packed_ != shapes.packed()) clear(); // candidates name vertices by their place
+    packed_ = shapes.packed();
+    sums_ = {};
+    open_pairs_ = pairs.size();
+    table_.match(pairs, [](PairState&) {});
+    wake_up(executor, bodies, pairs, motion, settings);
+    find_rays(device, shapes.arrays());
+    cast(device, shapes.arrays(), settings);
+    keep(device);
+}
+
+void CoherentRays::count(StepStats& stats) const {
+    stats.vertices = sums_.vertices;
+    stats.rays = sums_.rays;
+    stats.rays_cast = sums_.rays_cast;
+    stats.pairs_full = full_count_;
+    stats.pairs_asleep = 2 * open_pairs_ - active_.size();
+    stats.walks = sums_.walks;
+    stats.walks_lost = sums_.walks_lost;
+    stats.walk_casts = sums_.walk_casts;
+    stats.predictions = sums_.predictions;
+    stats.pair_bytes = table_.bytes() + candidates_kept_ * sizeof(kernels::Candidate);
+}
+
+} // namespace raycontact

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pairs/motion.h"
+#include "pairs/pair_table.h"
+#include "rays/ray_queue.h"
+
+#include <raycontact/settings.h>
+
+#include <array>
+
+namespace raycontact {
+
+/// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
+/// that moved less than a threshold since it was last looked at in full follows the rays it kept; others cast anew.
+class CoherentRays {
+public:
+    void follow(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                std::span<const Pair> pairs, const Motion& motion, const Settings& settings);
+    void clear() { table_.clear(); }
+
+    const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
+    const Array<kernels::Ray>& rays() const { return rays_; }
+    const Array<kernels::Hit>& hits() const { return hits_; }
+    /// 2 x pair + direction of each of pairs(): first those looked at in full, then those followed, each ascending.
+    std::span<const std::uint32_t> ordered() const { return active_; }
+    /// Adds what the last step did.
+    void count(StepStats& stats) const;
+
+private:
+    void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                 const Motion& motion, const Settings& settings);
+    void find_rays(Device& device, const ShapeStore::Arrays& arrays);
+    void cast(Device& device, const ShapeStore::Arrays& arrays, const Settings& settings);
+    void keep(Device& device);
+    DirectedState& directed(std::uint32_t ordered) { return table_.state(ordered / 2).directed[ordered % 2]; }
+
+    PairTable table_;
+    Scan scan_;
+    std::vector<std::uint8_t> full_;    ///< per pair
+    std::vector<std::uint32_t> active_; ///< ordered pairs
+    std::size_t full_count_ = 0;        ///< of active_
+    std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
+    std::vector<float> cullings_, reaches_; ///< of active_, of the full ones
+    std::vector<kernels::Segment> host_segments_;
+    std::vector<kernels::uint> host_firsts_, host_ranges_;
+    std::vector<kernels::Followed> host_followed_;
+    StepStats sums_;
+    std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
+    std::uint64_t packed_ = 0;
+
+    Array<kernels::OrderedPair> device_pairs_, device_wide_;
+    Array<float> device_cullings_, device_reaches_;
+    Array<kernels::uint> counts_, inside_, firsts_, segment_firsts_, ranges_, starts_, nexts_, hows_;
+    Array<kernels::ulong> small_;
+    Array<kernels::Cluster> clusters_;
+    Array<kernels::Segment> segments_;
+    Array<kernels::Candidate> candidates_;
+    Array<kernels::Ray> rays_;
+    Array<kernels::Hit> hits_;
+    Array<kernels::Followed> followed_;
+};
+
+} // namespace raycontact
