@@ -3,6 +3,7 @@
 // section 2.1).
 
 #define SIDE_DIRECTIONS 4
+#define PROBE_TOLERANCES 32768.0f // length of a short ray: a thirty-second of the box diagonal
 #define CASTER_BASIC 0
 #define CASTER_BVH 1
 
@@ -54,7 +55,13 @@ DEVICE Hit cast_ray(const uint caster, const SourceRay ray, GLOBAL const ShapeHe
                     GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                     GLOBAL const Packed3* RESTRICT normals) {
     RayFrame frame = frame_ray(ray.position, ray.direction);
-    const Closest own = traverse(caster, &frame, ray.reach, shape, nodes, blocks);
+    Closest own;
+    own.back = UNBOUNDED;
+    own.front = UNBOUNDED;
+    // Most rays end close by: a short one first visits few boxes. What it finds within its length is the closest.
+    const float probe = PROBE_TOLERANCES * shape->tolerance;
+    if (caster == CASTER_BVH && probe < ray.reach) own = traverse(caster, &frame, probe, shape, nodes, blocks);
+    if (!(own.back <= probe || own.front <= probe)) own = traverse(caster, &frame, ray.reach, shape, nodes, blocks);
     int decided = verdict(&own, ray.reach, shape->tolerance);
     uint sides = 0u;
     while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
