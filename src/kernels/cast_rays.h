@@ -43,30 +43,37 @@ DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
 
 DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                         GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    if (caster == CASTER_BASIC) return traverse_basic(ray, reach, shape, blocks);
-    return traverse_bvh(ray, reach, shape, nodes, blocks);
+    if (caster == CASTER_BVH) return traverse_bvh(ray, reach, shape, nodes, blocks);
+    Closest closest = nothing_hit(reach, shape->tolerance);
+    traverse_basic(&closest, ray, 1u, shape, blocks);
+    return closest;
+}
+
+// What the ray meets first. Most rays of the BVH caster end close by: a short one visits few boxes, and what it finds
+// within its length is the closest of all.
+DEVICE Closest find_closest(const uint caster, const RayFrame* frame, float reach,
+                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
+                            GLOBAL const TriangleBlock* RESTRICT blocks) {
+    const float probe = PROBE_TOLERANCES * shape->tolerance;
+    if (caster == CASTER_BVH && probe < reach) {
+        const Closest near = traverse(caster, frame, probe, shape, nodes, blocks);
+        if (near.back <= probe || near.front <= probe) return near;
+    }
+    return traverse(caster, frame, reach, shape, nodes, blocks);
 }
 
 // In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
 // An open mesh has no inside, so there such a ray is no contact.
-DEVICE Hit cast_ray(const uint caster, const SourceRay ray, GLOBAL const ShapeHeader* RESTRICT shape,
-                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                    GLOBAL const Packed3* RESTRICT normals) {
-    RayFrame frame = frame_ray(ray.position, ray.direction);
-    Closest own;
-    own.back = UNBOUNDED;
-    own.front = UNBOUNDED;
-    // Most rays end close by: a short one first visits few boxes. What it finds within its length is the closest.
-    const float probe = PROBE_TOLERANCES * shape->tolerance;
-    if (caster == CASTER_BVH && probe < ray.reach) own = traverse(caster, &frame, probe, shape, nodes, blocks);
-    if (!(own.back <= probe || own.front <= probe)) own = traverse(caster, &frame, ray.reach, shape, nodes, blocks);
-    int decided = verdict(&own, ray.reach, shape->tolerance);
+DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, GLOBAL const ShapeHeader* RESTRICT shape,
+                  GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                  GLOBAL const Packed3* RESTRICT normals) {
+    int decided = verdict(own, ray->reach, shape->tolerance);
     uint sides = 0u;
     while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
         const float direction[3] = {side_direction(sides, 0u), side_direction(sides, 1u), side_direction(sides, 2u)};
-        frame = frame_ray(ray.position, direction);
+        const RayFrame frame = frame_ray(ray->position, direction);
         const Closest side = traverse(caster, &frame, UNBOUNDED, shape, nodes, blocks);
         decided = verdict(&side, UNBOUNDED, shape->tolerance);
         ++sides;
@@ -77,12 +84,20 @@ DEVICE Hit cast_ray(const uint caster, const SourceRay ray, GLOBAL const ShapeHe
     hit.facing = 0.0f;
     hit.sides = sides;
     if (decided > 0) {
-        const Packed3 n = normals[shape->normal_first + own.back_triangle];
-        hit.triangle = own.back_triangle;
-        hit.distance = own.back;
-        hit.facing = (ray.direction[0] * n.x + ray.direction[1] * n.y) + ray.direction[2] * n.z;
+        const Packed3 n = normals[shape->normal_first + own->back_triangle];
+        hit.triangle = own->back_triangle;
+        hit.distance = own->back;
+        hit.facing = (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
     }
     return hit;
+}
+
+DEVICE Hit cast_ray(const uint caster, const SourceRay* ray, GLOBAL const ShapeHeader* RESTRICT shape,
+                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                    GLOBAL const Packed3* RESTRICT normals) {
+    const RayFrame frame = frame_ray(ray->position, ray->direction);
+    const Closest own = find_closest(caster, &frame, ray->reach, shape, nodes, blocks);
+    return decide(caster, ray, &own, shape, nodes, blocks, normals);
 }
 
 KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
@@ -94,7 +109,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BVH, ray, shape, nodes, blocks, normals);
+        hits[i] = cast_ray(CASTER_BVH, &ray, shape, nodes, blocks, normals);
     }
 }
 
@@ -103,10 +118,25 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                             GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                             GLOBAL Hit* RESTRICT hits) {
-    FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        GLOBAL const ShapeHeader* shape = shapes + pair->target;
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BASIC, ray, shape, nodes, blocks, normals);
+    FOR_EACH_FEW(i, few, count) {
+        SourceRay source[RAYS_AT_ONCE];
+        RayFrame frame[RAYS_AT_ONCE];
+        Closest own[RAYS_AT_ONCE];
+        for (uint r = 0u; r < few; ++r) {
+            const Ray ray = rays[i + r];
+            GLOBAL const OrderedPair* pair = pairs + ray.pair;
+            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            frame[r] = frame_ray(source[r].position, source[r].direction);
+            own[r] = nothing_hit(source[r].reach, shapes[pair->target].tolerance);
+        }
+        for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
+            const uint target = pairs[rays[i + r].pair].target;
+            while (r + same < few && pairs[rays[i + r + same].pair].target == target) ++same;
+            traverse_basic(own + r, frame + r, same, shapes + target, blocks);
+        }
+        for (uint r = 0u; r < few; ++r) {
+            GLOBAL const ShapeHeader* shape = shapes + pairs[rays[i + r].pair].target;
+            hits[i + r] = decide(CASTER_BASIC, source + r, own + r, shape, nodes, blocks, normals);
+        }
     }
 }

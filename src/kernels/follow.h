@@ -147,7 +147,7 @@ DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, u
         if ((end.how & LOST) == 0u || cast_lost == 0u) return end;
     }
     end.how |= CAST;
-    end.hit = inside != 0u ? cast_ray(caster, ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.hit = inside != 0u ? cast_ray(caster, &ray, shape, nodes, blocks, normals) : no_hit(0u);
     end.next = end.hit.triangle;
     if (end.next == NONE && predictive != 0u) end.next = predict(caster, &ray, culling, shape, nodes, blocks);
     return end;

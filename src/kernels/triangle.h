@@ -100,20 +100,22 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
     consider(closest, t, back_side, block->triangle[lane], tolerance);
 }
 
-// Sixteen triangles at once: which does the ray's line pass through? A hit is a mean of its corners: with `near`, lanes
-// whose corners are all behind, or all too far, by more than rounding could hide are left out here already. That pays
-// where the block is near; where every block is tried, few lanes get so far.
+// Sixteen triangles at once: which may the ray's line pass through? Those whose edge functions have no two signs: two
+// products see that with less than minima and maxima. Where one is 0 or underflows, the lane is let through and
+// hit_lane() tells. A hit is a mean of its corners: with `near`, lanes whose corners are all behind, or all too far, by
+// more than rounding could hide are left out here already. That pays where the block is near; where every block is
+// tried, few lanes get so far.
 DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
                       float tolerance, const bool near) {
-    GLOBAL const float* RESTRICT ax = block->corner[0 + ray->axis[0]];
-    GLOBAL const float* RESTRICT ay = block->corner[0 + ray->axis[1]];
-    GLOBAL const float* RESTRICT az = block->corner[0 + ray->axis[2]];
-    GLOBAL const float* RESTRICT bx = block->corner[3 + ray->axis[0]];
-    GLOBAL const float* RESTRICT by = block->corner[3 + ray->axis[1]];
-    GLOBAL const float* RESTRICT bz = block->corner[3 + ray->axis[2]];
-    GLOBAL const float* RESTRICT cx = block->corner[6 + ray->axis[0]];
-    GLOBAL const float* RESTRICT cy = block->corner[6 + ray->axis[1]];
-    GLOBAL const float* RESTRICT cz = block->corner[6 + ray->axis[2]];
+    GLOBAL const float* RESTRICT ax = (block->corner + ray->axis[0])[0];
+    GLOBAL const float* RESTRICT ay = (block->corner + ray->axis[1])[0];
+    GLOBAL const float* RESTRICT az = (block->corner + ray->axis[2])[0];
+    GLOBAL const float* RESTRICT bx = (block->corner + ray->axis[0])[3];
+    GLOBAL const float* RESTRICT by = (block->corner + ray->axis[1])[3];
+    GLOBAL const float* RESTRICT bz = (block->corner + ray->axis[2])[3];
+    GLOBAL const float* RESTRICT cx = (block->corner + ray->axis[0])[6];
+    GLOBAL const float* RESTRICT cy = (block->corner + ray->axis[1])[6];
+    GLOBAL const float* RESTRICT cz = (block->corner + ray->axis[2])[6];
     const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
     const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
     int hit[TRIANGLE_LANES];
@@ -125,9 +127,8 @@ DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const 
         const float u = x2 * y1 - y2 * x1;
         const float v = x0 * y2 - y0 * x2;
         const float w = x1 * y0 - y1 * x0;
-        const float least_uv = u < v ? u : v, most_uv = u > v ? u : v;
-        const float least = least_uv < w ? least_uv : w, most = most_uv > w ? most_uv : w;
-        const uint inside = (least >= 0.0f) | (most <= 0.0f);
+        const float uv = u * v, uw = u * w;
+        const uint inside = (uv < uw ? uv : uw) >= 0.0f;
         uint reached = 1u;
         if (near) {
             const float t0 = z0 * sz, t1 = z1 * sz, t2 = z2 * sz;

@@ -6,8 +6,8 @@
 #include <immintrin.h>
 #endif
 
-// The kernels' words in C++. FOR_EACH walks the slice that a thread was given; FOR_LANES promises that lanes do not
-// depend on each other.
+// The kernels' words in C++. FOR_EACH and FOR_EACH_FEW walk the slice that a thread was given; FOR_LANES promises that
+// lanes do not depend on each other.
 namespace raycontact::kernels {
 using uint = std::uint32_t;
 using ulong = std::uint64_t;
@@ -22,6 +22,10 @@ struct Range {
 #define RESTRICT __restrict__
 #define RANGE [[maybe_unused]] Range range,
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
+#define RAYS_AT_ONCE 4
+#define FOR_EACH_FEW(i, few, n)                                                                                        \
+    for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
+         i < i##_end && (few = i##_end - i < RAYS_AT_ONCE ? i##_end - i : RAYS_AT_ONCE) != 0; i += few)
 #ifdef __clang__
 #define FOR_LANES(k, n) _Pragma("clang loop vectorize(assume_safety)") for (int k = 0; k < (n); ++k)
 #else

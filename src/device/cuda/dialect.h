@@ -9,6 +9,9 @@ typedef unsigned long long ulong;
 #define RESTRICT __restrict__
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
+#define RAYS_AT_ONCE 1
+#define FOR_EACH_FEW(i, few, n)                                                                                        \
+    for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u; i < (n); i += gridDim.x * blockDim.x)
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
 DEVICE uint lowest_bit(uint bits) {
