@@ -8,8 +8,11 @@
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
-// Of a byte of a clearance grid: the middle of the cell is outside. The lower bits are a length.
-#define CLEARANCE_OUTSIDE 128u
+// A word of a clearance grid: bits 0 to 14 the cell in whose middle a ball without surface lies, relative to its own, plus
+// CLEARANCE_OFFSET; bit 15: the ball is outside; the rest its radius in steps, CLEARANCE_STEPS a cell.
+#define CLEARANCE_OFFSET 16
+#define CLEARANCE_OUTSIDE 0x8000u
+#define CLEARANCE_STEPS 2048
 
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
@@ -65,9 +68,9 @@ typedef struct {
     float grid_low[3];
     float grid_scale;       // cells a metre
     uint face_first;
-    uint clearance_first;   // words of clearances, four cells each, x fastest
+    uint clearance_first;   // words of clearances, x fastest
     uint clearance_size[3]; // cells; 0: none
-    float clearance_low[3], clearance_high[3]; // the box of the shape
+    float clearance_low[3], clearance_high[3]; // a box around that of the shape
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths

@@ -10,49 +10,73 @@ typedef struct {
     float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES];
 } WatchLanes;
 
-// A vertex outside a closed mesh cannot be in contact before it has moved to the surface. Any other can only be in
-// contact where the surface comes within its ray's reach.
+// A clearance grid, without its balls.
+typedef struct {
+    float low[3], high[3]; // a box around that of the shape
+    float scale, cell, unit;
+    uint size_x, size_y;
+    uint outward;
+} Clearance;
+
+DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
+    Clearance grid;
+    for (int i = 0; i < 3; ++i) grid.low[i] = shape->clearance_low[i];
+    for (int i = 0; i < 3; ++i) grid.high[i] = shape->clearance_high[i];
+    grid.scale = shape->clearance_scale;
+    grid.cell = shape->clearance_cell;
+    grid.unit = shape->clearance_unit;
+    grid.size_x = shape->clearance_size[0];
+    grid.size_y = shape->clearance_size[1];
+    grid.outward = shape->outward;
+    return grid;
+}
+
+// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of its
+// surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
+DEVICE float safe_distance(const Clearance* grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
+                           float reach) {
+    // The nearest point of the box; NaN takes its lower corner.
+    const float up_x = x >= grid->low[0] ? x : grid->low[0], up_y = y >= grid->low[1] ? y : grid->low[1];
+    const float up_z = z >= grid->low[2] ? z : grid->low[2];
+    const float px = up_x <= grid->high[0] ? up_x : grid->high[0], py = up_y <= grid->high[1] ? up_y : grid->high[1];
+    const float pz = up_z <= grid->high[2] ? up_z : grid->high[2];
+    const float off_x = x - px, off_y = y - py, off_z = z - pz;
+    const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
+    const int cx = (int)((px - grid->low[0]) * grid->scale), cy = (int)((py - grid->low[1]) * grid->scale);
+    const int cz = (int)((pz - grid->low[2]) * grid->scale);
+    const int at = (cz * (int)grid->size_y + cy) * (int)grid->size_x + cx;
+    const uint word = balls[at];
+    const int bx = cx + (int)(word & 31u) - CLEARANCE_OFFSET, by = cy + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
+    const int bz = cz + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
+    const float ax = px - (grid->low[0] + ((float)bx + 0.5f) * grid->cell);
+    const float ay = py - (grid->low[1] + ((float)by + 0.5f) * grid->cell);
+    const float az = pz - (grid->low[2] + ((float)bz + 0.5f) * grid->cell);
+    const float ball = (float)(int)(word >> 16) * grid->unit - root_of((ax * ax + ay * ay) + az * az);
+    const float clear = ball > 0.0f ? ball : 0.0f;
+    // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
+    const float away = root_of(off2 + clear * clear);
+    const uint outside = (grid->outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & ((word & CLEARANCE_OUTSIDE) >> 15));
+    return away - (outside != 0u ? 0.0f : reach);
+}
+
 DEVICE WatchLanes watch_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
                               GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
     WatchLanes found;
-    float r[9], t[3], b[6], low[3], high[3];
+    float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    for (int i = 0; i < 3; ++i) low[i] = target->clearance_low[i];
-    for (int i = 0; i < 3; ++i) high[i] = target->clearance_high[i];
-    const float scale = target->clearance_scale, cell = target->clearance_cell, unit = target->clearance_unit;
-    const uint size_x = target->clearance_size[0], size_y = target->clearance_size[1];
-    const uint outward = target->outward;
-    GLOBAL const uint* RESTRICT words = clearances + target->clearance_first;
+    const Clearance grid = clearance_of(target);
+    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
         const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
         const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        // The nearest point of the box; empty lanes hold NaN and take its lower corner.
-        const float up_x = x >= low[0] ? x : low[0], up_y = y >= low[1] ? y : low[1], up_z = z >= low[2] ? z : low[2];
-        const float px = up_x <= high[0] ? up_x : high[0], py = up_y <= high[1] ? up_y : high[1];
-        const float pz = up_z <= high[2] ? up_z : high[2];
-        const float off_x = x - px, off_y = y - py, off_z = z - pz;
-        const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-        const uint cx = (uint)(int)((px - low[0]) * scale);
-        const uint cy = (uint)(int)((py - low[1]) * scale);
-        const uint cz = (uint)(int)((pz - low[2]) * scale);
-        const uint at = (cz * size_y + cy) * size_x + cx;
-        const uint byte = (words[at >> 2] >> (8u * (at & 3u))) & 255u;
-        const float ax = px - (low[0] + ((float)(int)cx + 0.5f) * cell);
-        const float ay = py - (low[1] + ((float)(int)cy + 0.5f) * cell);
-        const float az = pz - (low[2] + ((float)(int)cz + 0.5f) * cell);
-        const float ball = (float)(int)(byte & (CLEARANCE_OUTSIDE - 1u)) * unit - root_of((ax * ax + ay * ay) + az * az);
-        const float clear = ball > 0.0f ? ball : 0.0f;
-        // The box is convex: what is behind the nearest point is no nearer than by Pythagoras.
-        const float away = root_of(off2 + clear * clear);
-        const uint outside = (outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (byte >> 7));
-        const float reach = outside != 0u ? 0.0f : block->exit[k];
+        const float safe = safe_distance(&grid, balls, x, y, z, block->exit[k]);
         found.inside[k] = -(int)inside;
-        found.safe[k] = vx == vx ? away - reach : UNBOUNDED;
+        found.safe[k] = vx == vx ? safe : UNBOUNDED; // empty lanes hold NaN
         found.x[k] = x;
         found.y[k] = y;
         found.z[k] = z;
@@ -68,14 +92,40 @@ DEVICE float least_of_sixteen(const float* values) {
     return least[0];
 }
 
-// Every block that a new list holds is looked at in the step that made it.
-KERNEL void begin_watches(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters, GLOBAL const uint* RESTRICT firsts,
+// What the ball around a block's box says for all its vertices, without looking at them.
+DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT source,
+                        GLOBAL const ClusterBlock* RESTRICT clusters, uint vertex_block,
+                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
+    const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
+    GLOBAL const ClusterBlock* RESTRICT box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
+    GLOBAL const float* r = pair->rotation;
+    const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
+    const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
+    const Clearance grid = clearance_of(target);
+    // Of an unknown side nothing is said: the reach of the block's rays is not.
+    return safe_distance(&grid, clearances + target->clearance_first,
+                         ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
+                         ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
+                         ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
+           - root_of((hx * hx + hy * hy) + hz * hz);
+}
+
+// A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
+// places, margins: by pair.
+KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+                          GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
+                          GLOBAL const uint* RESTRICT clearances, GLOBAL const float* RESTRICT margins,
+                          GLOBAL const Cluster* RESTRICT clusters, GLOBAL const uint* RESTRICT firsts,
                           GLOBAL const uint* RESTRICT places, GLOBAL Watch* RESTRICT watches) {
     FOR_EACH(i, count) {
         const Cluster cluster = clusters[i];
+        GLOBAL const OrderedPair* pair = pairs + cluster.pair;
+        const float safe = safe_block(pair, shapes + pair->source, boxes, cluster.vertex_block, shapes + pair->target,
+                                      clearances)
+                           - margins[cluster.pair];
         Watch watch;
         watch.vertex_block = cluster.vertex_block;
-        watch.wake = AWAKE;
+        watch.wake = safe > 0.0f ? safe : AWAKE;
         watch.lanes = 0u;
         watches[places[cluster.pair] + (i - firsts[cluster.pair])] = watch;
     }

@@ -29,6 +29,9 @@ public:
         if (!nodes_.empty()) along_ray_below(0, origin, direction, visit);
     }
 
+    /// Squared distance of a point from the nearest triangle, or `bound` where none is nearer than that.
+    double nearest(const Vec3& point, double bound) const;
+
 private:
     struct Box {
         Vec3 low, high;
@@ -45,6 +48,7 @@ private:
         return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y
                && a.low.z <= b.high.z && b.low.z <= a.high.z;
     }
+    static double squared_distance_of(const Box& box, const Vec3& point);
     static bool meets(const Box& box, const Vec3& origin, const Vec3& direction);
 
     template <class Test>

@@ -28,7 +28,7 @@ Vec3 seen_from_other(const Pose& pose) {
 // last where it is fast.
 double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    return std::clamp(12 * speed, 0.01 * size, 0.2 * size);
+    return std::clamp(24 * speed, 0.02 * size, 0.2 * size);
 }
 
 } // namespace
@@ -112,9 +112,11 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
 void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
     wide_pairs_.resize(stale_.size());
+    stale_margins_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         wide_pairs_[i] = host_pairs_[stale_[i]];
         const DirectedState& own = directed(active_[stale_[i]]);
+        stale_margins_[i] = margins_[stale_[i]];
         const float wide = static_cast<float>(own.expiry) + margins_[stale_[i]];
         for (int k = 0; k < 3; ++k) {
             wide_pairs_[i].bounds[k] -= wide;
@@ -145,7 +147,9 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     device_places_.write(device, places_);
     launch<KernelId::write_clusters>(device, stale_.size(), device_wide_, arrays.headers, arrays.clusters, small_,
                                      firsts_, clusters_);
-    launch<KernelId::begin_watches>(device, clusters_.size(), clusters_, firsts_, device_places_, watches_);
+    device_margins_.write(device, stale_margins_);
+    launch<KernelId::begin_watches>(device, clusters_.size(), device_wide_, arrays.headers, arrays.clusters,
+                                    arrays.clearances, device_margins_, clusters_, firsts_, device_places_, watches_);
 }
 
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {

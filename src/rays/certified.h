@@ -43,7 +43,7 @@ private:
     std::vector<std::uint8_t> due_;                 ///< per pair: bits 0, 1 look; bits 2, 3 make a new list
     std::vector<std::uint32_t> active_, stale_;     ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> margins_;
+    std::vector<float> margins_, stale_margins_; ///< of active_, of stale_
     std::vector<kernels::uint> host_counts_, places_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
@@ -51,6 +51,7 @@ private:
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;
+    Array<float> device_margins_;
     Array<kernels::ulong> small_;
     Array<kernels::Cluster> clusters_;
     Array<kernels::Watch> watches_;

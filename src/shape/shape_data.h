@@ -34,7 +34,7 @@ struct ShapeData {
     std::vector<kernels::ClusterBlock> clusters;
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
     std::vector<kernels::uint> outside_cells;           ///< a bit for each cell of the grid
-    std::vector<kernels::uint> clearances;              ///< a byte for each cell of the clearance grid
+    std::vector<kernels::uint> clearances;              ///< a ball for each cell of the clearance grid
     kernels::ShapeHeader header{};
 };
 
