@@ -2,6 +2,10 @@
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3), and
 // predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
 
+// Where a ray begins that is not followed: in full, or only ahead, its vertex being known to be outside.
+#define IN_FULL NONE
+#define AHEAD_ONLY 0xfffffffeu
+
 // How a ray ended: bits of Outcome.how.
 #define WALKED 1u
 #define LOST 2u
@@ -142,36 +146,65 @@ DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, u
                           GLOBAL const Packed3* RESTRICT normals) {
     Outcome end;
     end.how = 0u;
-    if (start != NONE) {
+    if (start < AHEAD_ONLY) {
         end = walk(&ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
         if ((end.how & LOST) == 0u || cast_lost == 0u) return end;
     }
     end.how |= CAST;
-    end.hit = inside != 0u ? cast_ray(caster, &ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.hit = start != AHEAD_ONLY && inside != 0u ? cast_ray(caster, &ray, shape, nodes, blocks, normals) : no_hit(0u);
     end.next = end.hit.triangle;
     if (end.next == NONE && predictive != 0u) end.next = predict(caster, &ray, culling, shape, nodes, blocks);
     return end;
 }
 
-// The vertices of a full look that could be in contact, or come nearer than the culling distance. `wide`: the pairs with
-// the bounds of the look, `reach[pair]`: that distance.
+// The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
+// the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The upper
+// half of Cluster.lanes tells those whose own ray must be cast.
 KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT wide,
-                            GLOBAL const float* RESTRICT reach, GLOBAL const ShapeHeader* RESTRICT shapes,
+                            GLOBAL const float* RESTRICT reach, GLOBAL const float* RESTRICT margins,
+                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
                             GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
                             GLOBAL Cluster* RESTRICT clusters, GLOBAL uint* RESTRICT inside,
                             GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = wide + clusters[i].pair;
-        const WatchLanes found =
-            watch_lanes(pair, vertices + clusters[i].vertex_block, shapes + pair->target, clearances);
-        const float near = reach[clusters[i].pair];
-        int close[VERTEX_LANES];
-        FOR_LANES(k, VERTEX_LANES) close[k] = -(int)!(found.safe[k] > near);
+        GLOBAL const ShapeHeader* target = shapes + pair->target;
+        const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
+        clusters[i].lanes = 0u;
+        inside[i] = 0u;
+        counts[i] = 0u;
+        if (safe_block(pair, shapes + pair->source, boxes, clusters[i].vertex_block, target, clearances) > near) continue;
+        const WatchLanes found = watch_lanes(pair, vertices + clusters[i].vertex_block, target, clearances);
+        int close[VERTEX_LANES], unsafe[VERTEX_LANES];
+        FOR_LANES(k, VERTEX_LANES) {
+            close[k] = -(int)!(found.safe[k] > near);
+            unsafe[k] = -(int)!(found.safe[k] > margin);
+        }
         const uint inside_mask = pack_sixteen(found.inside);
         const uint lanes = inside_mask & pack_sixteen(close);
-        clusters[i].lanes = lanes;
+        clusters[i].lanes = lanes | ((lanes & pack_sixteen(unsafe)) << VERTEX_LANES);
         inside[i] = bit_count(inside_mask);
         counts[i] = bit_count(lanes);
+    }
+}
+
+KERNEL void write_near_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters,
+                            GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays,
+                            GLOBAL uint* RESTRICT starts) {
+    FOR_EACH(i, count) {
+        const Cluster cluster = clusters[i];
+        uint lanes = cluster.lanes & 0xffffu;
+        uint at = firsts[i];
+        while (lanes != 0u) {
+            const uint lane = lowest_bit(lanes);
+            Ray ray;
+            ray.pair = cluster.pair;
+            ray.slot = VERTEX_LANES * cluster.vertex_block + lane;
+            rays[at] = ray;
+            starts[at] = ((cluster.lanes >> (VERTEX_LANES + lane)) & 1u) != 0u ? IN_FULL : AHEAD_ONLY;
+            ++at;
+            lanes &= lanes - 1u;
+        }
     }
 }
 
@@ -192,8 +225,8 @@ KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT seg
     }
 }
 
-// The first `full` rays have no triangle to begin at. hows and nexts: see Outcome.
-KERNEL void follow_rays_bvh(RANGE uint count, uint full, uint max_iterations, uint predictive, uint cast_lost,
+// hows and nexts: see Outcome.
+KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
                             GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
@@ -204,7 +237,7 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint full, uint max_iterations, ui
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
         const Outcome end = follow_ray(CASTER_BVH, ray, is_inside(pair->bounds, ray.position),
-                                       i < full ? NONE : starts[i], max_iterations, predictive, cast_lost,
+                                       starts[i], max_iterations, predictive, cast_lost,
                                        cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;
@@ -212,7 +245,7 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint full, uint max_iterations, ui
     }
 }
 
-KERNEL void follow_rays_basic(RANGE uint count, uint full, uint max_iterations, uint predictive, uint cast_lost,
+KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
                               GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                               GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
@@ -223,7 +256,7 @@ KERNEL void follow_rays_basic(RANGE uint count, uint full, uint max_iterations, 
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
         const Outcome end = follow_ray(CASTER_BASIC, ray, is_inside(pair->bounds, ray.position),
-                                       i < full ? NONE : starts[i], max_iterations, predictive, cast_lost,
+                                       starts[i], max_iterations, predictive, cast_lost,
                                        cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;

@@ -24,6 +24,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
                 body.origin = body.turn = 0;
                 continue;
             }
+            body.reach = bodies[i].shape->data().reach;
             const double shear = shear_bound(now);
             const Pose& before = body.known ? body.centred : now;
             body.shift = now.translation - before.translation;
@@ -36,20 +37,19 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     });
 }
 
-double Motion::pair_bound(std::span<const PlacedBody> bodies, const Pair& pair) const {
+double Motion::pair_bound(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
     const double still = a.origin + b.origin;
     if (a.turn == 0 && b.turn == 0) return 1.001 * still;
     // A turning target sweeps the source along at their distance. Rotations are rigid to 1e-4, hence the thousandth.
     const double apart = length(a.centred.translation - b.centred.translation);
-    const double reach = std::max(bodies[pair.first].shape->data().reach, bodies[pair.second].shape->data().reach);
+    const double reach = std::max(a.reach, b.reach);
     return 1.001 * (still + (a.turn + b.turn) * (apart + reach));
 }
 
-double Motion::pair_speed(std::span<const PlacedBody> bodies, const Pair& pair) const {
+double Motion::pair_speed(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-    return length(a.shift - b.shift)
-           + std::max(a.turn * bodies[pair.first].shape->data().reach, b.turn * bodies[pair.second].shape->data().reach);
+    return length(a.shift - b.shift) + std::max(a.turn * a.reach, b.turn * b.reach);
 }
 
 } // namespace raycontact

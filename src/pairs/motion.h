@@ -17,9 +17,9 @@ public:
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// No less than what any vertex of either body moved in the frame of the other, metres.
-    double pair_bound(std::span<const PlacedBody> bodies, const Pair& pair) const;
+    double pair_bound(const Pair& pair) const;
     /// About how fast the two bodies' surfaces move past each other, metres a step.
-    double pair_speed(std::span<const PlacedBody> bodies, const Pair& pair) const;
+    double pair_speed(const Pair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
     double pair_shear(const Pair& pair) const { return bodies_[pair.first].shear + bodies_[pair.second].shear + 1e-15; }
 
@@ -31,6 +31,7 @@ private:
         double origin = 0; ///< its length
         double turn = 0;  ///< turn_bound
         double shear = 0;
+        double reach = 0; ///< of the shape, about its centre
     };
     std::vector<Body> bodies_;
 };

@@ -6,11 +6,13 @@ namespace raycontact {
 std::uint32_t PairTable::take_slot() {
     if (free_.empty()) {
         states_.emplace_back();
+        slacks_.push_back(-1);
         return static_cast<std::uint32_t>(states_.size() - 1);
     }
     const std::uint32_t slot = free_.back();
     free_.pop_back();
     states_[slot] = PairState{};
+    slacks_[slot] = -1;
     return slot;
 }
 
@@ -19,10 +21,11 @@ void PairTable::clear() {
     slots_.clear();
     free_.clear();
     states_.clear();
+    slacks_.clear();
 }
 
 std::uint64_t PairTable::bytes() const {
-    return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t)) + (states_.size() - free_.size()) * sizeof(PairState);
+    return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t)) + (states_.size() - free_.size()) * (sizeof(PairState) + sizeof(double));
 }
 
 } // namespace raycontact

@@ -23,9 +23,12 @@ struct DirectedState {
 /// last looked at, and both directions.
 struct PairState {
     Pose reference;
-    double slack = -1; ///< how far the pair may move, by a cheap bound, before the exact one is asked
     double speed = 0;  ///< metres a step, smoothed; decides how far a full look looks ahead
     double culling = 0; ///< metres a predictive ray looks ahead
+    double threshold = 0; ///< metres, of the last full look; what that one cost, in rays, and how many steps lay before it
+    double look_cost = 0;
+    double steps = 0;
+    std::uint64_t looked = 0; ///< the step of the last full look
     DirectedState directed[2];
 };
 
@@ -52,6 +55,9 @@ public:
 
     /// Of the i-th pair of the last match.
     PairState& state(std::size_t i) { return states_[slots_[i]]; }
+    /// How far that pair may move, by a cheap bound, before the exact one is asked; below 0 for a new pair. Kept apart:
+    /// of most pairs nothing else is read in a step.
+    double& slack(std::size_t i) { return slacks_[slots_[i]]; }
 
     /// Forgets every pair.
     void clear();
@@ -68,6 +74,7 @@ private:
     std::vector<Pair> open_;
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<PairState> states_;
+    std::vector<double> slacks_;
 };
 
 } // namespace raycontact

@@ -44,11 +44,12 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
     due_.resize(pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            PairState& state = table_.state(i);
             due_[i] = 0;
+            double& left = table_.slack(i);
+            left -= motion.pair_bound(pairs[i]);
+            if (left > 0) continue;
+            PairState& state = table_.state(i);
             const bool fresh = state.directed[0].expiry < 0;
-            state.slack -= motion.pair_bound(bodies, pairs[i]);
-            if (!fresh && state.slack > 0) continue;
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
             const Pose now = relative_pose(b.centred, a.centred);
@@ -69,10 +70,10 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
                     due_[i] |= static_cast<std::uint8_t>(look_0 << d);
                 slack = std::min(slack, std::min(own.wake, own.expiry) - clock[d]);
             }
-            state.slack = slack;
+            left = slack;
             if (due_[i] == 0) continue; // the reference stays, so that a jitter adds up to nothing
             state.reference = now;
-            const double speed = motion.pair_speed(bodies, pairs[i]);
+            const double speed = motion.pair_speed(pairs[i]);
             state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
             for (int d = 0; d < 2; ++d) {
                 DirectedState& own = state.directed[d];
@@ -182,9 +183,9 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
         blocks_ += host_looks_[s].blocks;
     }
     for (const std::uint32_t ordered : active_) {
-        PairState& state = table_.state(ordered / 2);
-        state.slack = 1e300;
-        for (const DirectedState& own : state.directed) state.slack = std::min(state.slack, own.wake - own.clock);
+        const PairState& state = table_.state(ordered / 2);
+        table_.slack(ordered / 2) =
+            std::min(state.directed[0].wake - state.directed[0].clock, state.directed[1].wake - state.directed[1].clock);
     }
 }
 

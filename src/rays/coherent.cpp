@@ -14,10 +14,20 @@ namespace raycontact {
 
 namespace {
 
-// How far a pair may move before it is looked at in full again, where no setting says so: some steps' worth.
-double threshold_for(const PlacedBody& a, const PlacedBody& b, double speed) {
+constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followed
+
+// How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full looks
+// and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time. Counts,
+// not clocks: equal input, equal result.
+double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    return std::clamp(6 * speed, 0.002 * size, 0.03 * size);
+    double threshold = 4 * state.speed;
+    if (state.threshold > 0) {
+        const double looks = cost_of_look + state.look_cost;
+        const double follows = state.steps * (state.directed[0].count + state.directed[1].count);
+        threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
+    }
+    return std::clamp(threshold, 0.001 * size, 0.015 * size);
 }
 
 } // namespace
@@ -29,11 +39,12 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     full_.resize(pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            PairState& state = table_.state(i);
             full_[i] = 0;
+            double& left = table_.slack(i);
+            left -= motion.pair_bound(pairs[i]);
+            if (left >= 0) continue;
+            PairState& state = table_.state(i);
             const bool fresh = state.directed[0].expiry < 0;
-            state.slack -= motion.pair_bound(bodies, pairs[i]);
-            if (!fresh && state.slack >= 0) continue;
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
             const Pose now = relative_pose(b.centred, a.centred);
@@ -43,16 +54,18 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
                     std::max(displacement_bound(state.reference, now, a.shape->data().reach, shear),
                              displacement_bound(inverse_pose(state.reference), inverse_pose(now),
                                                 b.shape->data().reach, shear));
-                state.slack = state.directed[0].expiry - moved;
-                if (state.slack >= 0) continue; // the paper: looked at in full once it exceeds the threshold
+                left = state.directed[0].expiry - moved;
+                if (left >= 0) continue; // the paper: looked at in full once it exceeds the threshold
             }
             full_[i] = 1;
             state.reference = now;
-            const double speed = motion.pair_speed(bodies, pairs[i]);
-            state.speed = fresh ? speed : 0.5 * state.speed + 0.5 * speed;
+            state.speed = motion.pair_speed(pairs[i]);
+            state.steps = static_cast<double>(step_ - state.looked);
+            state.looked = step_;
             const double threshold =
-                settings.displacement_threshold ? *settings.displacement_threshold : threshold_for(a, b, state.speed);
-            state.slack = threshold;
+                settings.displacement_threshold ? *settings.displacement_threshold : next_threshold(a, b, state);
+            state.threshold = threshold;
+            left = threshold;
             state.culling = 0;
             if (predictive)
                 state.culling =
@@ -73,6 +86,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     cullings_.resize(active_.size());
     wide_pairs_.resize(full_count_);
     reaches_.resize(full_count_);
+    margins_.resize(full_count_);
     executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const Pair& pair = pairs[active_[i] / 2];
@@ -89,7 +103,8 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
                 wide_pairs_[i].bounds[k] -= static_cast<float>(extension);
                 wide_pairs_[i].bounds[3 + k] += static_cast<float>(extension);
             }
-            reaches_[i] = cullings_[i] + static_cast<float>(rounding_margin(source, target));
+            margins_[i] = static_cast<float>(rounding_margin(source, target));
+            reaches_[i] = cullings_[i] + margins_[i];
         }
     });
 }
@@ -100,6 +115,7 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     device_cullings_.write(device, cullings_);
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
+    device_margins_.write(device, margins_);
     counts_.resize(device, full_count_);
     small_.resize(device, full_count_);
     launch<KernelId::count_clusters>(device, full_count_, device_wide_, arrays.headers, arrays.clusters, counts_,
@@ -109,8 +125,8 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
                                      arrays.clusters, small_, firsts_, clusters_);
     counts_.resize(device, clusters_.size());
     inside_.resize(device, clusters_.size());
-    launch<KernelId::count_near_rays>(device, clusters_.size(), device_wide_, device_reaches_, arrays.headers,
-                                      arrays.vertex_blocks, arrays.clearances, clusters_, inside_, counts_);
+    launch<KernelId::count_near_rays>(device, clusters_.size(), device_wide_, device_reaches_, device_margins_,
+                                      arrays.headers, arrays.clusters, arrays.vertex_blocks, arrays.clearances, clusters_, inside_, counts_);
     sums_.vertices = VERTEX_LANES * clusters_.size();
     sums_.rays = scan_.run(device, inside_, firsts_);
     full_rays_ = scan_.run(device, counts_, firsts_);
@@ -129,7 +145,8 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     sums_.rays += end - full_rays_;
     rays_.resize(device, end);
     starts_.resize(device, end);
-    launch<KernelId::write_rays>(device, full_rays_ > 0 ? clusters_.size() : 0, clusters_, firsts_, rays_);
+    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? clusters_.size() : 0, clusters_, firsts_, rays_,
+                                      starts_);
     segments_.write(device, host_segments_);
     segment_firsts_.write(device, host_firsts_);
     launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_, rays_,
@@ -140,16 +157,15 @@ void CoherentRays::cast(Device& device, const ShapeStore::Arrays& arrays, const 
     hits_.resize(device, rays_.size());
     nexts_.resize(device, rays_.size());
     hows_.resize(device, rays_.size());
-    const auto full = static_cast<kernels::uint>(full_rays_);
     const kernels::uint predictive = settings.method == Method::predictive ? 1 : 0;
     const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
     if (settings.caster == Caster::basic)
-        launch<KernelId::follow_rays_basic>(device, rays_.size(), full, settings.max_iterations, predictive, cast_lost,
+        launch<KernelId::follow_rays_basic>(device, rays_.size(), settings.max_iterations, predictive, cast_lost,
                                             device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
                                             arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
                                             rays_, starts_, hits_, nexts_, hows_);
     else
-        launch<KernelId::follow_rays_bvh>(device, rays_.size(), full, settings.max_iterations, predictive, cast_lost,
+        launch<KernelId::follow_rays_bvh>(device, rays_.size(), settings.max_iterations, predictive, cast_lost,
                                           device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
                                           arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
                                           rays_, starts_, hits_, nexts_, hows_);
@@ -174,6 +190,10 @@ void CoherentRays::keep(Device& device) {
         DirectedState& own = directed(active_[i]);
         own.first = first;
         own.count = sum.kept;
+        if (i < full_count_) {
+            double& cost = table_.state(active_[i] / 2).look_cost;
+            cost = (active_[i] % 2 == 0 ? 0 : cost) + 2.0 * sum.cast;
+        }
         first += sum.kept;
         sums_.predictions += sum.predictions;
         sums_.walks += sum.walks;
@@ -190,6 +210,7 @@ void CoherentRays::follow(Device& device, Executor& executor, const ShapeStore& 
     if (packed_ != shapes.packed()) clear(); // candidates name vertices by their place
     packed_ = shapes.packed();
     sums_ = {};
+    ++step_;
     open_pairs_ = pairs.size();
     table_.match(pairs, [](PairState&) {});
     wake_up(executor, bodies, pairs, motion, settings);

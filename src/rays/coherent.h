@@ -41,16 +41,16 @@ private:
     std::vector<std::uint32_t> active_; ///< ordered pairs
     std::size_t full_count_ = 0;        ///< of active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> cullings_, reaches_; ///< of active_, of the full ones
+    std::vector<float> cullings_, reaches_, margins_; ///< of active_, of the full ones, of the full ones
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;
     StepStats sums_;
     std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
-    std::uint64_t packed_ = 0;
+    std::uint64_t packed_ = 0, step_ = 0;
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
-    Array<float> device_cullings_, device_reaches_;
+    Array<float> device_cullings_, device_reaches_, device_margins_;
     Array<kernels::uint> counts_, inside_, firsts_, segment_firsts_, ranges_, starts_, nexts_, hows_;
     Array<kernels::ulong> small_;
     Array<kernels::Cluster> clusters_;

@@ -49,6 +49,7 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::count_rays:
     case KernelId::count_near_rays:
     case KernelId::write_watch_rays:
+    case KernelId::write_near_rays:
     case KernelId::copy_candidates:
     case KernelId::count_candidates:
     case KernelId::write_candidates:
