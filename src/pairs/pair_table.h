@@ -11,10 +11,10 @@ namespace raycontact {
 
 /// What a method keeps for one direction of a pair: a range of its own array, and the pair's clock.
 struct DirectedState {
-    double clock = 0;            ///< metres moved at most since the last full look, up to the reference pose
-    double wake = 0;             ///< nothing need be looked at before the clock reaches this
-    double expiry = -1;          ///< a full look is due when the clock reaches this; below 0: at once
-    std::uint32_t first = 0;     ///< of what the method keeps
+    double clock = 0;        ///< metres moved at most since the last full look, up to the reference pose
+    double wake = 0;         ///< nothing need be looked at before the clock reaches this
+    double expiry = -1;      ///< a full look is due when the clock reaches this; below 0: at once
+    std::uint32_t first = 0; ///< of what the method keeps
     std::uint32_t count = 0;
     std::uint32_t capacity = 0;
 };
@@ -23,8 +23,10 @@ struct DirectedState {
 /// last looked at, and both directions.
 struct PairState {
     Pose reference;
-    double slack = -1; ///< how far the pair may move, by a cheap bound, before the exact one is asked
-    double speed = 0;  ///< metres a step, smoothed; decides how far a full look looks ahead
+    Vec3 reference_back; ///< the second body's centre seen from the first; the inverse's only for a true rotation
+    double shear = 0;    ///< of the reference's rotation
+    double slack = -1;   ///< how far the pair may move, by a cheap bound, before the exact one is asked
+    double speed = 0;    ///< metres a step, smoothed; decides how far a full look looks ahead
     DirectedState directed[2];
 };
 

@@ -15,12 +15,13 @@ constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes ke
 
 enum Due : std::uint8_t { look_0 = 1, list_0 = 4 };
 
-// The translation of the inverse pose, but for its sign.
-Vec3 seen_from_other(const Pose& pose) {
-    const auto& r = pose.rotation;
-    const Vec3& t = pose.translation;
-    return {(r[0] * t.x + r[3] * t.y) + r[6] * t.z, (r[1] * t.x + r[4] * t.y) + r[7] * t.z,
-            (r[2] * t.x + r[5] * t.y) + r[8] * t.z};
+// Where a centre is seen from another body. Not from the relative pose: the transpose of a rotation that is one only to
+// 1e-4 is not its inverse, and that is millimetres on a large slab.
+Vec3 seen_from(const Pose& body, const Vec3& point) {
+    const auto& r = body.rotation;
+    const Vec3 d = point - body.translation;
+    return {(r[0] * d.x + r[3] * d.y) + r[6] * d.z, (r[1] * d.x + r[4] * d.y) + r[7] * d.z,
+            (r[2] * d.x + r[5] * d.y) + r[8] * d.z};
 }
 
 // Rounding of two float32 transforms, of the ray test and of the clock: docs/certified.md adds them up; here they
@@ -58,11 +59,13 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
             const Pose now = relative_pose(b.centred, a.centred);
+            const Vec3 now_back = seen_from(a.centred, b.centred.translation);
+            const double shear = motion.pair_shear(pairs[i]);
             double clock[2] = {0, 0};
             if (!fresh) {
-                const double turn = turn_bound(state.reference, now, motion.pair_shear(pairs[i]));
+                const double turn = turn_bound(state.reference, now, std::max(state.shear, shear));
                 const double shift_0 = length(now.translation - state.reference.translation);
-                const double shift_1 = length(seen_from_other(now) - seen_from_other(state.reference));
+                const double shift_1 = length(now_back - state.reference_back);
                 clock[0] = state.directed[0].clock + shift_0 + turn * a.shape->data().reach;
                 clock[1] = state.directed[1].clock + shift_1 + turn * b.shape->data().reach;
             }
@@ -78,6 +81,8 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             state.slack = slack;
             if (due_[i] == 0) continue; // the reference stays, so that a jitter adds up to nothing
             state.reference = now;
+            state.reference_back = now_back;
+            state.shear = shear;
             const double speed = motion.pair_speed(bodies, pairs[i]);
             state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
             for (int d = 0; d < 2; ++d) {
