@@ -35,7 +35,12 @@ double rounding_of(const PlacedBody& source, const PlacedBody& target) {
 // last where it is fast.
 double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    return std::clamp(12 * speed, 0.01 * size, 0.2 * size);
+    return std::max(0.01 * size, std::min(0.2 * size, 12 * speed)); // in this order also for a speed that is no number
+}
+
+// Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
+double longest_clock(const PlacedBody& target) {
+    return 8 * target.shape->data().diagonal;
 }
 
 } // namespace
@@ -72,9 +77,11 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             double slack = 1e300;
             for (int d = 0; d < 2; ++d) {
                 const DirectedState& own = state.directed[d];
-                if (fresh || clock[d] >= own.expiry)
+                // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to
+                // look.
+                if (fresh || !(clock[d] < own.expiry))
                     due_[i] |= static_cast<std::uint8_t>(list_0 << d);
-                else if (clock[d] >= own.wake)
+                else if (!(clock[d] < own.wake))
                     due_[i] |= static_cast<std::uint8_t>(look_0 << d);
                 slack = std::min(slack, std::min(own.wake, own.expiry) - clock[d]);
             }
@@ -90,7 +97,8 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
                 own.clock = clock[d];
                 if ((due_[i] & (list_0 << d)) == 0) continue;
                 own.clock = 0;
-                own.expiry = threshold ? *threshold : look_ahead(a, b, state.speed);
+                own.expiry =
+                    threshold ? std::min(*threshold, longest_clock(d == 0 ? b : a)) : look_ahead(a, b, state.speed);
             }
         }
     });
