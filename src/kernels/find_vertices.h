@@ -23,12 +23,25 @@ DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
         b.half_size[i] =
             half_size + 1.0e-6f * ((half_size + magnitude_of(middle)) + magnitude_of(pair->translation[i]));
     }
+    float farthest = 0.0f;
     for (int i = 0; i < 3; ++i) {
         b.source_centre[i] =
             -((b.rotation[i] * b.offset[0] + b.rotation[3 + i] * b.offset[1]) + b.rotation[6 + i] * b.offset[2]);
         const float half_size =
             (b.size[i] * b.half_size[0] + b.size[3 + i] * b.half_size[1]) + b.size[6 + i] * b.half_size[2];
         b.source_half_size[i] = half_size + 1.0e-6f * (half_size + magnitude_of(b.source_centre[i]));
+        const float far = magnitude_of(b.source_centre[i]) + half_size;
+        farthest = far > farthest ? far : farthest;
+    }
+    // Poses are rigid to 1e-4 only, and the transpose is as far from the inverse: millimetres on a large slab.
+    for (int i = 0; i < 3; ++i) {
+        float shear = 0.0f;
+        for (int j = 0; j < 3; ++j) {
+            const float product = (b.rotation[i] * b.rotation[j] + b.rotation[3 + i] * b.rotation[3 + j])
+                                  + b.rotation[6 + i] * b.rotation[6 + j];
+            shear += magnitude_of(product - (i == j ? 1.0f : 0.0f));
+        }
+        b.source_half_size[i] += 1.01f * shear * farthest;
     }
     return b;
 }

@@ -87,8 +87,8 @@ DEVICE WatchLanes watch_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL co
 DEVICE float least_of_sixteen(const float* values) {
     float least[8];
     FOR_LANES(k, 8) least[k] = values[k] < values[k + 8] ? values[k] : values[k + 8];
-    for (int half = 4; half > 0; half /= 2)
-        for (int k = 0; k < half; ++k) least[k] = least[k] < least[k + half] ? least[k] : least[k + half];
+    for (int left = 4; left > 0; left /= 2)
+        for (int k = 0; k < left; ++k) least[k] = least[k] < least[k + left] ? least[k] : least[k + left];
     return least[0];
 }
 

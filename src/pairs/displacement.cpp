@@ -30,18 +30,24 @@ double turn_bound(const Pose& from, const Pose& to, double shear) {
     return std::min(frobenius, frobenius * 0.70710678118654757 + 3.4143 * shear);
 }
 
-Pose inverse_pose(const Pose& pose) {
-    const auto& r = pose.rotation;
-    const Vec3& t = pose.translation;
-    Pose inverse;
-    inverse.rotation = {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
-    inverse.translation = {-((r[0] * t.x + r[3] * t.y) + r[6] * t.z), -((r[1] * t.x + r[4] * t.y) + r[7] * t.z),
-                           -((r[2] * t.x + r[5] * t.y) + r[8] * t.z)};
-    return inverse;
-}
-
 double displacement_bound(const Pose& from, const Pose& to, double reach, double shear) {
     return length(to.translation - from.translation) + turn_bound(from, to, shear) * reach;
+}
+
+PairPlace place_pair(const Pose& first, const Pose& second, double shear) {
+    const auto& r = first.rotation;
+    const Vec3 d = second.translation - first.translation;
+    return {relative_pose(second, first),
+            {(r[0] * d.x + r[3] * d.y) + r[6] * d.z, (r[1] * d.x + r[4] * d.y) + r[7] * d.z,
+             (r[2] * d.x + r[5] * d.y) + r[8] * d.z},
+            shear};
+}
+
+std::array<double, 2> displacement_bounds(const PairPlace& from, const PairPlace& to, double reach_first,
+                                          double reach_second) {
+    const double turn = turn_bound(from.pose, to.pose, std::max(from.shear, to.shear));
+    return {length(to.pose.translation - from.pose.translation) + turn * reach_first,
+            length(to.back - from.back) + turn * reach_second};
 }
 
 } // namespace raycontact

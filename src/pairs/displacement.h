@@ -3,6 +3,8 @@
 
 #include <raycontact/pose.h>
 
+#include <array>
+
 namespace raycontact {
 
 /// How far the rotation may be from an orthonormal matrix (Frobenius norm), for bounds that rely on it being one.
@@ -13,10 +15,21 @@ double shear_bound(const Pose& pose);
 /// matrices that are rotations only nearly. 0 where both are the same.
 double turn_bound(const Pose& from, const Pose& to, double shear);
 
-/// The outer frame seen from the inner one.
-Pose inverse_pose(const Pose& pose);
-
 /// How far any point within `reach` of the frame's origin moved at most between two poses, metres.
 double displacement_bound(const Pose& from, const Pose& to, double reach, double shear);
+
+/// Two bodies relative to each other. `back` is not taken from `pose`: the transpose of a rotation that is one only to
+/// 1e-4 is not its inverse, and that is millimetres on a large slab.
+struct PairPlace {
+    Pose pose;        ///< the first body's frame seen from the second's
+    Vec3 back;        ///< the origin of the second seen from the first
+    double shear = 0; ///< of the rotation
+};
+PairPlace place_pair(const Pose& first, const Pose& second, double shear);
+
+/// How far the vertices of the first, within `reach_first` of its origin, moved at most in the frame of the second, and
+/// the second's in the frame of the first, metres. Not a number where squares overflow.
+std::array<double, 2> displacement_bounds(const PairPlace& from, const PairPlace& to, double reach_first,
+                                          double reach_second);
 
 } // namespace raycontact

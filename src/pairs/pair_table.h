@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pairs/displacement.h"
+
 #include <raycontact/scene.h>
 
 #include <cstdint>
@@ -11,24 +13,24 @@ namespace raycontact {
 
 /// What a method keeps for one direction of a pair: a range of its own array, and the pair's clock.
 struct DirectedState {
-    double clock = 0;            ///< metres moved at most since the last full look, up to the reference pose
-    double wake = 0;             ///< nothing need be looked at before the clock reaches this
-    double expiry = -1;          ///< a full look is due when the clock reaches this; below 0: at once
-    std::uint32_t first = 0;     ///< of what the method keeps
+    double clock = 0;        ///< metres moved at most since the last full look, up to the reference pose
+    double wake = 0;         ///< nothing need be looked at before the clock reaches this
+    double expiry = -1;      ///< a full look is due when the clock reaches this; below 0: at once
+    std::uint32_t first = 0; ///< of what the method keeps
     std::uint32_t count = 0;
     std::uint32_t capacity = 0;
 };
 
-/// What lives from step to step for a pair: the pose of its first body seen from its second when either direction was
-/// last looked at, and both directions.
+/// What lives from step to step for a pair: where its bodies were when either direction was last looked at, and both
+/// directions.
 struct PairState {
-    Pose reference;
-    double speed = 0;  ///< metres a step, smoothed; decides how far a full look looks ahead
-    double culling = 0; ///< metres a predictive ray looks ahead
-    double threshold = 0; ///< metres, of the last full look; what that one cost, in rays, and how many steps lay before it
-    double look_cost = 0;
-    double steps = 0;
-    std::uint64_t looked = 0; ///< the step of the last full look
+    PairPlace reference;
+    double speed = 0;     ///< metres a step, smoothed; decides how far a full look looks ahead
+    double culling = 0;   ///< metres a predictive ray looks ahead
+    double threshold = 0; ///< metres, of the last full look
+    double look_cost = 0; ///< what that look cost, in rays
+    double steps = 0;     ///< how many steps lay before it
+    std::uint64_t looked = 0; ///< its step
     DirectedState directed[2];
 };
 

@@ -16,19 +16,16 @@ constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes ke
 
 enum Due : std::uint8_t { look_0 = 1, list_0 = 4 };
 
-// The translation of the inverse pose, but for its sign.
-Vec3 seen_from_other(const Pose& pose) {
-    const auto& r = pose.rotation;
-    const Vec3& t = pose.translation;
-    return {(r[0] * t.x + r[3] * t.y) + r[6] * t.z, (r[1] * t.x + r[4] * t.y) + r[7] * t.z,
-            (r[2] * t.x + r[5] * t.y) + r[8] * t.z};
-}
-
 // How far beyond the bounds a new list reaches: some steps' worth, so that lists are short where a pair is slow and
 // last where it is fast.
 double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    return std::clamp(24 * speed, 0.02 * size, 0.2 * size);
+    return std::max(0.02 * size, std::min(0.2 * size, 24 * speed)); // in this order also for a speed that is no number
+}
+
+// Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
+double longest_clock(const PlacedBody& target) {
+    return 8 * target.shape->data().diagonal;
 }
 
 } // namespace
@@ -52,21 +49,20 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             const bool fresh = state.directed[0].expiry < 0;
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
-            const Pose now = relative_pose(b.centred, a.centred);
-            double clock[2] = {0, 0};
+            const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pairs[i]));
+            std::array<double, 2> clock{0, 0};
             if (!fresh) {
-                const double turn = turn_bound(state.reference, now, motion.pair_shear(pairs[i]));
-                const double shift_0 = length(now.translation - state.reference.translation);
-                const double shift_1 = length(seen_from_other(now) - seen_from_other(state.reference));
-                clock[0] = state.directed[0].clock + shift_0 + turn * a.shape->data().reach;
-                clock[1] = state.directed[1].clock + shift_1 + turn * b.shape->data().reach;
+                clock = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
+                for (std::size_t d = 0; d < 2; ++d) clock[d] += state.directed[d].clock;
             }
             double slack = 1e300;
-            for (int d = 0; d < 2; ++d) {
+            for (std::size_t d = 0; d < 2; ++d) {
                 const DirectedState& own = state.directed[d];
-                if (fresh || clock[d] >= own.expiry)
+                // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to
+                // look.
+                if (fresh || !(clock[d] < own.expiry))
                     due_[i] |= static_cast<std::uint8_t>(list_0 << d);
-                else if (clock[d] >= own.wake)
+                else if (!(clock[d] < own.wake))
                     due_[i] |= static_cast<std::uint8_t>(look_0 << d);
                 slack = std::min(slack, std::min(own.wake, own.expiry) - clock[d]);
             }
@@ -75,12 +71,13 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             state.reference = now;
             const double speed = motion.pair_speed(pairs[i]);
             state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-            for (int d = 0; d < 2; ++d) {
+            for (std::size_t d = 0; d < 2; ++d) {
                 DirectedState& own = state.directed[d];
                 own.clock = clock[d];
                 if ((due_[i] & (list_0 << d)) == 0) continue;
                 own.clock = 0;
-                own.expiry = threshold ? *threshold : look_ahead(a, b, state.speed);
+                own.expiry =
+                    threshold ? std::min(*threshold, longest_clock(d == 0 ? b : a)) : look_ahead(a, b, state.speed);
             }
         }
     });

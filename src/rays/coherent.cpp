@@ -47,15 +47,15 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             const bool fresh = state.directed[0].expiry < 0;
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
-            const Pose now = relative_pose(b.centred, a.centred);
+            const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pairs[i]));
             if (!fresh) {
-                const double shear = motion.pair_shear(pairs[i]);
-                const double moved =
-                    std::max(displacement_bound(state.reference, now, a.shape->data().reach, shear),
-                             displacement_bound(inverse_pose(state.reference), inverse_pose(now),
-                                                b.shape->data().reach, shear));
-                left = state.directed[0].expiry - moved;
-                if (left >= 0) continue; // the paper: looked at in full once it exceeds the threshold
+                const auto moved =
+                    displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
+                // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number.
+                if (moved[0] <= state.threshold && moved[1] <= state.threshold) {
+                    left = state.threshold - std::max(moved[0], moved[1]);
+                    continue;
+                }
             }
             full_[i] = 1;
             state.reference = now;

@@ -55,6 +55,7 @@ TEST(work, reaches_every_kernel_and_the_side_tests) {
     EXPECT_GT(expected().rays, 4000u);
     EXPECT_GT(expected().contacts.size(), 500u);
     EXPECT_GT(expected().side_tests, 0u);
+    EXPECT_TRUE(same_bits(expected().contacts, expected().watched)) << "the methods differ";
     for (std::size_t kernel = 0; kernel < static_cast<std::size_t>(KernelId::count); ++kernel) {
         bool launched = false;
         for (const Written& written : expected().trace)
@@ -75,6 +76,7 @@ TEST(opencl, every_device_leaves_the_same_bytes) {
         const Outcome outcome = run_pipeline(*open_exact(device), work());
         EXPECT_EQ(first_difference(expected().trace, outcome.trace), "") << device.name;
         EXPECT_TRUE(same_bits(expected().contacts, outcome.contacts)) << device.name;
+        EXPECT_TRUE(same_bits(expected().watched, outcome.watched)) << device.name;
     }
 }
 

@@ -3,7 +3,9 @@
 
 #include "contacts/gather.h"
 #include "device/cpu/device.h"
+#include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
+#include "rays/certified.h"
 #include "rays/standard.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -24,6 +26,36 @@ PlacedBody place(const Work& work, std::size_t shape, const Pose& pose) {
     return body;
 }
 
+// A first look, a look at blocks that woke up, and new lists in the place of old ones.
+void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
+                   std::size_t last, Outcome& outcome) {
+    Executor executor(1);
+    std::vector<PlacedBody> bodies = work.bodies;
+    std::vector<Pair> pairs;
+    const std::size_t first_pair = (first + 1) / 2;
+    for (std::size_t i = first_pair; i < (last + 1) / 2; ++i)
+        pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
+    Motion motion;
+    CertifiedRays certified;
+    Gather gather;
+    Array<kernels::Hit> hits;
+    for (const double by : {0.0, 0.004, 0.1}) {
+        for (std::size_t i = 0; i < bodies.size(); i += 2) {
+            bodies[i].pose.translation.x += by;
+            bodies[i].centred.translation.x += by;
+        }
+        motion.update(executor, bodies);
+        certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
+        cast_standard(tracing, Caster::bvh, store.arrays(), certified.pairs(), certified.rays(), hits);
+        std::vector<kernels::LocalContact> contacts;
+        gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), hits, contacts);
+        if (by > 0) continue;
+        for (kernels::LocalContact& contact : contacts)
+            contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * first_pair);
+        outcome.watched = contacts;
+    }
+}
+
 } // namespace
 
 Work make_work(std::size_t random_pairs) {
@@ -34,7 +66,7 @@ Work make_work(std::size_t random_pairs) {
         work.shapes.push_back(Shape::make(mesh));
     const std::size_t grid_box = work.shapes.size() - 1;
 
-    std::vector<PlacedBody> bodies;
+    std::vector<PlacedBody>& bodies = work.bodies;
     Random random(2013);
     for (std::size_t i = 0; i < 2 * random_pairs; ++i) {
         Pose pose = random.rotation();
@@ -74,6 +106,7 @@ Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::s
     outcome.side_tests = gather.run(tracing, store.arrays(), pairs, queue.rays(), hits, outcome.contacts);
     for (kernels::LocalContact& contact : outcome.contacts) contact.pair += static_cast<kernels::uint>(first);
     outcome.rays = queue.rays().size();
+    run_certified(tracing, store, work, first, last, outcome);
     outcome.trace = tracing.trace();
     return outcome;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/trace.h"
+#include "pairs/ordered_pairs.h"
 
 #include <raycontact/shape.h>
 
@@ -15,6 +16,7 @@ namespace raycontact::device_test {
 struct Work {
     std::vector<std::shared_ptr<const Shape>> shapes;
     std::vector<kernels::OrderedPair> pairs;
+    std::vector<PlacedBody> bodies; ///< 2 i and 2 i + 1 are those of pairs 2 i and 2 i + 1
 };
 
 /// Random placements, and boxes on a common grid whose rays run along faces and through edges.
@@ -24,11 +26,12 @@ Work make_work(std::size_t random_pairs);
 struct Outcome {
     std::vector<Written> trace;
     std::vector<kernels::LocalContact> contacts; ///< pair: counted over the whole work
+    std::vector<kernels::LocalContact> watched;  ///< the same by the certified method, of whole pairs
     std::size_t rays = 0;
     std::uint64_t side_tests = 0;
 };
 
-/// Every kernel of a step, both casters, on pairs [first, last) of the work.
+/// Every kernel of a step, both casters, on pairs [first, last) of the work; then some steps of the certified method.
 Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::size_t last);
 Outcome run_pipeline(Device& device, const Work& work);
 /// The same on the CPU device, one thread. instruction_set: of cpu::usable_tables(), empty for the widest.

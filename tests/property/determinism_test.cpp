@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 using namespace raycontact;
 using namespace raycontact::reference;
@@ -63,7 +64,7 @@ Trace run(const Settings& settings) {
     Trace result;
     Crowd crowd(settings);
     ContactHash hash;
-    for (std::uint32_t step = 0; step < 5; ++step) {
+    for (std::uint32_t step = 0; step < 12; ++step) {
         result.steps.push_back(copy(crowd.scene.step()));
         hash.add(step, result.steps.back());
         crowd.move();
@@ -72,22 +73,35 @@ Trace run(const Settings& settings) {
     return result;
 }
 
+constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
+
 TEST(determinism, threads_and_reruns_change_nothing) {
-    const Trace first = run(threads(1));
-    std::size_t contacts = 0;
-    for (const auto& step : first.steps) contacts += step.size();
-    EXPECT_EQ(first.hash.size(), 16u);
-    std::size_t runs = 1;
-    for (const std::uint32_t count : {1u, 2u, 3u, 5u, 0u}) {
-        const Trace other = run(threads(count));
-        EXPECT_EQ(other.hash, first.hash) << count << " threads";
-        for (std::size_t i = 0; i < first.steps.size(); ++i)
-            EXPECT_TRUE(same_bits(first.steps[i], other.steps[i])) << count << " threads, step " << i;
-        ++runs;
+    std::map<Method, std::string> hashes;
+    for (const Method method : methods) {
+        const auto settings = [&](std::uint32_t count) {
+            Settings made = threads(count);
+            made.method = method;
+            return made;
+        };
+        const Trace first = run(settings(1));
+        std::size_t contacts = 0;
+        for (const auto& step : first.steps) contacts += step.size();
+        EXPECT_EQ(first.hash.size(), 16u);
+        std::size_t runs = 1;
+        for (const std::uint32_t count : {1u, 2u, 3u, 5u, 0u}) {
+            const Trace other = run(settings(count));
+            EXPECT_EQ(other.hash, first.hash) << to_string(method) << ", " << count << " threads";
+            for (std::size_t i = 0; i < first.steps.size(); ++i)
+                EXPECT_TRUE(same_bits(first.steps[i], other.steps[i]))
+                    << to_string(method) << ", " << count << " threads, step " << i;
+            ++runs;
+        }
+        std::printf("[ counts   ] %s: %zu runs of %zu steps, %zu contacts each, hash %s\n",
+                    std::string(to_string(method)).c_str(), runs, first.steps.size(), contacts, first.hash.c_str());
+        EXPECT_GE(contacts, 10000u);
+        hashes[method] = first.hash;
     }
-    std::printf("[ counts   ] %zu runs of %zu steps, %zu contacts each, hash %s\n", runs, first.steps.size(), contacts,
-                first.hash.c_str());
-    EXPECT_GE(contacts, 10000u);
+    EXPECT_EQ(hashes[Method::certified], hashes[Method::standard]);
 }
 
 TEST(determinism, hash_sees_every_field_and_the_step) {

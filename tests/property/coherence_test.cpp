@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever happened to a scene, in whatever order, what it reports is true: by the standard and the certified method
+// the contacts of a fresh scene, by the others contacts that a ray in double finds too.
+#include "property/crowds.h"
+#include "property/shapes.h"
+#include "reference/margins.h"
+#include "reference/meshes.h"
+#include "reference/vector.h"
+
+#include <raycontact/error.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+using Key = std::tuple<BodyId, BodyId, VertexBody, std::uint32_t>;
+
+template <class Named>
+Key key(const Named& c) {
+    return {c.body_a, c.body_b, c.vertex_body, c.vertex};
+}
+
+struct Guest {
+    const Subject* subject = nullptr;
+    Pose pose;
+};
+
+struct Counts {
+    std::uint64_t steps = 0, contacts = 0, same = 0, genuine = 0, came = 0, went = 0, refused = 0;
+    std::uint64_t wrong = 0, false_hits = 0, false_pairs = 0, false_changes = 0;
+    std::uint64_t missed_by_others = 0, of_standard = 0; ///< by the methods that may miss some
+    std::uint64_t lies = 0, believed = 0; ///< contacts with the wrong triangle, to see what the judge is worth
+};
+
+// The ray of the contact's vertex meets that triangle, from inside, within its exit distance: all within rounding.
+bool is_genuine(const Contact& c, const Guest& a, const Guest& b) {
+    const bool of_a = c.vertex_body == VertexBody::a;
+    const Guest &source = of_a ? a : b, &target = of_a ? b : a;
+    const Solid &s = source.subject->solid, &t = target.subject->solid;
+    const auto v = static_cast<std::size_t>(std::find(s.vertex_index.begin(), s.vertex_index.end(), c.vertex)
+                                            - s.vertex_index.begin());
+    const auto f = static_cast<std::size_t>(std::find(t.triangle_index.begin(), t.triangle_index.end(), c.triangle)
+                                            - t.triangle_index.begin());
+    if (v == s.vertices.size() || f == t.triangles.size()) return false;
+    const double size = std::max(s.diagonal, t.diagonal), rounding = 1e-5 * size;
+    const Vec3 shift = (source.pose.translation - target.pose.translation)
+                       + (rotate(source.pose, s.centre) - rotate(target.pose, t.centre));
+    const Vec3 origin = rotate_back(target.pose, rotate(source.pose, s.vertices[v]) + shift);
+    const Vec3 direction = unit(rotate_back(target.pose, rotate(source.pose, -s.vertex_normals[v])));
+    const auto length_of_ray = static_cast<double>(c.ray_length);
+
+    // The hit lies on the triangle: an own little solid of one triangle tells how far off it is.
+    const auto& [i, j, k] = t.triangles[f];
+    const Solid triangle = make_surface("hit", {t.vertices[i], t.vertices[j], t.vertices[k]}, {{0, 1, 2}});
+    if (!(length_of_ray >= 0)) return false;
+    if (distance_to_surface(triangle, origin + length_of_ray * direction) > rounding) return false;
+    if (dot(direction, t.face_normals[f]) < -1e-4) return false;
+    if (s.exit_margins[v] > 1e-5 && length_of_ray > s.exits[v] + rounding) return false;
+
+    // And what is said about it is that of this hit.
+    const Vec3 normal = rotate(target.pose, t.face_normals[f]);
+    const Vec3 said{static_cast<double>(c.normal[0]), static_cast<double>(c.normal[1]),
+                    static_cast<double>(c.normal[2])};
+    const Vec3 ray = rotate(target.pose, direction);
+    const double sign = of_a ? -1 : 1;
+    const bool along_face = length(said - sign * normal) < 1e-4, along_ray = length(said - sign * ray) < 1e-4;
+    const Vec3 point = transform_point(source.pose, source.subject->shape->vertices()[v]);
+    return (along_face || along_ray) && c.depth >= 0 && length(c.point - point) < 1e-6 * size;
+}
+
+std::vector<Subject> make_subjects() {
+    std::vector<Subject> subjects;
+    for (const Mesh& mesh : {bumpy_octahedron_mesh(5), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(5),
+                             sheet_mesh(5), grid_box_mesh(4), box_mesh({4, 4, 0.5})})
+        subjects.emplace_back(mesh);
+    return subjects;
+}
+
+class Story {
+public:
+    Story(const std::vector<Subject>& subjects, std::uint64_t seed, Counts& counts)
+        : subjects_(subjects), random_(seed), counts_(counts), scene_(settings_of(Method::certified)) {
+        for (int i = 0; i < 8; ++i) add();
+    }
+
+    void play(int steps) {
+        for (int i = 0; i < steps; ++i) {
+            for (std::uint32_t events = random_.below(3); events > 0; --events) happen();
+            move();
+            step();
+        }
+    }
+
+private:
+    static Settings settings_of(Method method) {
+        Settings settings;
+        settings.threads = 1;
+        settings.method = method;
+        return settings;
+    }
+
+    Pose somewhere() {
+        Pose pose = random_.rotation();
+        pose.translation = 1.3 * random_.in_ball();
+        return pose;
+    }
+
+    BodyId someone() {
+        auto it = guests_.begin();
+        std::advance(it, random_.below(static_cast<std::uint32_t>(guests_.size())));
+        return it->first;
+    }
+
+    void add() {
+        Guest guest;
+        guest.subject = &subjects_[random_.below(static_cast<std::uint32_t>(subjects_.size()))];
+        guest.pose = somewhere();
+        guests_[scene_.add(guest.subject->shape, guest.pose)] = guest;
+    }
+
+    void move() {
+        for (auto& [id, guest] : guests_) {
+            const std::uint32_t how = random_.below(8);
+            if (how == 0) continue;
+            const double by = std::pow(10.0, random_.uniform(-6, -1.5));
+            const Vec3 axis = random_.direction();
+            Pose next = composed(small_rotation(axis, by), guest.pose);
+            next.translation = guest.pose.translation + by * random_.in_ball();
+            if (how == 1) next = rounded_to_float(next);
+            guest.pose = next;
+            scene_.set_pose(id, guest.pose);
+        }
+    }
+
+    void happen() {
+        switch (random_.below(8)) {
+        case 0:
+            if (guests_.size() < 12) add();
+            break;
+        case 1:
+            if (guests_.size() > 4) {
+                const BodyId gone = someone();
+                scene_.remove(gone);
+                guests_.erase(gone);
+                EXPECT_THROW(scene_.set_pose(gone, {}), InputError);
+            }
+            break;
+        case 2: {
+            const BodyId id = someone();
+            guests_[id].pose = somewhere();
+            scene_.set_pose(id, guests_[id].pose);
+            break;
+        }
+        case 3:
+            refuse();
+            break;
+        case 4:
+            given_ = random_.below(2) != 0;
+            break;
+        default:
+            change_settings();
+        }
+    }
+
+    void refuse() {
+        const BodyId id = someone();
+        Pose bad = somewhere();
+        (random_.below(2) ? bad.rotation[random_.below(9)] : bad.translation.y) =
+            std::numeric_limits<double>::quiet_NaN();
+        try {
+            scene_.set_pose(id, bad);
+            ++counts_.wrong;
+        } catch (const InputError& error) {
+            ++counts_.refused;
+            EXPECT_NE(std::string(error.what()).find("body " + std::to_string(id)), std::string::npos) << error.what();
+        }
+        EXPECT_EQ(scene_.pose(id), guests_[id].pose);
+    }
+
+    void change_settings() {
+        Settings changed = scene_.settings();
+        constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
+        if (random_.below(2)) changed.method = methods[random_.below(4)];
+        if (random_.below(2)) changed.direction = random_.below(2) ? Direction::ray : Direction::reprojected;
+        if (random_.below(3) == 0) changed.caster = random_.below(2) ? Caster::bvh : Caster::basic;
+        if (random_.below(3) == 0) changed.skip_outside = random_.below(2) != 0;
+        if (random_.below(2)) {
+            changed.displacement_threshold.reset();
+            if (random_.below(2)) changed.displacement_threshold = std::pow(10.0, random_.uniform(-7, 1));
+            changed.confidence = random_.uniform(1, 4);
+            changed.max_iterations = 1 + random_.below(30);
+            changed.cast_lost_walks = random_.below(2) != 0;
+            changed.culling_distance.reset();
+            if (random_.below(3) == 0) changed.culling_distance = random_.uniform(0, 0.2);
+        }
+        scene_.set_settings(changed);
+    }
+
+    void step() {
+        std::vector<Pair> asked;
+        if (given_)
+            for (const auto& [a, guest_a] : guests_)
+                for (const auto& [b, guest_b] : guests_)
+                    if (a < b && random_.below(4) != 0) asked.emplace_back(a, b);
+        const std::span<const Contact> found = given_ ? scene_.step(asked) : scene_.step();
+        if (given_) {
+            EXPECT_TRUE(std::equal(asked.begin(), asked.end(), scene_.pairs().begin(), scene_.pairs().end()));
+        }
+        ++counts_.steps;
+        counts_.contacts += found.size();
+        expect_changes(found);
+        expect_pairs(found);
+
+        // A scene that has seen nothing: the same bodies, renamed.
+        Settings settings = scene_.settings();
+        const Method method = settings.method;
+        settings.method = Method::standard;
+        Scene fresh(settings);
+        std::vector<BodyId> ids;
+        std::map<BodyId, BodyId> renamed;
+        for (const auto& [id, guest] : guests_) {
+            renamed[id] = fresh.add(guest.subject->shape, guest.pose);
+            ids.push_back(id);
+        }
+        std::vector<Pair> pairs;
+        for (const auto& [a, b] : scene_.pairs()) pairs.emplace_back(renamed[a], renamed[b]);
+        const auto span = fresh.step(pairs);
+        std::vector<Contact> expected(span.begin(), span.end());
+        for (Contact& c : expected) c.body_a = ids[c.body_a], c.body_b = ids[c.body_b];
+        if (method == Method::standard || method == Method::certified) {
+            if (same_bits(expected, found))
+                counts_.same += found.size();
+            else
+                ++counts_.wrong;
+            return;
+        }
+        for (const Contact& c : found) {
+            if (is_genuine(c, guests_[c.body_a], guests_[c.body_b])) {
+                ++counts_.genuine;
+                Contact lie = c;
+                lie.triangle += 1;
+                ++counts_.lies;
+                counts_.believed += is_genuine(lie, guests_[c.body_a], guests_[c.body_b]);
+                continue;
+            }
+            if (++counts_.false_hits == 1)
+                ADD_FAILURE() << to_string(method) << ", step " << counts_.steps << ": vertex " << c.vertex
+                              << " does not meet triangle " << c.triangle << ", ray " << c.ray_length;
+        }
+        std::set<Key> keys;
+        for (const Contact& c : found) keys.insert(key(c));
+        counts_.of_standard += expected.size();
+        for (const Contact& c : expected) counts_.missed_by_others += !keys.contains(key(c));
+    }
+
+    // New and lost are the two differences of sets, whatever the method.
+    void expect_changes(std::span<const Contact> found) {
+        std::set<Key> now;
+        std::uint64_t came = 0;
+        for (const Contact& c : found) {
+            now.insert(key(c));
+            came += c.is_new;
+            counts_.false_changes += c.is_new == before_.contains(key(c));
+        }
+        std::set<Key> lost;
+        for (const LostContact& c : scene_.lost_contacts()) lost.insert(key(c));
+        std::set<Key> expected;
+        std::set_difference(before_.begin(), before_.end(), now.begin(), now.end(),
+                            std::inserter(expected, expected.end()));
+        counts_.false_changes += lost != expected || lost.size() != scene_.lost_contacts().size();
+        counts_.false_changes += now.size() != found.size(); // a key twice
+        counts_.false_changes += scene_.stats().contacts_new != came || scene_.stats().contacts_lost != lost.size();
+        counts_.came += came;
+        counts_.went += lost.size();
+        before_.swap(now);
+    }
+
+    void expect_pairs(std::span<const Contact> found) {
+        const auto pairs = scene_.pairs();
+        for (const Contact& c : found) {
+            const bool exist = guests_.contains(c.body_a) && guests_.contains(c.body_b);
+            const bool asked = std::binary_search(pairs.begin(), pairs.end(), Pair(c.body_a, c.body_b));
+            counts_.false_pairs += !exist || !asked;
+        }
+    }
+
+    const std::vector<Subject>& subjects_;
+    Random random_;
+    Counts& counts_;
+    Scene scene_;
+    std::map<BodyId, Guest> guests_;
+    std::set<Key> before_;
+    bool given_ = false;
+};
+
+TEST(coherence, whatever_happens) {
+    const std::vector<Subject> subjects = make_subjects();
+    Counts c;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) Story(subjects, seed, c).play(100);
+    std::printf("[ counts   ] %llu steps, %llu contacts: %llu as of a fresh scene, %llu true by a ray in double; %llu "
+                "came, %llu went; %llu bad poses refused; the methods that may miss some missed %llu of %llu; %llu of "
+                "%llu lies "
+                "believed\n",
+                static_cast<unsigned long long>(c.steps), static_cast<unsigned long long>(c.contacts),
+                static_cast<unsigned long long>(c.same), static_cast<unsigned long long>(c.genuine),
+                static_cast<unsigned long long>(c.came), static_cast<unsigned long long>(c.went),
+                static_cast<unsigned long long>(c.refused), static_cast<unsigned long long>(c.missed_by_others),
+                static_cast<unsigned long long>(c.of_standard), static_cast<unsigned long long>(c.believed),
+                static_cast<unsigned long long>(c.lies));
+    EXPECT_EQ(c.wrong, 0u);
+    EXPECT_EQ(c.false_hits, 0u);
+    EXPECT_EQ(c.false_pairs, 0u);
+    EXPECT_EQ(c.false_changes, 0u);
+    EXPECT_LT(c.believed, c.lies / 100);
+    EXPECT_GT(c.same, 10000u);
+    EXPECT_GT(c.genuine, 10000u);
+    EXPECT_GT(c.came, 1000u);
+    EXPECT_GT(c.went, 1000u);
+    EXPECT_GT(c.refused, 100u);
+}
+
+// Pairs of bodies that touch, `count` of them, far from each other.
+std::vector<Pair> add_couples(Scene& scene, std::uint32_t count) {
+    static const auto shape = Shape::make(bumpy_octahedron_mesh(10));
+    std::vector<Pair> pairs;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Pose pose;
+        pose.translation = {10.0 * i, 0, 0};
+        const BodyId first = scene.add(shape, pose);
+        pose.translation.y = 0.95;
+        pairs.emplace_back(first, scene.add(shape, pose));
+    }
+    return pairs;
+}
+
+TEST(coherence, memory_follows_the_pairs_that_overlap) {
+    for (const Method method : {Method::certified, Method::iterative, Method::predictive}) {
+        Settings settings;
+        settings.threads = 1;
+        settings.method = method;
+        std::vector<std::uint64_t> bytes;
+        for (const std::uint32_t count : {10u, 40u}) {
+            Scene scene(settings);
+            const std::vector<Pair> pairs = add_couples(scene, count);
+            for (int step = 0; step < 3; ++step) scene.step();
+            EXPECT_EQ(scene.pairs().size(), count);
+            EXPECT_GT(scene.stats().contacts, 0u);
+            bytes.push_back(scene.stats().pair_bytes);
+
+            // Opened and closed many times over, it is no more.
+            for (int round = 0; round < 20; ++round) {
+                scene.step(std::span<const Pair>{});
+                EXPECT_LE(scene.stats().pair_bytes, 256u) << to_string(method);
+                scene.step(pairs);
+            }
+            EXPECT_LE(scene.stats().pair_bytes, 2 * bytes.back() + 256) << to_string(method);
+            for (const auto& [first, second] : pairs) scene.remove(second);
+            scene.step();
+            EXPECT_LE(scene.stats().pair_bytes, 256u) << to_string(method);
+        }
+        std::printf("[ counts   ] %s keeps %llu bytes for 10 touching pairs, %llu for 40\n",
+                    std::string(to_string(method)).c_str(), static_cast<unsigned long long>(bytes[0]),
+                    static_cast<unsigned long long>(bytes[1]));
+        if (method == Method::certified) {
+            EXPECT_GT(bytes[0], 0u);
+        }
+        EXPECT_LE(bytes[1], 5 * bytes[0]) << to_string(method);
+        EXPECT_GE(bytes[1], 3 * bytes[0]) << to_string(method);
+    }
+}
+
+} // namespace

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pairs/pair_table.h"
+#include "pairs/range_pool.h"
+
+#include "reference/random.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace raycontact {
+namespace {
+
+using reference::Random;
+
+TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
+    Random random(1);
+    PairTable table;
+    std::map<Pair, double> model; // a mark for each open pair
+    double mark = 0;
+    std::uint64_t most_bytes = 0;
+    for (int step = 0; step < 400; ++step) {
+        std::set<Pair> wanted;
+        const std::uint32_t count = step % 50 == 49 ? 0 : random.below(60);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const BodyId a = random.below(12);
+            wanted.insert({a, a + 1 + random.below(6)});
+        }
+        const std::vector<Pair> pairs(wanted.begin(), wanted.end());
+        std::multiset<double> closed, expected;
+        for (const auto& [pair, its_mark] : model)
+            if (!wanted.contains(pair)) expected.insert(its_mark);
+        table.match(pairs, [&](PairState& state) { closed.insert(state.speed); });
+        ASSERT_EQ(closed, expected);
+        std::map<Pair, double> next;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            PairState& state = table.state(i);
+            if (const auto found = model.find(pairs[i]); found != model.end()) {
+                ASSERT_EQ(state.speed, found->second);
+            } else {
+                ASSERT_EQ(state.speed, 0.0);
+                ASSERT_LT(state.directed[0].expiry, 0.0) << "a new pair begins afresh";
+                ASSERT_LT(state.directed[1].expiry, 0.0);
+                ASSERT_EQ(state.directed[0].capacity, 0u);
+                state.speed = ++mark;
+                state.directed[0].expiry = state.directed[1].expiry = 1;
+                state.directed[0].capacity = 7;
+            }
+            next[pairs[i]] = state.speed;
+        }
+        model.swap(next);
+        if (pairs.empty()) {
+            EXPECT_EQ(table.bytes(), 0u);
+        }
+        EXPECT_LE(table.bytes(), 1024 * pairs.size());
+        most_bytes = std::max(most_bytes, table.bytes());
+    }
+    EXPECT_GT(most_bytes, 0u);
+    table.clear();
+    EXPECT_EQ(table.bytes(), 0u);
+    bool closed = false;
+    const std::vector<Pair> one{{0, 1}};
+    table.match(one, [&](PairState&) { closed = true; });
+    EXPECT_FALSE(closed) << "what was cleared is not open any more";
+    EXPECT_EQ(table.state(0).speed, 0.0);
+}
+
+TEST(RangePool, RangesNeverOverlapAndAreUsedAgain) {
+    Random random(2);
+    RangePool pool;
+    std::map<std::uint32_t, RangePool::Range> out; // by their first element
+    std::uint64_t elements = 0, most = 0;
+    for (int i = 0; i < 20000; ++i) {
+        if (out.size() > 40 || (!out.empty() && random.below(2))) {
+            auto it = out.begin();
+            std::advance(it, random.below(static_cast<std::uint32_t>(out.size())));
+            elements -= it->second.capacity;
+            pool.give_back(it->second);
+            out.erase(it);
+        } else {
+            const std::uint32_t count = 1 + random.below(1u << random.below(10));
+            const RangePool::Range range = pool.take(count);
+            ASSERT_GE(range.capacity, count);
+            ASSERT_LE(range.capacity, std::max(4u, 2 * count));
+            ASSERT_LE(range.first + range.capacity, pool.end());
+            const auto after = out.lower_bound(range.first);
+            if (after != out.end()) {
+                ASSERT_LE(range.first + range.capacity, after->first);
+            }
+            if (after != out.begin()) {
+                const RangePool::Range before = std::prev(after)->second;
+                ASSERT_LE(before.first + before.capacity, range.first);
+            }
+            out[range.first] = range;
+            elements += range.capacity;
+            most = std::max(most, elements);
+        }
+        ASSERT_EQ(pool.in_use(), elements);
+    }
+    EXPECT_LE(pool.end(), 12 * most) << "a range given back fits the next of its size";
+    pool.clear();
+    EXPECT_EQ(pool.end(), 0u);
+    EXPECT_EQ(pool.in_use(), 0u);
+}
+
+TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
+    RangePool pool;
+    EXPECT_EQ(pool.take(0).capacity, 0u);
+    pool.give_back({});
+    EXPECT_EQ(pool.end(), 0u);
+    EXPECT_THROW(pool.take((1u << 30) + 1), std::length_error);
+    EXPECT_EQ(pool.take(1u << 30).capacity, 1u << 30);
+    EXPECT_EQ(pool.take(1u << 30).capacity, 1u << 30);
+    EXPECT_THROW(pool.take(1), std::length_error);
+    EXPECT_EQ(pool.in_use(), 1ull << 31) << "a refusal changes nothing";
+}
+
+} // namespace
+} // namespace raycontact
