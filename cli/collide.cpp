@@ -131,6 +131,7 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
 }
 
 void collide(const CollideOptions& options) {
+    check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
     ShapeCache shapes;
     for (const QueryPair& pair : pairs) {

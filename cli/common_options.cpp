@@ -4,9 +4,14 @@
 #include <raycontact/device.h>
 #include <raycontact/error.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 using raycontact::InputError;
@@ -58,6 +63,29 @@ std::string every_gpu() {
     return list.empty() ? "cpu" : list;
 }
 
+/// As check_settings names them, and as a user does.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> spelt{
+    {{"displacement_threshold", "--displacement-threshold"},
+     {"confidence", "--confidence"},
+     {"culling_distance", "--culling-distance"},
+     {"distance_extension", "--distance-extension"},
+     {"max_iterations", "--max-iterations"}}};
+
+std::string with_options(std::string text) {
+    for (const auto& [setting, option] : spelt) {
+        for (std::size_t at = 0; (at = text.find(setting, at)) != std::string::npos; at += option.size())
+            text.replace(at, setting.size(), option);
+    }
+    return text;
+}
+
+double read_real(const std::string& word, const std::string& wanted) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size()) throw InputError("\"" + word + "\" is not " + wanted);
+    return value;
+}
+
 /// A name whose bad values are InputErrors already, so that one sentence reaches the user, with the option in front.
 template <class Read>
 void add_word(CLI::App& command, const std::string& option, const std::string& help, const std::string& shown,
@@ -76,6 +104,28 @@ void add_word(CLI::App& command, const std::string& option, const std::string& h
             help)
         ->type_name(shown)
         ->default_str(otherwise);
+}
+
+/// One setting, judged at once as if it stood alone: a value that no other could mend names its own option.
+template <class Value, class Read>
+void add_setting(CLI::App& command, raycontact::Settings& settings, Value raycontact::Settings::*member,
+                 const std::string& option, const std::string& help, const std::string& shown,
+                 const std::string& otherwise, Read read) {
+    add_word(command, option, help, shown, otherwise, [&settings, member, read](const std::string& word) {
+        raycontact::Settings alone;
+        alone.*member = read(word);
+        check_common_options(alone);
+        settings.*member = alone.*member;
+    });
+}
+
+void add_length(CLI::App& command, raycontact::Settings& settings, std::optional<double> raycontact::Settings::*member,
+                const std::string& option, const std::string& help) {
+    const auto read = [](const std::string& word) -> std::optional<double> {
+        if (word == "auto") return std::nullopt;
+        return read_real(word, "a length: give metres, such as 0.01, or auto");
+    };
+    add_setting(command, settings, member, option, help, "METRES|auto", "auto", read);
 }
 
 } // namespace
@@ -110,7 +160,10 @@ std::string device_from_list(std::string_view list) {
 
 void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     using namespace raycontact;
-    add_word(command, "--method", "how rays are kept from step to step: standard (every ray in full, every step)",
+    add_word(command, "--method",
+             "how rays are kept from step to step: certified (what cannot touch yet is left alone; the contacts of "
+             "standard), standard (every ray in full, every step), iterative (last step's contacts are followed), "
+             "predictive (so are vertices about to touch)",
              "WORD", std::string(to_string(settings.method)),
              [&](const std::string& word) { settings.method = method_from(word); });
     add_word(command, "--caster", "how a ray meets a mesh: basic (every triangle) or bvh; same bits from both", "WORD",
@@ -119,6 +172,29 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     add_word(command, "--direction", "what normal and depth are made of: ray or reprojected", "WORD",
              std::string(to_string(settings.direction)),
              [&](const std::string& word) { settings.direction = direction_from(word); });
+    add_length(command, settings, &Settings::displacement_threshold, "--displacement-threshold",
+               "metres a pair may move before it is looked at in full again; auto: chosen for each pair");
+    add_setting(command, settings, &Settings::confidence, "--confidence",
+                "predictive: how far ahead a vertex is followed, in displacement thresholds, at least 1", "C",
+                fmt::format("{:g}", settings.confidence), [](const std::string& word) {
+                    return read_real(word, "a number: give displacement thresholds, such as 2");
+                });
+    add_length(command, settings, &Settings::culling_distance, "--culling-distance",
+               "predictive: the same in metres; auto: confidence x displacement threshold");
+    add_length(command, settings, &Settings::distance_extension, "--distance-extension",
+               "predictive: metres by which the bounds are widened whose vertices are looked at, at least the "
+               "displacement threshold; auto: the culling distance");
+    add_setting(command, settings, &Settings::max_iterations, "--max-iterations",
+                "iterative, predictive: triangles a ray may visit when it is followed, at least 1", "N",
+                std::to_string(settings.max_iterations), [](const std::string& word) {
+                    std::uint32_t number = 0;
+                    if (!read_number(word, number))
+                        throw InputError("\"" + word + "\" is not a number of triangles: give 1 or more");
+                    return number;
+                });
+    command.add_flag("--walk-casts,!--no-walk-casts", settings.cast_lost_walks,
+                     "iterative, predictive: cast a ray in full (the default) or give it up where following it ends "
+                     "nowhere");
     add_word(command, "--devices",
              "auto, all, or a device as `raycontact devices` lists it; cpu/k is its k-th core alone", "LIST",
              settings.device, [&](const std::string& word) { settings.device = device_from_list(word); });
@@ -126,4 +202,32 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
         ->type_name("N")
         ->default_str("0")
         ->check(CLI::Range(0u, 1024u));
+}
+
+void check_common_options(const raycontact::Settings& settings) {
+    try {
+        raycontact::check_settings(settings);
+    } catch (const InputError& error) {
+        throw InputError(with_options(error.what()));
+    }
+}
+
+raycontact::Settings recorded_unless_given(const CLI::App& command, const raycontact::Settings& given,
+                                           const raycontact::Settings& recorded) {
+    raycontact::Settings settings = given;
+    const auto keep = [&](const char* option, auto member) {
+        if (command.count(option) == 0) settings.*member = recorded.*member;
+    };
+    using raycontact::Settings;
+    keep("--method", &Settings::method);
+    keep("--caster", &Settings::caster);
+    keep("--direction", &Settings::direction);
+    keep("--displacement-threshold", &Settings::displacement_threshold);
+    keep("--confidence", &Settings::confidence);
+    keep("--culling-distance", &Settings::culling_distance);
+    keep("--distance-extension", &Settings::distance_extension);
+    keep("--max-iterations", &Settings::max_iterations);
+    keep("--walk-casts", &Settings::cast_lost_walks);
+    check_common_options(settings);
+    return settings;
 }

@@ -8,9 +8,18 @@
 #include <string>
 #include <string_view>
 
-/// Adds --method --caster --direction --devices --threads to a subcommand; `settings` is filled while the command line
-/// is read and must outlive it. A word that is not known is bad usage: InputError naming the option.
+/// Adds --method --caster --direction, the thresholds, --devices and --threads to a subcommand; `settings` is filled
+/// while the command line is read and must outlive it. A word or value that makes no sense by itself is bad usage:
+/// InputError naming the option.
 void add_common_options(CLI::App& command, raycontact::Settings& settings);
+
+/// The same for values that make no sense together; for the command to call once all are known.
+void check_common_options(const raycontact::Settings& settings);
+
+/// What decides the contacts is the recording's unless the command line says otherwise; where they are found is ours.
+/// Throws InputError when the two together make no sense.
+raycontact::Settings recorded_unless_given(const CLI::App& command, const raycontact::Settings& given,
+                                           const raycontact::Settings& recorded);
 
 /// What `--devices` asks for, as Settings::device wants it. Throws InputError for a list that is malformed, names a
 /// device twice or beside its own part, or needs more than this version has.

@@ -2,19 +2,22 @@
 #include "cli/replay.h"
 
 #include "cli/common_options.h"
+#include "cli/out_folder.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <recording/replay.h>
+#include <report/plot.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,36 +27,28 @@ using namespace raycontact;
 using Json = nlohmann::ordered_json;
 
 struct ReplayCommand {
-    std::string file, compare;
+    std::string file, compare, out;
     bool json = false;
     Settings settings;
 };
 
-Json median_and_p95(const std::vector<recording::ReplayStep>& steps, double recording::ReplayStep::*value) {
-    std::vector<double> all;
-    all.reserve(steps.size());
-    for (const recording::ReplayStep& step : steps) all.push_back(step.*value);
-    std::sort(all.begin(), all.end());
-    const auto at = [&](double part) {
-        return all.empty() ? 0 : all[static_cast<std::size_t>(part * static_cast<double>(all.size() - 1))];
-    };
-    return {{"median", at(0.5)}, {"p95", at(0.95)}};
-}
-
 Json summary(const recording::Reader& reader, const recording::Replay& replay, const Settings& settings,
              double wall_ms) {
+    const Settings& recorded = reader.info().settings;
+    const Work work(replay.steps);
     Json result{{"scene", reader.info().scene},
                 {"seed", reader.info().seed},
                 {"steps", reader.steps()},
                 {"bodies", reader.info().bodies},
                 {"pairs_max", replay.pairs_max},
                 {"rays", replay.rays},
+                {"rays_cast", work.rays_cast()},
                 {"contacts", replay.contacts},
                 {"ray_length", replay.ray_length},
                 {"penetration_max", replay.penetration_max},
                 {"wall_ms", wall_ms},
-                {"step_ms", median_and_p95(replay.steps, &recording::ReplayStep::step_ms)},
-                {"narrow_ms", median_and_p95(replay.steps, &recording::ReplayStep::narrow_ms)},
+                {"step_ms", median_and_p95(replay.steps, [](const recording::ReplayStep& r) { return r.step_ms; })},
+                {"narrow_ms", median_and_p95(replay.steps, [](const recording::ReplayStep& r) { return r.narrow_ms; })},
                 {"method", to_string(settings.method)},
                 {"caster", to_string(settings.caster)},
                 {"direction", to_string(settings.direction)},
@@ -61,6 +56,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"hash", replay.hash},
                 {"recorded_hash", nullptr},
                 {"hash_reproduced", nullptr},
+                {"hash_expected", recording::must_agree(recorded, settings)},
                 {"complete", reader.hash().has_value()}};
     if (reader.hash()) {
         result["recorded_hash"] = *reader.hash();
@@ -75,15 +71,21 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
         result["rays_compared"] = wrong.rays_compared;
         result["contacts_compared"] = wrong.contacts_compared;
     }
+    result["recorded_method"] = to_string(recorded.method);
+    work.put(result);
+    put_settings(result, settings);
     return result;
 }
 
 std::string hash_for_a_person(const Json& s) {
     const auto hash = s["hash"].get<std::string>();
     if (s["recorded_hash"].is_null()) return hash + " (the recording was not finished, so it has none to compare with)";
-    return hash
-           + (s["hash_reproduced"].get<bool>() ? ", as recorded"
-                                               : ", recorded was " + s["recorded_hash"].get<std::string>());
+    const auto recorded = s["recorded_method"].get<std::string>();
+    const bool other_method = recorded != s["method"].get<std::string>();
+    if (s["hash_reproduced"].get<bool>())
+        return hash + ", as recorded" + (other_method ? " with method " + recorded : "");
+    return hash + ", recorded was " + s["recorded_hash"].get<std::string>()
+           + (s["hash_expected"].get<bool>() ? "" : " with other settings (method " + recorded + ")");
 }
 
 std::string for_a_person(const Json& s) {
@@ -92,13 +94,13 @@ std::string for_a_person(const Json& s) {
         "pairs      {} at most\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most\n"
-        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n"
-        "hash       {}\n",
+        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n",
         s["scene"].get<std::string>(), s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(),
         s["seed"].get<std::uint64_t>(), s["pairs_max"].get<std::uint64_t>(), s["rays"].get<std::uint64_t>(),
         s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
         s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(),
-        s["narrow_ms"]["median"].get<double>(), hash_for_a_person(s));
+        s["narrow_ms"]["median"].get<double>());
+    text += work_for_a_person(s) + "hash       " + hash_for_a_person(s) + "\n";
     if (s.contains("wrong_rays")) {
         const Json& wrong = s["wrong_rays"];
         text +=
@@ -110,18 +112,60 @@ std::string for_a_person(const Json& s) {
     return text;
 }
 
+std::string steps_csv(const std::vector<recording::ReplayStep>& steps, bool compared) {
+    std::string text = std::string("step,pairs,")
+                       + (compared ? "rays_compared,contacts_compared,missed,invented,other_triangle," : "")
+                       + "narrow_ms" + work_columns() + ",rays,contacts\n";
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const recording::ReplayStep& r = steps[i];
+        const recording::WrongRays& w = r.wrong;
+        text += fmt::format("{},{},", i, r.pairs);
+        if (compared)
+            text += fmt::format("{},{},{},{},{},", w.rays_compared, w.contacts_compared, w.missed, w.invented,
+                                w.other_triangle);
+        text += fmt::format("{:.4f}{},{},{}\n", r.narrow_ms, work_cells(r), r.rays, r.contacts);
+    }
+    return text;
+}
+
+template <class Value>
+void write_plot(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,
+                const std::string& name, report::Plot plot, Value value) {
+    std::vector<double> steps;
+    for (const recording::ReplayStep& step : replay.steps) {
+        plot.series.front().values.push_back(value(step));
+        steps.push_back(static_cast<double>(steps.size()));
+    }
+    write_out(given.out, name, report::plot_svg(plot, steps, reader.info().dt));
+}
+
+void write_files(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,
+                 const Settings& settings) {
+    const bool compared = replay.wrong_rays.has_value();
+    const std::string how = "method " + std::string(to_string(settings.method));
+    write_out(given.out, "steps.csv", steps_csv(replay.steps, compared));
+    write_plot(given, reader, replay, "narrow_ms.svg",
+               {"Narrow phase", "ms", "Wall clock of contact finding, " + how + ", on this machine.", {{how, {}}}},
+               [](const recording::ReplayStep& step) { return step.narrow_ms; });
+    if (!compared) return;
+    write_plot(given, reader, replay, "wrong_rays.svg",
+               {"Wrong rays",
+                "%",
+                "Rays of " + how
+                    + " that end otherwise than those of method standard: a contact missed, invented or on another "
+                      "triangle; of all rays that standard casts.",
+                {{how, {}}}},
+               [](const recording::ReplayStep& step) { return step.wrong.percent(); });
+}
+
 void replay(const CLI::App& command, const ReplayCommand& given) {
     if (!given.compare.empty() && given.compare != "standard")
         throw InputError("--compare: \"" + given.compare + "\" is not known; only standard can be compared with");
     recording::Reader reader(given.file);
     recording::ReplayOptions options;
-    options.settings = given.settings;
+    options.settings = recorded_unless_given(command, given.settings, reader.info().settings);
     options.compare = !given.compare.empty();
-    // What decides the result is the recording's unless the command line says otherwise; where it runs is ours.
-    const Settings& recorded = reader.info().settings;
-    if (command.count("--method") == 0) options.settings.method = recorded.method;
-    if (command.count("--caster") == 0) options.settings.caster = recorded.caster;
-    if (command.count("--direction") == 0) options.settings.direction = recorded.direction;
+    if (!given.out.empty()) make_out_folder(given.out);
 
     Progress progress("replay", reader.steps());
     options.progress = [&](std::uint32_t done) { progress.show(done); };
@@ -131,10 +175,13 @@ void replay(const CLI::App& command, const ReplayCommand& given) {
     progress.done();
 
     const Json json = summary(reader, result, options.settings, wall.count());
-    if (json["hash_reproduced"] == false && options.settings.direction == recorded.direction
-        && options.settings.method == recorded.method)
-        std::cerr << "the recorded hash was not reproduced: these are other contacts than the run's\n";
+    if (!given.out.empty()) write_files(given, reader, result, options.settings);
     std::cout << (given.json ? json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" : for_a_person(json));
+    if (json["hash_reproduced"] == false && json["hash_expected"] == true) {
+        std::cout.flush();
+        throw std::runtime_error(given.file
+                                 + ": the recorded hash was not reproduced: these are other contacts than the run's");
+    }
 }
 
 } // namespace
@@ -147,9 +194,17 @@ void add_replay(CLI::App& app) {
     command
         ->add_option("--compare", given->compare, "standard: count the rays that end otherwise than with that method")
         ->type_name("METHOD");
+    command
+        ->add_option("--out", given->out,
+                     "write steps.csv and narrow_ms.svg there; with --compare also wrong_rays.svg, the percentage of "
+                     "wrong rays in each step")
+        ->type_name("DIR");
     command->add_flag("--json", given->json, "print one JSON object on stdout");
     add_common_options(*command, given->settings);
-    command->footer("Method, caster and direction are the recording's unless given.\n"
-                    "Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
+    command->footer(
+        "What decides the contacts (method, caster, direction, thresholds) is the recording's unless given.\n"
+        "Methods standard and certified find the same contacts, so either reproduces the other's hash.\n"
+        "Exit status: 0 fine, 1 the run failed or its hash should have been reproduced and was not, 2 bad "
+        "usage or input.");
     command->callback([command, given] { replay(*command, *given); });
 }

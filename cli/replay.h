@@ -3,5 +3,5 @@
 
 #include <CLI/CLI.hpp>
 
-/// `raycontact replay RECORDING [--compare standard] [--json]` and the common options.
+/// `raycontact replay RECORDING [--compare standard] [--out DIR] [--json]` and the common options.
 void add_replay(CLI::App& app);

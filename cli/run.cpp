@@ -2,8 +2,10 @@
 #include "cli/run.h"
 
 #include "cli/common_options.h"
+#include "cli/out_folder.h"
 #include "cli/progress.h"
 #include "cli/record.h"
+#include "cli/summary.h"
 
 #include <raycontact/error.h>
 #include <report/report.h>
@@ -13,9 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -35,35 +37,21 @@ struct RunOptions {
     raycontact::Settings settings;
 };
 
-/// The value that this part of the rows does not exceed.
-template <class Value>
-double quantile(const std::vector<StepRow>& rows, double part, Value value) {
-    std::vector<double> all;
-    for (const StepRow& row : rows) all.push_back(value(row));
-    const auto at = all.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(all.size() - 1));
-    std::nth_element(all.begin(), at, all.end());
-    return *at;
-}
-
-template <class Value>
-Json median_and_p95(const std::vector<StepRow>& rows, Value value) {
-    return {{"median", quantile(rows, 0.5, value)}, {"p95", quantile(rows, 0.95, value)}};
-}
-
 Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) {
     using raycontact::to_string;
     const AvalancheHealth health = scene.health();
     const RunLog& log = scene.log();
+    const Work work(log.rows);
     const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(60, log.rows.size()));
     const std::vector<StepRow> last_second(log.rows.end() - second, log.rows.end());
-    return {
+    Json result{
         {"scene", "avalanche"},
         {"seed", options.seed},
         {"steps", scene.steps()},
         {"bodies", scene.body_count()},
         {"pairs_max", scene.pairs_max()},
         {"rays", scene.rays_total()},
-        {"rays_cast", scene.rays_cast_total()},
+        {"rays_cast", work.rays_cast()},
         {"contacts", scene.contacts_total()},
         {"ray_length", scene.ray_length_total()},
         {"penetration_max", health.penetration_max},
@@ -85,50 +73,50 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
         {"deep_steps_last_second", health.deep_steps_last_second},
         {"below_ground", health.below_ground},
         {"flown_off", health.flown_off}};
+    work.put(result);
+    put_settings(result, options.settings);
+    return result;
 }
 
 std::string for_a_person(const Json& s) {
-    return fmt::format(
+    std::string text = fmt::format(
         "avalanche: {} bodies, {} steps, seed {}; {}\n"
         "pairs      {} at most, {} in the last second\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most, {:.4f} m in the last second\n"
         "speed      median {:.4f} m/s in the last second; {} bodies below ground, {} flown off\n"
-        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n"
-        "hash       {}\n",
+        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n",
         s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(), s["seed"].get<std::uint64_t>(),
         s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(), s["pairs_last_second"].get<double>(),
         s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(),
         s["penetration_max"].get<double>(), s["penetration_max_last_second"].get<double>(),
         s["median_speed_last_second"].get<double>(), s["below_ground"].get<std::uint64_t>(),
         s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(),
-        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(), s["hash"].get<std::string>());
+        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>());
+    return text + work_for_a_person(s) + "hash       " + s["hash"].get<std::string>() + "\n";
 }
 
-/// Before the run, which takes minutes: a report that cannot be written should be known at once.
-void make_folder(const std::string& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error || !std::filesystem::is_directory(folder))
-        throw InputError("--out " + folder + ": cannot be made a folder; name another");
-    const auto probe = std::filesystem::path(folder) / "steps.csv";
-    if (!std::ofstream(probe)) throw InputError(probe.string() + ": cannot be written; name another folder");
-}
-
-void write_steps(const std::string& folder, const std::vector<StepRow>& rows) {
-    const auto file = std::filesystem::path(folder) / "steps.csv";
-    std::ofstream out(file);
-    out << "step,pairs,rays,contacts,step_ms,narrow_ms,ray_length_m,penetration_max_m,median_speed_m_s\n";
+std::string steps_csv(const std::vector<StepRow>& rows) {
+    std::string text = "step,pairs,rays,contacts,step_ms,narrow_ms,ray_length_m,penetration_max_m,median_speed_m_s"
+                       + work_columns() + "\n";
     for (const StepRow& r : rows)
-        out << fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}\n", r.step, r.pairs, r.rays, r.contacts, r.step_ms,
-                           r.narrow_ms, r.ray_length, r.penetration_max, r.median_speed);
-    if (!out.flush()) throw InputError(file.string() + ": cannot be written; is the disk full?");
+        text += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}{}\n", r.step, r.pairs, r.rays, r.contacts, r.step_ms,
+                            r.narrow_ms, r.ray_length, r.penetration_max, r.median_speed, work_cells(r));
+    return text;
+}
+
+/// Viewers go by the ending, and a recording under another name overwrites what nobody meant.
+void check_record(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (ending != ".glb") throw InputError("--record: \"" + file + "\" does not end in .glb; name a .glb file");
 }
 
 void run(const RunOptions& options) {
     if (options.scene != "avalanche")
         throw InputError("SCENE: \"" + options.scene + "\" is not known; scenes are: avalanche");
-    if (!options.out.empty()) make_folder(options.out);
+    check_common_options(options.settings);
+    if (!options.out.empty()) make_out_folder(options.out);
     AvalancheOptions how;
     how.bodies = options.bodies;
     how.seed = options.seed;
@@ -151,7 +139,7 @@ void run(const RunOptions& options) {
     if (!options.out.empty()) {
         RunLog log = scene.log();
         log.summary_json = result.dump();
-        write_steps(options.out, log.rows);
+        write_out(options.out, "steps.csv", steps_csv(log.rows));
         std::cerr << "drawing the report\n";
         raycontact::report::write_report(options.out, log);
         std::cerr << "report: " << (std::filesystem::path(options.out) / "report.html").string() << '\n';
@@ -187,5 +175,8 @@ void add_run(CLI::App& app) {
         ->type_name("DIR");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     add_common_options(*command, options->settings);
-    command->callback([options] { run(*options); });
+    command->callback([command, options] {
+        if (command->count("--record") > 0) check_record(options->record);
+        run(*options);
+    });
 }

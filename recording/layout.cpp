@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace raycontact::recording {
 
@@ -17,6 +18,42 @@ using Json = nlohmann::ordered_json;
 Bytes to_bytes(const Json& document) {
     const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
     return {text.begin(), text.end()};
+}
+
+// A length or null: chosen by the library.
+Json length(const std::optional<double>& metres) {
+    return metres ? Json(*metres) : Json(nullptr);
+}
+
+template <class Value>
+void read_if_there(const Json& document, const char* key, Value& value) {
+    if (const auto at = document.find(key); at != document.end()) value = at->get<Value>();
+}
+
+void read_if_there(const Json& document, const char* key, std::optional<double>& metres) {
+    if (const auto at = document.find(key); at != document.end() && !at->is_null()) metres = at->get<double>();
+}
+
+Settings read_settings(const Json& document) {
+    Settings settings;
+    try {
+        settings.method = method_from(document.at("method").get<std::string>());
+        settings.caster = caster_from(document.at("caster").get<std::string>());
+        settings.direction = direction_from(document.at("direction").get<std::string>());
+    } catch (const InputError& error) {
+        throw UnknownSetting(error.what());
+    }
+    settings.device = document.at("device").get<std::string>();
+    settings.threads = document.at("threads").get<std::uint32_t>();
+    // Recordings from before these settings existed lack them; none of theirs depends on one (method standard).
+    read_if_there(document, "displacement_threshold", settings.displacement_threshold);
+    read_if_there(document, "confidence", settings.confidence);
+    read_if_there(document, "culling_distance", settings.culling_distance);
+    read_if_there(document, "distance_extension", settings.distance_extension);
+    read_if_there(document, "max_iterations", settings.max_iterations);
+    read_if_there(document, "cast_lost_walks", settings.cast_lost_walks);
+    check_settings(settings);
+    return settings;
 }
 
 } // namespace
@@ -57,6 +94,12 @@ Bytes encode_info(const Info& info) {
                      {"direction", to_string(info.settings.direction)},
                      {"device", info.settings.device},
                      {"threads", info.settings.threads},
+                     {"displacement_threshold", length(info.settings.displacement_threshold)},
+                     {"confidence", info.settings.confidence},
+                     {"culling_distance", length(info.settings.culling_distance)},
+                     {"distance_extension", length(info.settings.distance_extension)},
+                     {"max_iterations", info.settings.max_iterations},
+                     {"cast_lost_walks", info.settings.cast_lost_walks},
                      {"mesh_source", info.mesh_source}});
 }
 
@@ -68,18 +111,14 @@ Info decode_info(std::span<const unsigned char> payload) {
         info.seed = document.at("seed").get<std::uint64_t>();
         info.bodies = document.at("bodies").get<std::uint32_t>();
         info.dt = document.at("dt").get<double>();
-        info.settings.method = method_from(document.at("method").get<std::string>());
-        info.settings.caster = caster_from(document.at("caster").get<std::string>());
-        info.settings.direction = direction_from(document.at("direction").get<std::string>());
-        info.settings.device = document.at("device").get<std::string>();
-        info.settings.threads = document.at("threads").get<std::uint32_t>();
+        info.settings = read_settings(document);
         info.mesh_source = document.at("mesh_source").get<std::string>();
         if (!std::isfinite(info.dt) || info.dt <= 0) throw Damage("has a time step that is not positive");
         return info;
     } catch (const Json::exception&) {
         throw Damage("does not describe a recording");
     } catch (const InputError& error) {
-        throw Damage(std::string("has a setting this version does not know (") + error.what() + ")");
+        throw Damage(std::string("has a setting that makes no sense (") + error.what() + ")");
     }
 }
 

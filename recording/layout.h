@@ -34,8 +34,15 @@ Bytes encode_events(std::span<const BodyEvent> events);
 /// Enters the events into `bodies`; throws Damage for what cannot have happened.
 void apply_events(std::span<const unsigned char> payload, std::size_t shapes, std::vector<Body>& bodies);
 
+/// A recording that is whole but made with a setting that a later version has.
+class UnknownSetting : public Damage {
+public:
+    using Damage::Damage;
+};
+
 Bytes encode_info(const Info& info);
-Info decode_info(std::span<const unsigned char> payload); ///< throws Damage
+/// Settings that older recordings lack have their defaults. Throws Damage or UnknownSetting.
+Info decode_info(std::span<const unsigned char> payload);
 
 Bytes encode_end(std::uint32_t steps, std::string_view hash);
 std::string decode_end(std::span<const unsigned char> payload, std::uint32_t steps); ///< the hash; throws Damage

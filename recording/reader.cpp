@@ -195,6 +195,9 @@ void Reader::State::read_blocks() {
         try {
             if (at < committed && block.end() > committed) throw Damage("reaches beyond the side chunk");
             enter(block);
+        } catch (const UnknownSetting& unknown) {
+            throw InputError(file.path().string() + ": was recorded with a setting this version does not know: "
+                             + unknown.what() + "; replay it with the program that made it");
         } catch (const Damage& damage) {
             fail_damaged(at, std::string(name_of(block.header.type)) + " " + damage.what());
         } catch (const InputError& error) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <tuple>
 
 namespace raycontact::recording {
@@ -46,6 +47,29 @@ void WrongRays::add(std::span<const Contact> found, std::span<const Contact> ref
     }
 }
 
+void WrongRays::add(const WrongRays& more) {
+    missed += more.missed;
+    invented += more.invented;
+    other_triangle += more.other_triangle;
+    rays_compared += more.rays_compared;
+    contacts_compared += more.contacts_compared;
+}
+
+double WrongRays::percent() const {
+    return rays_compared > 0 ? 100 * static_cast<double>(total()) / static_cast<double>(rays_compared)
+                             : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool must_agree(const Settings& recorded, const Settings& used) {
+    const auto exact = [](Method method) { return method == Method::standard || method == Method::certified; };
+    if (used.direction != recorded.direction) return false;
+    if (exact(used.method) && exact(recorded.method)) return true;
+    return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
+           && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance
+           && used.distance_extension == recorded.distance_extension && used.max_iterations == recorded.max_iterations
+           && used.cast_lost_walks == recorded.cast_lost_walks;
+}
+
 Replay replay(Reader& reader, const ReplayOptions& options) {
     Replay result;
     Follower follower(reader, options.settings);
@@ -75,12 +99,16 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
         result.contacts += stats.contacts;
         result.ray_length += stats.ray_length;
         result.penetration_max = std::max(result.penetration_max, stats.depth_max);
-        result.steps.push_back({time.count(), stats.narrow_ms});
+        ReplayStep step;
+        static_cast<StepStats&>(step) = stats;
+        step.step_ms = time.count();
         if (reference) {
             reference->place(i, poses);
-            result.wrong_rays->add(contacts, reference->scene().step(pairs));
-            result.wrong_rays->rays_compared += reference->scene().stats().rays;
+            step.wrong.add(contacts, reference->scene().step(pairs));
+            step.wrong.rays_compared = reference->scene().stats().rays;
+            result.wrong_rays->add(step.wrong);
         }
+        result.steps.push_back(step);
         if (options.progress) options.progress(i + 1);
     }
     result.hash = hash.hex();

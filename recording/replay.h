@@ -36,14 +36,16 @@ struct WrongRays {
     std::uint64_t rays_compared = 0;     ///< rays the reference cast
     std::uint64_t contacts_compared = 0; ///< contacts the reference found
     std::uint64_t total() const { return missed + invented + other_triangle; }
+    double percent() const; ///< of the rays compared (paper section 5.2, figures 9 and 10); NaN where there are none
 
     /// Of one step; both sorted as Scene gives them.
     void add(std::span<const Contact> found, std::span<const Contact> reference);
+    void add(const WrongRays& more);
 };
 
-struct ReplayStep {
-    double step_ms = 0;   ///< poses set, contacts found
-    double narrow_ms = 0; ///< StepStats::narrow_ms
+struct ReplayStep : StepStats {
+    double step_ms = 0; ///< poses set, contacts found
+    WrongRays wrong;    ///< when it was compared
 };
 
 struct Replay {
@@ -59,6 +61,10 @@ struct ReplayOptions {
     bool compare = false;                        ///< with method `standard`, in a second scene; its time is not counted
     std::function<void(std::uint32_t)> progress; ///< told how many steps are done
 };
+
+/// Whether contacts found with `used` must be those found with `recorded`: method, direction and thresholds are the
+/// same, or both methods are among those that find what `standard` finds.
+bool must_agree(const Settings& recorded, const Settings& used);
 
 /// Detection only, over all recorded steps. Throws InputError for a damaged recording or unusable settings.
 Replay replay(Reader& reader, const ReplayOptions& options);

@@ -229,6 +229,7 @@ void Writer::State::animate() {
 Writer::Writer(const std::filesystem::path& file, const Info& info, const WriterOptions& options) {
     if (!std::isfinite(info.dt) || info.dt <= 0)
         throw InputError("recording: the time step must be a positive number of seconds");
+    check_settings(info.settings); // a reader would refuse them
     state_ = std::make_unique<State>(file, info, options);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace raycontact::report {
 namespace {
@@ -64,6 +65,63 @@ std::string polyline(const Series& series, std::size_t index, const std::vector<
     return fmt::format("<path class=\"line s{}\" d=\"{}\"/>", index, path);
 }
 
+/// Grid, axes and lines, in the units of `width` and `height`.
+std::string drawing(const Plot& plot, const std::vector<double>& steps, double step_seconds) {
+    const double end = axis_end(plot);
+    const double first = steps.empty() ? 0 : steps.front(), last = steps.empty() ? 1 : steps.back();
+    std::string svg;
+    const double value_spacing = tick_spacing(end, 5);
+    for (int k = 0; k * value_spacing <= end * (1 + 1e-9); ++k) {
+        const double y = height - bottom - (height - top - bottom) * (k * value_spacing / end);
+        svg += fmt::format("<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", left,
+                           width - right, y, y);
+        svg += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 7,
+                           y + 3.5, readable(k * value_spacing));
+    }
+    const double step_spacing = std::max(1.0, tick_spacing(std::max(1.0, last - first), 6));
+    for (double at = std::ceil(first / step_spacing) * step_spacing; at <= last; at += step_spacing) {
+        const double x = left + (width - left - right) * (last > first ? (at - first) / (last - first) : 0.5);
+        svg += fmt::format("<line class=\"notch\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>", x,
+                           height - bottom, height - bottom + 4);
+        svg += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x,
+                           height - bottom + 16, readable(at));
+    }
+    svg += fmt::format("<line class=\"axis\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/>", left, width - right,
+                       height - bottom, height - bottom);
+    svg += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">step (one is {} ms)</text>",
+                       (left + width - right) / 2, height - 5, readable(1000 * step_seconds));
+    for (std::size_t k = 0; k < plot.series.size(); ++k) svg += polyline(plot.series[k], k, steps, first, last, end);
+    return svg;
+}
+
+/// What the figure is, and what an axis that was cut off does not show.
+std::string note_of(const Plot& plot) {
+    const double end = axis_end(plot), most = largest(plot);
+    if (most <= end * (1 + 1e-9)) return plot.note;
+    return plot.note
+           + fmt::format(" The axis stops below a few spikes; the largest is {} {}.", readable(most), plot.unit);
+}
+
+// The page's colours by day: a file of its own has no style sheet to take them from.
+constexpr const char* file_style =
+    "text{font:12px system-ui,\"DejaVu Sans\",sans-serif;fill:#23262b}.title{font-weight:bold;font-size:14px}"
+    ".tick,.label,.soft{fill:#6a7079;font-size:11.5px}.grid{stroke:#e4e1dc}.axis,.notch{stroke:#6a7079}"
+    ".line{fill:none;stroke-width:1.6;stroke-linejoin:round}.s0{stroke:#2f6fb0}.s1{stroke:#d9662f}"
+    ".k0{fill:#2f6fb0}.k1{fill:#d9662f}";
+
+/// Lines of at most so many characters: SVG does not break text by itself.
+std::vector<std::string> broken(const std::string& text, std::size_t most) {
+    std::vector<std::string> lines;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (lines.empty() || lines.back().size() + 1 + word.size() > most)
+            lines.push_back(word);
+        else
+            lines.back() += " " + word;
+    }
+    return lines;
+}
+
 } // namespace
 
 std::string escape_html(const std::string& text) {
@@ -100,46 +158,37 @@ std::string readable(double value) {
 }
 
 std::string plot_figure(const Plot& plot, const std::vector<double>& steps, double step_seconds) {
-    const double end = axis_end(plot), most = largest(plot);
-    const double first = steps.empty() ? 0 : steps.front(), last = steps.empty() ? 1 : steps.back();
-    std::string svg;
-    const double value_spacing = tick_spacing(end, 5);
-    for (int k = 0; k * value_spacing <= end * (1 + 1e-9); ++k) {
-        const double y = height - bottom - (height - top - bottom) * (k * value_spacing / end);
-        svg += fmt::format("<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", left,
-                           width - right, y, y);
-        svg += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 7,
-                           y + 3.5, readable(k * value_spacing));
-    }
-    const double step_spacing = std::max(1.0, tick_spacing(std::max(1.0, last - first), 6));
-    for (double at = std::ceil(first / step_spacing) * step_spacing; at <= last; at += step_spacing) {
-        const double x = left + (width - left - right) * (last > first ? (at - first) / (last - first) : 0.5);
-        svg += fmt::format("<line class=\"notch\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>", x,
-                           height - bottom, height - bottom + 4);
-        svg += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x,
-                           height - bottom + 16, readable(at));
-    }
-    svg += fmt::format("<line class=\"axis\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/>", left, width - right,
-                       height - bottom, height - bottom);
-    svg += fmt::format("<text class=\"label\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">step (one is {} ms)</text>",
-                       (left + width - right) / 2, height - 5, readable(1000 * step_seconds));
-    for (std::size_t k = 0; k < plot.series.size(); ++k) svg += polyline(plot.series[k], k, steps, first, last, end);
-
     std::string legend;
     if (plot.series.size() > 1)
         for (std::size_t k = 0; k < plot.series.size(); ++k)
             legend +=
                 fmt::format("<span class=\"key\"><i class=\"s{}\"></i>{}</span>", k, escape_html(plot.series[k].name));
-    std::string note = escape_html(plot.note);
-    if (most > end * (1 + 1e-9))
-        note += fmt::format(" The axis stops below a few spikes; the largest is {} {}.", readable(most),
-                            escape_html(plot.unit));
     return fmt::format(
         "<figure class=\"plot\"><figcaption><b>{}</b> <span class=\"unit\">{}</span>{}<output></output></figcaption>"
         "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" data-left=\"{}\" data-right=\"{}\" "
         "data-top=\"{}\" data-bottom=\"{}\">{}<g class=\"cursor\"></g></svg><p>{}</p></figure>\n",
         escape_html(plot.title), escape_html(plot.unit), legend, width, height, escape_html(plot.title), left,
-        width - right, top, height - bottom, svg, note);
+        width - right, top, height - bottom, drawing(plot, steps, step_seconds), escape_html(note_of(plot)));
+}
+
+std::string plot_svg(const Plot& plot, const std::vector<double>& steps, double step_seconds) {
+    constexpr double head = 30, line = 16;
+    const std::vector<std::string> note = broken(note_of(plot), 80);
+    std::string words = fmt::format("<text x=\"{}\" y=\"20\"><tspan class=\"title\">{}</tspan> <tspan "
+                                    "class=\"soft\">{}</tspan>",
+                                    left, escape_html(plot.title), escape_html(plot.unit));
+    if (plot.series.size() > 1)
+        for (std::size_t k = 0; k < plot.series.size(); ++k)
+            words += fmt::format("<tspan class=\"k{}\" dx=\"14\">{}</tspan>", k, escape_html(plot.series[k].name));
+    words += "</text>";
+    for (std::size_t k = 0; k < note.size(); ++k)
+        words += fmt::format("<text class=\"soft\" x=\"{}\" y=\"{}\">{}</text>", left,
+                             head + height + line * static_cast<double>(k + 1), escape_html(note[k]));
+    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+                       "height=\"{1}\" role=\"img\" aria-label=\"{2}\"><style>{3}</style><rect width=\"100%\" "
+                       "height=\"100%\" fill=\"#fff\"/>{4}<g transform=\"translate(0 {5})\">{6}</g></svg>\n",
+                       width, head + height + line * static_cast<double>(note.size()) + 12, escape_html(plot.title),
+                       file_style, words, head, drawing(plot, steps, step_seconds));
 }
 
 std::string plot_data(const std::vector<Plot>& plots, const std::vector<double>& steps) {

@@ -23,6 +23,9 @@ struct Plot {
 /// caption.
 std::string plot_figure(const Plot& plot, const std::vector<double>& steps, double step_seconds);
 
+/// The same as an SVG file of its own, with its colours in it: title, legend and note are inside.
+std::string plot_svg(const Plot& plot, const std::vector<double>& steps, double step_seconds);
+
 /// JSON: {"steps": [...], "plots": [{"unit", "top", "series": [{"name", "values"}]}]}, in the order of the figures.
 std::string plot_data(const std::vector<Plot>& plots, const std::vector<double>& steps);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <report/summary.h>
 
+#include <raycontact/settings.h>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -24,8 +26,18 @@ constexpr Known known[] = {
     {"seed", "Seed", "", "of the bodies' first poses"},
     {"pairs_max", "Pairs, most in a step", "pairs", "bodies whose boxes overlap"},
     {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps: the pile at rest"},
-    {"rays", "Rays", "rays", "of the rule, in all steps together"},
+    {"rays", "Rays", "rays", "of the rule, of the vertices the method looked at, in all steps together"},
+    {"rays_cast", "Rays cast", "rays", "in full; of the others it is known how they end"},
+    {"pairs_full", "Pairs in full", "", "ordered pairs looked at in full, each step counted"},
+    {"pairs_asleep", "Pairs asleep", "", "ordered pairs of which nothing was looked at, each step counted"},
+    {"walks", "Walks", "rays", "followed from the last step's triangle, in all steps together"},
+    {"walks_lost", "Walks lost", "rays", "of these, how many ended nowhere"},
+    {"walk_casts", "Walks cast", "rays", "of those, how many were cast in full instead"},
+    {"predictions", "Predictions", "rays", "vertices followed without contact, in all steps together"},
+    {"pair_bytes_max", "Memory of pairs, most in a step", "MB", "what is kept for the open pairs", 1e-6},
     {"contacts", "Contacts", "contacts", "found in all steps together"},
+    {"contacts_new", "Contacts that came", "contacts", "the step before did not have them"},
+    {"contacts_lost", "Contacts that went", "contacts", "the step before had them"},
     {"ray_length", "Ray length", "m", "of all contacts of all steps, added up"},
     {"penetration_max", "Penetration, deepest", "mm", "deepest contact of the whole run", 1000},
     {"penetration_max_last_second", "Penetration, last second", "mm", "deepest contact of the last second", 1000},
@@ -45,6 +57,12 @@ constexpr Known known[] = {
     {"method", "Method", "", "how rays are kept from step to step"},
     {"caster", "Caster", "", "how a ray meets a mesh"},
     {"direction", "Direction", "", "what normal and depth are made of"},
+    {"displacement_threshold", "Displacement threshold", "mm", "a pair may move so far before a full look", 1000},
+    {"confidence", "Confidence", "", "how far ahead predictive rays look, in displacement thresholds"},
+    {"culling_distance", "Culling distance", "mm", "how far ahead predictive rays look", 1000},
+    {"distance_extension", "Distance extension", "mm", "by which predictive bounds are widened", 1000},
+    {"max_iterations", "Triangles of a walk", "", "a ray may visit so many when it is followed"},
+    {"cast_lost_walks", "Lost walks are cast", "", "in full, where following a ray ended nowhere"},
     {"devices", "Devices", "", "that cast the rays"},
     {"hash", "Hash", "", "XXH64 over every contact of every step: the same on every device and thread count"},
 };
@@ -98,6 +116,24 @@ std::string option(const Json& summary, const char* key, const char* name) {
     return text.empty() ? "" : std::string(" ") + name + " " + text;
 }
 
+/// The thresholds that are not what they are anyway.
+std::string thresholds(const Json& summary) {
+    const Settings usual;
+    const auto differs = [&](const char* key, const Json& otherwise) {
+        const auto at = summary.find(key);
+        return at != summary.end() && *at != otherwise;
+    };
+    std::string text;
+    if (differs("displacement_threshold", nullptr))
+        text += option(summary, "displacement_threshold", "--displacement-threshold");
+    if (differs("confidence", usual.confidence)) text += option(summary, "confidence", "--confidence");
+    if (differs("culling_distance", nullptr)) text += option(summary, "culling_distance", "--culling-distance");
+    if (differs("distance_extension", nullptr)) text += option(summary, "distance_extension", "--distance-extension");
+    if (differs("max_iterations", usual.max_iterations)) text += option(summary, "max_iterations", "--max-iterations");
+    if (differs("cast_lost_walks", usual.cast_lost_walks)) text += " --no-walk-casts";
+    return text;
+}
+
 } // namespace
 
 void describe(const scenes::RunLog& log, Page& page) {
@@ -147,8 +183,8 @@ void describe(const scenes::RunLog& log, Page& page) {
     page.command = "raycontact run " + (log.scene.empty() ? "SCENE" : log.scene) + option(summary, "bodies", "--bodies")
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
                    + option(summary, "method", "--method") + option(summary, "caster", "--caster")
-                   + option(summary, "direction", "--direction") + option(summary, "devices", "--devices")
-                   + " --out DIR";
+                   + option(summary, "direction", "--direction") + thresholds(summary)
+                   + option(summary, "devices", "--devices") + " --out DIR";
     page.footer =
         "Pictures: Embree, sun and sky, one ground square is 1 m; colours tell bodies apart and mean nothing else. "
         "The camera follows the pile from picture to picture. The same command gives the same contacts and hash; "

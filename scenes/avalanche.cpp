@@ -189,6 +189,7 @@ void Avalanche::State::keep_frame(std::uint32_t step) {
 
 void Avalanche::State::measure(StepRow& row) {
     const StepStats& s = dispatcher.scene().stats();
+    static_cast<StepStats&>(row) = s;
     const auto found = dispatcher.scene().contacts();
     hash.add(row.step, found);
     depths.add(row.step, found);
@@ -197,11 +198,6 @@ void Avalanche::State::measure(StepRow& row) {
     rays_cast += s.rays_cast;
     ray_length += s.ray_length;
     pairs_max = std::max(pairs_max, s.pairs);
-    row.pairs = s.pairs;
-    row.rays = s.rays;
-    row.contacts = found.size();
-    row.narrow_ms = s.narrow_ms;
-    row.ray_length = s.ray_length;
     for (const Contact& c : found) row.penetration_max = std::max(row.penetration_max, static_cast<double>(c.depth));
 
     // From positions: what the eye sees, with the corrections that Bullet keeps out of its velocities.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/scene.h>
 #include <raycontact/shape.h>
 
 #include <cstdint>
@@ -11,11 +12,9 @@
 namespace raycontact::scenes {
 
 /// One step of a simulation, as the report plots it.
-struct StepRow {
+struct StepRow : StepStats {
     std::uint32_t step = 0;
-    std::uint64_t pairs = 0, rays = 0, contacts = 0;
-    double step_ms = 0, narrow_ms = 0;
-    double ray_length = 0;      ///< sum over contacts, metres
+    double step_ms = 0;         ///< with the response
     double penetration_max = 0; ///< deepest contact, metres
     double median_speed = 0;    ///< of the moving bodies, m/s
 };

@@ -137,6 +137,30 @@ TEST_F(Collide, EveryCasterAndThreadCountGivesTheSameBits) {
     EXPECT_NE(run(pairs, {"--json", "--direction", "ray"}).out, expected);
 }
 
+// A batch is one step, the first: there is nothing yet that a method could have kept.
+TEST_F(Collide, EveryMethodAndThresholdGivesTheSameBits) {
+    json pairs = json::array();
+    for (int i = 0; i < 50; ++i) {
+        json pair = corner_pair();
+        pair["pose_b"] = translation(0.80 - 0.01 * i, 0.7, 0.6);
+        pairs.push_back(pair);
+    }
+    const auto expected = run(pairs, {"--json", "--method", "standard"}).out;
+    EXPECT_FALSE(expected.empty());
+    for (const char* method : {"certified", "iterative", "predictive"}) {
+        const std::vector<std::string> options{"--json", "--method", method};
+        EXPECT_EQ(run(pairs, options).out, expected) << method;
+        for (const std::vector<std::string>& more :
+             {std::vector<std::string>{"--displacement-threshold", "0.05", "--distance-extension", "0.1"},
+              {"--displacement-threshold", "auto", "--confidence", "1", "--max-iterations", "1", "--no-walk-casts"},
+              {"--culling-distance", "0", "--walk-casts"}}) {
+            auto words = options;
+            words.insert(words.end(), more.begin(), more.end());
+            EXPECT_EQ(run(pairs, words).out, expected) << method << " " << more[0];
+        }
+    }
+}
+
 TEST_F(Collide, DirectionRayIsTheRayItself) {
     const auto lines = json_lines(run(json::array({corner_pair()}), {"--json", "--direction", "ray"}).out);
     ASSERT_EQ(lines.size(), 1u);

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -87,4 +88,33 @@ std::vector<nlohmann::json> json_lines(const std::string& text) {
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
     return lines;
+}
+
+std::vector<std::map<std::string, double>> csv_rows(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string line, cell;
+    std::vector<std::string> names;
+    std::getline(stream, line);
+    for (std::istringstream cells(line); std::getline(cells, cell, ',');) names.push_back(cell);
+    std::vector<std::map<std::string, double>> rows;
+    while (std::getline(stream, line)) {
+        std::istringstream cells(line);
+        auto& row = rows.emplace_back();
+        std::size_t k = 0;
+        for (; std::getline(cells, cell, ','); ++k) row[names.at(k)] = std::stod(cell);
+        if (k != names.size()) throw std::runtime_error("a short line in " + file.string() + ": " + line);
+    }
+    return rows;
+}
+
+double sum_of(const std::vector<std::map<std::string, double>>& rows, const std::string& column) {
+    double sum = 0;
+    for (const auto& row : rows) sum += row.at(column);
+    return sum;
+}
+
+double largest_of(const std::vector<std::map<std::string, double>>& rows, const std::string& column) {
+    double most = 0;
+    for (const auto& row : rows) most = std::max(most, row.at(column));
+    return most;
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -39,6 +40,11 @@ std::string cube_obj();
 
 /// The keys of a JSON object.
 std::set<std::string> keys_of(const nlohmann::json& object);
+
+/// A table of numbers with a line of names: each row by name.
+std::vector<std::map<std::string, double>> csv_rows(const std::filesystem::path& file);
+double sum_of(const std::vector<std::map<std::string, double>>& rows, const std::string& column);
+double largest_of(const std::vector<std::map<std::string, double>>& rows, const std::string& column);
 
 /// Every line as JSON.
 std::vector<nlohmann::json> json_lines(const std::string& text);

@@ -35,7 +35,10 @@ TEST_F(Usage, HelpEverywhere) {
     }
     for (const char* command : {"collide", "run", "replay"}) {
         const auto help = run({command, "--help"});
-        for (const char* option : {"--method", "--caster", "--direction", "--devices", "--threads"}) {
+        for (const char* option :
+             {"--method", "--caster", "--direction", "--devices", "--threads", "--max-iterations",
+              "--displacement-threshold", "--confidence", "--culling-distance", "--distance-extension",
+              "--no-walk-casts", "METRES", "metres", "certified", "standard", "iterative", "predictive"}) {
             EXPECT_NE(help.out.find(option), std::string::npos) << command << " " << option;
         }
     }
@@ -80,6 +83,35 @@ TEST_F(Usage, UnknownWordsNameTheOption) {
     for (const char* option : {"--method", "--caster", "--direction", "--devices"}) {
         expect_refused(run({"collide", "cube.obj", "cube.obj", option, "quick"}), option);
     }
+}
+
+TEST_F(Usage, ThresholdsThatMakeNoSenseNameTheirOption) {
+    const std::pair<const char*, const char*> refused[] = {{"--displacement-threshold", "-0.01"},
+                                                           {"--displacement-threshold", "nan"},
+                                                           {"--displacement-threshold", "1cm"},
+                                                           {"--displacement-threshold", ""},
+                                                           {"--confidence", "0.99"},
+                                                           {"--confidence", "inf"},
+                                                           {"--confidence", "auto"},
+                                                           {"--culling-distance", "-1"},
+                                                           {"--culling-distance", "far"},
+                                                           {"--distance-extension", "-1e-9"},
+                                                           {"--distance-extension", "1e999"},
+                                                           {"--max-iterations", "0"},
+                                                           {"--max-iterations", "-1"},
+                                                           {"--max-iterations", "2.5"},
+                                                           {"--max-iterations", "99999999999"}};
+    for (const auto& [option, value] : refused) {
+        expect_refused(run({"collide", "cube.obj", "cube.obj", option, value}), option);
+        expect_refused(run({"run", "avalanche", "--steps", "1", option, value}), option);
+        expect_refused(run({"replay", "missing.glb", option, value}), option);
+    }
+    // Each makes sense, the two together do not.
+    const auto result =
+        run({"collide", "missing.obj", "cube.obj", "--displacement-threshold", "0.02", "--distance-extension", "0.01"});
+    expect_refused(result, "--displacement-threshold");
+    expect_refused(result, "--distance-extension");
+    expect_refused(run({"mesh", "cube.obj", "--confidence", "2"}), "--confidence");
 }
 
 TEST_F(Usage, DeviceLists) {

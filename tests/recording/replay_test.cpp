@@ -7,23 +7,35 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+#include <utility>
+
 using namespace raycontact;
 using namespace raycontact::recording;
 
 namespace {
 
-/// Records 27 gears falling for a second; returns the run's hash.
-std::string record_avalanche(const std::filesystem::path& file, std::uint64_t& contacts, std::uint64_t& rays) {
+/// What a run found.
+struct Found {
+    std::string hash;
+    std::uint64_t contacts = 0, rays = 0;
+};
+
+/// Records 27 gears falling for a second.
+Found record_avalanche(const std::filesystem::path& file, const Settings& settings = {}) {
     scenes::AvalancheOptions options;
     options.bodies = 27;
     options.model = "gear";
     options.triangles = 240;
     options.expected_steps = 60;
+    options.settings = settings;
     scenes::Avalanche scene(options);
     Info info;
     info.scene = "avalanche";
     info.seed = options.seed;
     info.bodies = 27;
+    info.settings = settings;
     Writer writer(file, info);
     for (const auto& shape : scene.log().shapes) writer.add_shape(*shape);
     for (const std::uint32_t shape : scene.log().body_shape) writer.add_body(shape);
@@ -32,9 +44,13 @@ std::string record_avalanche(const std::filesystem::path& file, std::uint64_t& c
         writer.step(scene.scene());
     }
     writer.finish(scene.hash());
-    contacts = scene.contacts_total();
-    rays = scene.rays_total();
-    return scene.hash();
+    return {scene.hash(), scene.contacts_total(), scene.rays_total()};
+}
+
+Settings settings_of(Method method) {
+    Settings settings;
+    settings.method = method;
+    return settings;
 }
 
 Contact contact(std::uint32_t a, std::uint32_t vertex, std::uint32_t triangle) {
@@ -48,41 +64,125 @@ Contact contact(std::uint32_t a, std::uint32_t vertex, std::uint32_t triangle) {
 
 } // namespace
 
-TEST(Replay, ReproducesTheRun) {
+class ReplayOf : public testing::TestWithParam<Method> {};
+
+// Methods that keep something from step to step keep the same again: poses and pairs are the run's, from the first on.
+TEST_P(ReplayOf, ReproducesTheRun) {
     const TemporaryFile file;
-    std::uint64_t contacts = 0, rays = 0;
-    const std::string hash = record_avalanche(file.path(), contacts, rays);
-    EXPECT_GT(contacts, 1000u);
-    for (const Caster caster : {Caster::bvh, Caster::basic}) {
-        for (const std::uint32_t threads : {1u, 2u}) {
-            Reader reader(file.path());
-            EXPECT_EQ(reader.hash(), hash);
-            ReplayOptions options;
-            options.settings.caster = caster;
-            options.settings.threads = threads;
-            options.compare = threads == 2;
-            const raycontact::recording::Replay result = replay(reader, options);
-            EXPECT_EQ(result.hash, hash) << to_string(caster) << ", " << threads;
-            EXPECT_EQ(result.contacts, contacts);
-            EXPECT_EQ(result.rays, rays);
-            EXPECT_EQ(result.steps.size(), 60u);
-            ASSERT_EQ(result.wrong_rays.has_value(), options.compare);
-            if (!options.compare) continue;
-            EXPECT_EQ(result.wrong_rays->total(), 0u);
-            EXPECT_EQ(result.wrong_rays->rays_compared, rays);
-            EXPECT_EQ(result.wrong_rays->contacts_compared, contacts);
+    Settings settings = settings_of(GetParam());
+    for (const std::optional<double> threshold : {std::optional<double>(), std::optional(0.004)}) {
+        settings.displacement_threshold = threshold;
+        const Found run = record_avalanche(file.path(), settings);
+        EXPECT_GT(run.contacts, 1000u);
+        for (const Caster caster : {Caster::bvh, Caster::basic}) {
+            for (const std::uint32_t threads : {1u, 2u}) {
+                Reader reader(file.path());
+                EXPECT_EQ(reader.hash(), run.hash);
+                ReplayOptions options;
+                options.settings = reader.info().settings;
+                EXPECT_TRUE(must_agree(reader.info().settings, options.settings));
+                options.settings.caster = caster;
+                options.settings.threads = threads;
+                const raycontact::recording::Replay result = replay(reader, options);
+                EXPECT_EQ(result.hash, run.hash) << to_string(caster) << ", " << threads;
+                EXPECT_EQ(result.contacts, run.contacts);
+                EXPECT_EQ(result.steps.size(), 60u);
+                EXPECT_FALSE(result.wrong_rays.has_value());
+                if (caster == settings.caster) {
+                    EXPECT_EQ(result.rays, run.rays);
+                }
+            }
         }
+    }
+}
+
+// Whatever the method, a comparison is with every ray cast in full.
+TEST_P(ReplayOf, IsComparedWithStandard) {
+    const TemporaryFile file;
+    const Found run = record_avalanche(file.path(), settings_of(GetParam()));
+    Reader reader(file.path());
+    ReplayOptions options;
+    options.settings = reader.info().settings;
+    options.compare = true;
+    const raycontact::recording::Replay compared = replay(reader, options);
+    EXPECT_EQ(compared.hash, run.hash);
+    options.settings.method = Method::standard;
+    options.compare = false;
+    const raycontact::recording::Replay standard = replay(reader, options);
+    ASSERT_TRUE(compared.wrong_rays.has_value());
+    const WrongRays& wrong = *compared.wrong_rays;
+    EXPECT_EQ(wrong.rays_compared, standard.rays);
+    EXPECT_EQ(wrong.contacts_compared, standard.contacts);
+    EXPECT_EQ(compared.contacts + wrong.missed, standard.contacts + wrong.invented);
+    EXPECT_EQ(wrong.total() == 0, compared.hash == standard.hash);
+    if (GetParam() == Method::certified || GetParam() == Method::standard) {
+        EXPECT_EQ(wrong.total(), 0u);
+    }
+    WrongRays sum;
+    for (std::size_t i = 0; i < compared.steps.size(); ++i) {
+        sum.add(compared.steps[i].wrong);
+        EXPECT_EQ(compared.steps[i].wrong.rays_compared, standard.steps[i].rays);
+        EXPECT_EQ(compared.steps[i].pairs, standard.steps[i].pairs);
+    }
+    EXPECT_EQ(sum.total(), wrong.total());
+    EXPECT_EQ(sum.missed, wrong.missed);
+    EXPECT_EQ(sum.invented, wrong.invented);
+    EXPECT_EQ(sum.rays_compared, wrong.rays_compared);
+    EXPECT_EQ(sum.contacts_compared, wrong.contacts_compared);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, ReplayOf,
+                         testing::Values(Method::standard, Method::iterative, Method::predictive, Method::certified),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST(Replay, StandardAndCertifiedReproduceEachOther) {
+    for (const auto& [recorded, used] :
+         {std::pair{Method::standard, Method::certified}, std::pair{Method::certified, Method::standard}}) {
+        const TemporaryFile file;
+        const Found run = record_avalanche(file.path(), settings_of(recorded));
+        Reader reader(file.path());
+        ReplayOptions options;
+        options.settings = settings_of(used);
+        options.settings.displacement_threshold = 0.01;
+        EXPECT_TRUE(must_agree(reader.info().settings, options.settings));
+        EXPECT_EQ(replay(reader, options).hash, run.hash);
+    }
+}
+
+TEST(Replay, WhatMustAgree) {
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified}) {
+        const bool exact = method == Method::standard || method == Method::certified;
+        const Settings recorded = settings_of(method);
+        const auto agrees = [&](auto member, auto value) {
+            Settings used = recorded;
+            used.*member = value;
+            return must_agree(recorded, used);
+        };
+        EXPECT_TRUE(must_agree(recorded, recorded));
+        EXPECT_TRUE(agrees(&Settings::caster, Caster::basic));
+        EXPECT_TRUE(agrees(&Settings::threads, 3u));
+        EXPECT_TRUE(agrees(&Settings::skip_outside, false));
+        EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
+        EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
+        EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
+        EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);
+        EXPECT_EQ(agrees(&Settings::distance_extension, 0.01), exact);
+        EXPECT_EQ(agrees(&Settings::max_iterations, 3u), exact);
+        EXPECT_EQ(agrees(&Settings::cast_lost_walks, false), exact);
+        EXPECT_EQ(agrees(&Settings::method, Method::standard), exact);
+        EXPECT_EQ(agrees(&Settings::method, Method::certified), exact);
+        EXPECT_EQ(agrees(&Settings::method, Method::iterative), method == Method::iterative);
+        EXPECT_EQ(agrees(&Settings::method, Method::predictive), method == Method::predictive);
     }
 }
 
 TEST(Replay, AnotherDirectionIsAnotherHash) {
     const TemporaryFile file;
-    std::uint64_t contacts = 0, rays = 0;
-    const std::string hash = record_avalanche(file.path(), contacts, rays);
+    const Found run = record_avalanche(file.path());
     Reader reader(file.path());
     ReplayOptions options;
     options.settings.direction = Direction::ray;
-    EXPECT_NE(replay(reader, options).hash, hash);
+    EXPECT_NE(replay(reader, options).hash, run.hash);
 }
 
 TEST(Replay, BodiesComeAndGo) {
@@ -118,6 +218,9 @@ TEST(Replay, WrongRaysAreCounted) {
     EXPECT_EQ(wrong.other_triangle, 1u); // (1, 0)
     EXPECT_EQ(wrong.total(), 5u);
     EXPECT_EQ(wrong.contacts_compared, 4u);
+    EXPECT_TRUE(std::isnan(wrong.percent())); // of no rays
+    wrong.rays_compared = 40;
+    EXPECT_DOUBLE_EQ(wrong.percent(), 12.5);
     wrong.add({}, reference);
     EXPECT_EQ(wrong.missed, 5u);
     wrong.add(reference, {});

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <optional>
 #include <random>
 
 using namespace raycontact;
@@ -113,6 +114,80 @@ TEST(RoundTrip, ShapesOfAllKindsAreMadeAgain) {
     }
 }
 
+TEST(RoundTrip, EveryMethodAndThresholdIsKept) {
+    Sample sample = make_sample(2);
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified}) {
+        for (const std::optional<double> length :
+             {std::optional<double>(), std::optional(0.0), std::optional(1e-300)}) {
+            sample.info.settings = {};
+            sample.info.settings.method = method;
+            sample.info.settings.displacement_threshold = length;
+            sample.info.settings.culling_distance = length;
+            sample.info.settings.distance_extension = length;
+            const TemporaryFile file;
+            record(sample, file.path(), true);
+            Reader reader(file.path());
+            EXPECT_EQ(difference(sample, reader, 2), "") << to_string(method);
+        }
+    }
+}
+
+TEST(RoundTrip, OldRecordingsHaveDefaults) {
+    Sample sample = make_sample(5);
+    const TemporaryFile file;
+    record(sample, file.path(), true);
+    edit_json(file.path(), BlockType::info, [](nlohmann::ordered_json& info) {
+        for (const char* key : {"displacement_threshold", "confidence", "culling_distance", "distance_extension",
+                                "max_iterations", "cast_lost_walks"})
+            EXPECT_EQ(info.erase(key), 1u) << key;
+        info["method"] = "standard";
+    });
+    Reader reader(file.path());
+    Settings& old = sample.info.settings;
+    const Settings fresh;
+    old.method = Method::standard;
+    old.displacement_threshold = fresh.displacement_threshold;
+    old.confidence = fresh.confidence;
+    old.distance_extension = fresh.distance_extension;
+    old.max_iterations = fresh.max_iterations;
+    old.cast_lost_walks = fresh.cast_lost_walks;
+    EXPECT_EQ(difference(sample, reader, 5), "");
+    EXPECT_EQ(reader.hash(), sample.hash);
+}
+
+TEST(RoundTrip, SettingsOfALaterVersionAreNoDamage) {
+    const Sample sample = make_sample(2);
+    const auto message_for = [&](const char* key, const nlohmann::ordered_json& value) {
+        const TemporaryFile file;
+        record(sample, file.path(), true);
+        edit_json(file.path(), BlockType::info, [&](nlohmann::ordered_json& info) { info[key] = value; });
+        try {
+            const Reader reader(file.path());
+            return std::string("accepted");
+        } catch (const InputError& error) {
+            const std::string text = error.what();
+            EXPECT_TRUE(text.starts_with(file.path().string() + ": ")) << text;
+            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+            return text;
+        }
+    };
+    for (const char* key : {"method", "caster", "direction"}) {
+        const std::string text = message_for(key, "wavelet");
+        EXPECT_NE(text.find("wavelet"), std::string::npos) << text;
+        EXPECT_NE(text.find(key), std::string::npos) << text;
+        EXPECT_NE(text.find("does not know"), std::string::npos) << text;
+        EXPECT_EQ(text.find("damaged"), std::string::npos) << text;
+    }
+    EXPECT_NE(message_for("method", 7).find("damaged"), std::string::npos);
+    EXPECT_NE(message_for("confidence", 0.5).find("confidence"), std::string::npos);
+    EXPECT_NE(message_for("confidence", nullptr).find("damaged"), std::string::npos);
+    EXPECT_NE(message_for("displacement_threshold", -1).find("displacement_threshold"), std::string::npos);
+    EXPECT_NE(message_for("distance_extension", 1e-9).find("distance_extension"), std::string::npos);
+    EXPECT_NE(message_for("max_iterations", 0).find("max_iterations"), std::string::npos);
+    EXPECT_NE(message_for("cast_lost_walks", "yes").find("damaged"), std::string::npos);
+    EXPECT_EQ(message_for("unheard_of", 1), "accepted");
+}
+
 TEST(RoundTrip, BadInputIsRefusedInOneLine) {
     const Sample sample = make_sample(2);
     const TemporaryFile file;
@@ -120,6 +195,9 @@ TEST(RoundTrip, BadInputIsRefusedInOneLine) {
     EXPECT_THROW(Writer(std::filesystem::temp_directory_path(), {}), InputError);
     Info info;
     info.dt = 0;
+    EXPECT_THROW(Writer(file.path(), info), InputError);
+    info = {};
+    info.settings.confidence = 0.5;
     EXPECT_THROW(Writer(file.path(), info), InputError);
     EXPECT_THROW(Reader("/nonexistent/x.glb"), InputError);
     EXPECT_THROW(Reader{std::filesystem::temp_directory_path()}, InputError);

@@ -52,6 +52,11 @@ Sample make_sample(std::uint32_t steps) {
     sample.info.settings.caster = Caster::basic;
     sample.info.settings.direction = Direction::ray;
     sample.info.settings.threads = 2;
+    sample.info.settings.displacement_threshold = 0.1 / 3; // no short decimal
+    sample.info.settings.confidence = 2.0 + 1e-15;
+    sample.info.settings.distance_extension = 0.07;
+    sample.info.settings.max_iterations = 5;
+    sample.info.settings.cast_lost_walks = false;
     sample.shapes = {Shape::make(crooked("torus", 60)), Shape::make(crooked("knot", 60)),
                      Shape::make(crooked("sphere", 40))};
     sample.bodies = {{0, 0, Body::never}, {1, 0, Body::never}, {1, 0, 12}, {0, 0, Body::never},
@@ -128,7 +133,13 @@ bool same_info(const Info& p, const Info& q) {
     return p.scene == q.scene && p.seed == q.seed && p.bodies == q.bodies && p.dt == q.dt
            && p.mesh_source == q.mesh_source && p.settings.method == q.settings.method
            && p.settings.caster == q.settings.caster && p.settings.direction == q.settings.direction
-           && p.settings.device == q.settings.device && p.settings.threads == q.settings.threads;
+           && p.settings.device == q.settings.device && p.settings.threads == q.settings.threads
+           && p.settings.displacement_threshold == q.settings.displacement_threshold
+           && p.settings.confidence == q.settings.confidence
+           && p.settings.culling_distance == q.settings.culling_distance
+           && p.settings.distance_extension == q.settings.distance_extension
+           && p.settings.max_iterations == q.settings.max_iterations
+           && p.settings.cast_lost_walks == q.settings.cast_lost_walks;
 }
 
 } // namespace
@@ -191,4 +202,37 @@ std::size_t side_chunk_at(const std::vector<unsigned char>& glb) {
         at += 8 + length;
     }
     return glb.size();
+}
+
+void edit_json(const std::filesystem::path& file, BlockType type,
+               const std::function<void(nlohmann::ordered_json&)>& change) {
+    const Bytes bytes = bytes_of(file);
+    const std::size_t side = side_chunk_at(bytes), data = side + 8;
+    const auto end =
+        bytes.begin()
+        + static_cast<std::ptrdiff_t>(data + ByteSource(std::span(bytes).subspan(side, 4)).get<std::uint32_t>());
+    Bytes edited(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(data + side_chunk_start.size()));
+    for (auto at = bytes.begin() + static_cast<std::ptrdiff_t>(edited.size()); at != end;) {
+        const std::span header_bytes(at, BlockHeader::size);
+        const BlockHeader header = read_block_header(header_bytes);
+        at += BlockHeader::size;
+        const std::span stored(at, static_cast<std::size_t>(header.padded()));
+        const auto place = static_cast<std::uint64_t>(header_bytes.data() - bytes.data()) - data;
+        Bytes payload = unpack_block(header, header_bytes, stored, place);
+        if (header.type == type) {
+            auto document = nlohmann::ordered_json::parse(payload);
+            change(document);
+            const std::string text = document.dump();
+            payload.assign(text.begin(), text.end());
+        }
+        const Bytes block =
+            make_block(header.type, header.first_step, header.step_count, payload, edited.size() - data, Effort::quick);
+        edited.insert(edited.end(), block.begin(), block.end());
+        at += static_cast<std::ptrdiff_t>(header.padded());
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        edited[side + i] = static_cast<unsigned char>((edited.size() - data) >> (8 * i));
+        edited[8 + i] = static_cast<unsigned char>(edited.size() >> (8 * i));
+    }
+    write_bytes(file, edited);
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <recording/block.h>
 #include <recording/reader.h>
 #include <recording/writer.h>
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,3 +67,7 @@ void write_bytes(const std::filesystem::path& file, const std::vector<unsigned c
 
 /// Where the side chunk's header starts; the file's length where there is none.
 std::size_t side_chunk_at(const std::vector<unsigned char>& glb);
+
+/// Changes the JSON of the blocks of this type; everything around them, checksums too, is as it should be.
+void edit_json(const std::filesystem::path& file, raycontact::recording::BlockType type,
+               const std::function<void(nlohmann::ordered_json&)>& change);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/summary.h"
+
+#include <fmt/format.h>
+
+using namespace raycontact;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+struct Count {
+    const char* name;
+    std::uint64_t StepStats::*value;
+};
+
+/// In the order of steps.csv.
+constexpr Count counts[] = {
+    {"rays_cast", &StepStats::rays_cast},       {"walks", &StepStats::walks},
+    {"walks_lost", &StepStats::walks_lost},     {"walk_casts", &StepStats::walk_casts},
+    {"predictions", &StepStats::predictions},   {"pairs_full", &StepStats::pairs_full},
+    {"pairs_asleep", &StepStats::pairs_asleep}, {"pair_bytes", &StepStats::pair_bytes},
+    {"contacts_new", &StepStats::contacts_new}, {"contacts_lost", &StepStats::contacts_lost},
+};
+
+bool is_memory(const Count& count) {
+    return count.value == &StepStats::pair_bytes;
+}
+
+Json length(const std::optional<double>& metres) {
+    return metres ? Json(*metres) : Json(nullptr);
+}
+
+} // namespace
+
+void Work::add(const StepStats& step) {
+    for (const Count& count : counts) {
+        std::uint64_t& sum = sum_.*count.value;
+        sum = is_memory(count) ? std::max(sum, step.*count.value) : sum + step.*count.value;
+    }
+}
+
+void Work::put(Json& object) const {
+    for (const Count& count : counts) object[is_memory(count) ? "pair_bytes_max" : count.name] = sum_.*count.value;
+}
+
+void put_settings(Json& object, const Settings& settings) {
+    object["displacement_threshold"] = length(settings.displacement_threshold);
+    object["confidence"] = settings.confidence;
+    object["culling_distance"] = length(settings.culling_distance);
+    object["distance_extension"] = length(settings.distance_extension);
+    object["max_iterations"] = settings.max_iterations;
+    object["cast_lost_walks"] = settings.cast_lost_walks;
+}
+
+std::string work_for_a_person(const Json& s) {
+    const auto count = [&](const char* key) { return s.at(key).get<std::uint64_t>(); };
+    std::string text =
+        fmt::format("work       {} rays cast in full; ordered pairs: {} times looked at in full, {} times asleep\n",
+                    count("rays_cast"), count("pairs_full"), count("pairs_asleep"));
+    if (count("walks") > 0 || count("predictions") > 0)
+        text += fmt::format("walks      {}, of them {} ended nowhere, {} of those cast in full; {} predictions\n",
+                            count("walks"), count("walks_lost"), count("walk_casts"), count("predictions"));
+    return text
+           + fmt::format("changes    {} contacts came, {} went; {:.3g} MB kept for pairs at most\n",
+                         count("contacts_new"), count("contacts_lost"),
+                         static_cast<double>(count("pair_bytes_max")) / 1e6);
+}
+
+std::string work_columns() {
+    std::string text;
+    for (const Count& count : counts) text += std::string(",") + count.name;
+    return text;
+}
+
+std::string work_cells(const StepStats& step) {
+    std::string text;
+    for (const Count& count : counts) text += fmt::format(",{}", step.*count.value);
+    return text;
+}
