@@ -402,11 +402,12 @@ void strike(Random& random, Counts& counts, std::uint64_t number) {
         };
         for (const Mesh& mesh : {box_mesh({21, 21, 1}), box_mesh({0.5, 0.3, 0.4}), box_mesh({3, 0.1, 0.1})})
             targets[scale_index].push_back(scaled(mesh));
-        for (const Mesh& mesh : {tetrahedron_mesh(), box_mesh({2, 0.02, 0.02}), bumpy_octahedron_mesh(4), bowl_mesh(4)})
+        for (const Mesh& mesh : {tetrahedron_mesh(), box_mesh({2, 0.02, 0.02}), bumpy_octahedron_mesh(4), bowl_mesh(4),
+                                 box_mesh({21, 21, 1})})
             sources[scale_index].push_back(scaled(mesh));
     }
     const auto& target = targets[scale_index][random.below(3)];
-    const auto& source = sources[scale_index][random.below(4)];
+    const auto& source = sources[scale_index][random.below(5)];
 
     // Touching: the source's lowest vertex on the target's upper face, z up in the target's frame.
     Pose touching = random.rotation();
@@ -461,11 +462,13 @@ void strike(Random& random, Counts& counts, std::uint64_t number) {
     const int steps = 10 + static_cast<int>(random.below(120));
     // Some have come a long way: what they keep counts from far off.
     const int before = random.below(3) == 0 ? 20 : 0;
+    const bool shear = random.below(4) == 0;
     for (int step = -before; step < 2 * steps; ++step) {
         const double to = std::fabs(1 - static_cast<double>(step) / steps); // 1 -> 0 -> 1
         const double height =
             step < 0 ? (step % 2 ? 1 : 1000) * scale * (swing ? 1e-3 : 1) : way * (1.03 * to - 0.03 * random.uniform());
-        const auto [pose_face, pose_vertex] = poses_at(height);
+        auto [pose_face, pose_vertex] = poses_at(height);
+        if (shear) pose_face = sheared(pose_face, random), pose_vertex = sheared(pose_vertex, random);
         triplet.each([&](Scene& scene) {
             scene.set_pose(of_face, pose_face);
             scene.set_pose(of_vertex, pose_vertex);
