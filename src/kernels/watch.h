@@ -102,8 +102,8 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
     const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
     const Clearance grid = clearance_of(target);
-    // Of an unknown side nothing is said: the reach of the block's rays is not. Poses are rigid to 1e-4 each and may stretch the
-    // box by more than the margin, hence the half thousandth.
+    // Of an unknown side nothing is said: the reach of the block's rays is not. Poses, rigid to 1e-4 each, may stretch
+    // the box by more than the margin, hence the half thousandth.
     return safe_distance(&grid, clearances + target->clearance_first,
                          ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
                          ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
