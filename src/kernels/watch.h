@@ -12,7 +12,7 @@ typedef struct {
 
 // A clearance grid, without its balls.
 typedef struct {
-    float low[3], high[3]; // a box around that of the shape
+    float low_x, low_y, low_z, high_x, high_y, high_z; // a box around that of the shape
     float scale, cell, unit;
     uint size_x, size_y;
     uint outward;
@@ -20,8 +20,12 @@ typedef struct {
 
 DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
     Clearance grid;
-    for (int i = 0; i < 3; ++i) grid.low[i] = shape->clearance_low[i];
-    for (int i = 0; i < 3; ++i) grid.high[i] = shape->clearance_high[i];
+    grid.low_x = shape->clearance_low[0];
+    grid.low_y = shape->clearance_low[1];
+    grid.low_z = shape->clearance_low[2];
+    grid.high_x = shape->clearance_high[0];
+    grid.high_y = shape->clearance_high[1];
+    grid.high_z = shape->clearance_high[2];
     grid.scale = shape->clearance_scale;
     grid.cell = shape->clearance_cell;
     grid.unit = shape->clearance_unit;
@@ -33,29 +37,29 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
 
 // No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of its
 // surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance* grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
+DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
                            float reach) {
     // The nearest point of the box; NaN takes its lower corner.
-    const float up_x = x >= grid->low[0] ? x : grid->low[0], up_y = y >= grid->low[1] ? y : grid->low[1];
-    const float up_z = z >= grid->low[2] ? z : grid->low[2];
-    const float px = up_x <= grid->high[0] ? up_x : grid->high[0], py = up_y <= grid->high[1] ? up_y : grid->high[1];
-    const float pz = up_z <= grid->high[2] ? up_z : grid->high[2];
+    const float up_x = x >= grid.low_x ? x : grid.low_x, up_y = y >= grid.low_y ? y : grid.low_y;
+    const float up_z = z >= grid.low_z ? z : grid.low_z;
+    const float px = up_x <= grid.high_x ? up_x : grid.high_x, py = up_y <= grid.high_y ? up_y : grid.high_y;
+    const float pz = up_z <= grid.high_z ? up_z : grid.high_z;
     const float off_x = x - px, off_y = y - py, off_z = z - pz;
     const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-    const int cx = (int)((px - grid->low[0]) * grid->scale), cy = (int)((py - grid->low[1]) * grid->scale);
-    const int cz = (int)((pz - grid->low[2]) * grid->scale);
-    const int at = (cz * (int)grid->size_y + cy) * (int)grid->size_x + cx;
+    const int cx = (int)((px - grid.low_x) * grid.scale), cy = (int)((py - grid.low_y) * grid.scale);
+    const int cz = (int)((pz - grid.low_z) * grid.scale);
+    const uint at = ((uint)cz * grid.size_y + (uint)cy) * grid.size_x + (uint)cx;
     const uint word = balls[at];
     const int bx = cx + (int)(word & 31u) - CLEARANCE_OFFSET, by = cy + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
     const int bz = cz + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = px - (grid->low[0] + ((float)bx + 0.5f) * grid->cell);
-    const float ay = py - (grid->low[1] + ((float)by + 0.5f) * grid->cell);
-    const float az = pz - (grid->low[2] + ((float)bz + 0.5f) * grid->cell);
-    const float ball = (float)(int)(word >> 16) * grid->unit - root_of((ax * ax + ay * ay) + az * az);
+    const float ax = px - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
+    const float ay = py - (grid.low_y + ((float)by + 0.5f) * grid.cell);
+    const float az = pz - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
+    const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
     const float away = root_of(off2 + clear * clear);
-    const uint outside = (grid->outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & ((word & CLEARANCE_OUTSIDE) >> 15));
+    const uint outside = (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
     return away - (outside != 0u ? 0.0f : reach);
 }
 
@@ -74,7 +78,7 @@ DEVICE WatchLanes watch_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL co
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        const float safe = safe_distance(&grid, balls, x, y, z, block->exit[k]);
+        const float safe = safe_distance(grid, balls, x, y, z, block->exit[k]);
         found.inside[k] = -(int)inside;
         found.safe[k] = vx == vx ? safe : UNBOUNDED; // empty lanes hold NaN
         found.x[k] = x;
@@ -104,7 +108,7 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
     const Clearance grid = clearance_of(target);
     // Of an unknown side nothing is said: the reach of the block's rays is not. Poses, rigid to 1e-4 each, may stretch
     // the box by more than the margin, hence the half thousandth.
-    return safe_distance(&grid, clearances + target->clearance_first,
+    return safe_distance(grid, clearances + target->clearance_first,
                          ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
                          ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
                          ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
