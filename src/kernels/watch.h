@@ -2,6 +2,7 @@
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
 // once the pair has moved as far as its nearest vertex was from touching.
 
+#define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
 #define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
 
 typedef struct {
@@ -132,6 +133,7 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
         watch.vertex_block = cluster.vertex_block;
         watch.wake = safe > 0.0f ? safe : AWAKE;
         watch.lanes = 0u;
+        watch.cast = 0u;
         watches[places[cluster.pair] + (i - firsts[cluster.pair])] = watch;
     }
 }
@@ -152,13 +154,13 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         uint ray_count = 0u;
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             float own = watches[i].wake;
+            uint lanes = watches[i].lanes;
             if (own <= segment.clock) {
-                WatchLanes found =
-                    watch_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
+                WatchLanes found = watch_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
                 int unsafe[VERTEX_LANES];
                 FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
                 const uint inside_mask = pack_sixteen(found.inside);
-                uint lanes = inside_mask & pack_sixteen(unsafe);
+                lanes = inside_mask & pack_sixteen(unsafe);
                 if (lanes != 0u && target->grid_size[0] != 0u) {
                     InsideLanes near;
                     FOR_LANES(k, VERTEX_LANES) {
@@ -169,14 +171,26 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                     }
                     lanes &= ~outside_lanes(&near, target, outside_cells);
                 }
-                const float least = least_of_sixteen(found.safe) - segment.margin;
+                watches[i].lanes = lanes;
+                watches[i].cast = lanes;
+                look.blocks += 1u;
+                look.inside += bit_count(inside_mask);
+                for (uint left = lanes; left != 0u; left &= left - 1u) found.safe[lowest_bit(left)] = UNBOUNDED;
+                float least = least_of_sixteen(found.safe) - segment.margin;
+                // Vertices that cast are asked again after a while whether they still must.
+                const float again = REFRESH_TOLERANCES * target->tolerance;
+                if (lanes != 0u && least > again) least = again;
                 // Never asleep, whichever way the clock was rounded.
                 own = least > 0.0f ? segment.clock + least : AWAKE;
                 watches[i].wake = own;
-                watches[i].lanes = lanes;
-                look.blocks += 1u;
-                look.inside += bit_count(inside_mask);
-                ray_count += bit_count(lanes);
+            } else if (lanes != 0u) {
+                const InsideLanes found = inside_lanes(pair, vertices + watches[i].vertex_block);
+                watches[i].cast = lanes & pack_sixteen(found.inside);
+                look.inside += bit_count(watches[i].cast);
+            }
+            if (lanes != 0u) {
+                ray_count += bit_count(watches[i].cast);
+                own = AWAKE;
             }
             if (own < look.wake) look.wake = own;
         }
@@ -185,7 +199,6 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     }
 }
 
-// A block that casts a ray is awake, so that it was looked at in this step.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
                              GLOBAL const Watch* RESTRICT watches, GLOBAL const uint* RESTRICT firsts,
                              GLOBAL Ray* RESTRICT rays) {
@@ -193,7 +206,7 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         const Segment segment = segments[s];
         uint at = firsts[s];
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
-            uint lanes = watches[i].wake == AWAKE ? watches[i].lanes : 0u;
+            uint lanes = watches[i].cast;
             while (lanes != 0u) {
                 Ray ray;
                 ray.pair = segment.pair;
