@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 #define TRIANGLE_LANES 16
 #define NODE_LANES 16
 #define VERTEX_LANES 16
@@ -176,3 +177,4 @@ typedef struct {
     Packed3 normal; // of the face, target frame
 } LocalContact;
 WIRE_SIZE(LocalContact, 32);
+// NOLINTEND(modernize-use-using)
