@@ -37,13 +37,13 @@ struct Random {
 std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pairs) {
     Random random{7};
     std::vector<rc::PlacedBody> bodies(2 * pairs);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (rc::PlacedBody& body : bodies) {
         const double apart = 0.35 * shape.data().diagonal;
         const rc::Vec3 at{apart * random.next(), apart * random.next(), apart * random.next()};
-        bodies[i].shape = &shape;
-        bodies[i].pose = rc::pose_from_quaternion(at, random.next(), random.next(), random.next(), random.next());
-        bodies[i].centred = bodies[i].pose;
-        bodies[i].centred.translation = rc::transform_point(bodies[i].pose, shape.centre());
+        body.shape = &shape;
+        body.pose = rc::pose_from_quaternion(at, random.next(), random.next(), random.next(), random.next());
+        body.centred = body.pose;
+        body.centred.translation = rc::transform_point(body.pose, shape.centre());
     }
     return bodies;
 }

@@ -50,20 +50,26 @@ bool chosen(const std::vector<std::string>& words, const std::string& word) {
 
 std::string joined(const std::vector<std::string>& words) {
     std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    for (const std::string& word : words) {
+        if (!text.empty()) text += ", ";
+        text += word;
+    }
     return text;
 }
 
 void refuse_unknown(const std::string& option, const std::vector<std::string>& given,
                     const std::vector<std::string>& known) {
-    for (const std::string& word : given)
-        if (std::find(known.begin(), known.end(), word) == known.end())
-            throw InputError(option + ": \"" + word + "\" is not known; choose from " + joined(known));
+    const auto unknown = std::find_if(given.begin(), given.end(), [&](const std::string& word) {
+        return std::find(known.begin(), known.end(), word) == known.end();
+    });
+    if (unknown != given.end())
+        throw InputError(option + ": \"" + *unknown + "\" is not known; choose from " + joined(known));
 }
 
 std::vector<Entrant> choose_entrants(const std::vector<std::string>& only) {
     std::vector<Entrant> all = entrants(), some;
     std::vector<std::string> names;
+    names.reserve(all.size());
     for (const Entrant& entrant : all) names.push_back(entrant.name);
     refuse_unknown("--only", only, names);
     for (Entrant& entrant : all) {
@@ -88,7 +94,8 @@ using MakeWork = std::function<Work()>;
 /// Name and maker of each work; made one at a time, they are large.
 std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& options) {
     std::vector<std::pair<std::string, MakeWork>> works;
-    const auto approach = [&](std::string name, std::shared_ptr<const raycontact::Shape> shape, std::string source) {
+    const auto approach = [&](std::string name, const std::shared_ptr<const raycontact::Shape>& shape,
+                              std::string source) {
         return approaching_pairs(std::move(name), shape, std::move(source), options.approach);
     };
     if (!options.mesh.empty()) {
@@ -109,6 +116,7 @@ std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& o
                                          : recorded_work(options.recording, options.avalanche);
     });
     std::vector<std::string> names;
+    names.reserve(works.size());
     for (const auto& work : works) names.push_back(work.first);
     refuse_unknown("--works", options.works, names);
     std::erase_if(works, [&](const auto& work) { return !chosen(options.works, work.first); });

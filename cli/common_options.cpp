@@ -193,7 +193,7 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
                     return number;
                 });
     command.add_flag("--walk-casts,!--no-walk-casts", settings.cast_lost_walks,
-                     "iterative, predictive: cast a ray in full (the default) or give it up where following it ends "
+                     "predictive: cast a ray in full (the default) or give it up where following it ends "
                      "nowhere");
     add_word(command, "--devices",
              "auto, all, or a device as `raycontact devices` lists it; cpu/k is its k-th core alone", "LIST",

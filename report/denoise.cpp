@@ -17,7 +17,7 @@ void pass(const Layers& layers, const std::vector<Float3>& from, std::vector<Flo
     tbb::parallel_for(tbb::blocked_range<int>(0, height), [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y)
             for (int x = 0; x < width; ++x) {
-                const auto here = static_cast<std::size_t>(y * width + x);
+                const auto here = static_cast<std::size_t>(y) * layers.width + static_cast<std::size_t>(x);
                 const Float3 n = layers.normal[here], p = layers.position[here];
                 if (dot(n, n) == 0) {
                     to[here] = from[here];
@@ -30,7 +30,7 @@ void pass(const Layers& layers, const std::vector<Float3>& from, std::vector<Flo
                     for (int i = -2; i <= 2; ++i) {
                         const int qx = std::clamp(x + i * step, 0, width - 1),
                                   qy = std::clamp(y + j * step, 0, height - 1);
-                        const auto there = static_cast<std::size_t>(qy * width + qx);
+                        const auto there = static_cast<std::size_t>(qy) * layers.width + static_cast<std::size_t>(qx);
                         const Float3 m = layers.normal[there], q = layers.position[there];
                         const float alike = std::max(0.0f, dot(n, m));
                         // Off the plane by more than a few pixels' width: another surface.

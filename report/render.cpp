@@ -307,8 +307,9 @@ Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uin
                 float hits = 0;
                 for (std::uint32_t k = 0; k < side * side; ++k) {
                     const Point2 jitter = inside(k);
-                    const float u = static_cast<float>(x) + (static_cast<float>(k % side) + jitter.x) / side;
-                    const float v = static_cast<float>(y) + (static_cast<float>(k / side) + jitter.y) / side;
+                    const std::uint32_t column = k % side, row = k / side;
+                    const float u = static_cast<float>(x) + (static_cast<float>(column) + jitter.x) / side;
+                    const float v = static_cast<float>(y) + (static_cast<float>(row) + jitter.y) / side;
                     const Float3 direction =
                         view.camera.direction(u / static_cast<float>(width), v / static_cast<float>(height));
                     const Shade s = shade(view, direction, here, k);

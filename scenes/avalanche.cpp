@@ -147,7 +147,7 @@ void Avalanche::State::add_shapes() {
     Random random(options.seed);
     const double middle = (side - 1) / 2.0;
     for (std::uint32_t i = 0; i < options.bodies; ++i) {
-        const double ix = i % side, iy = (i / side) % side, iz = i / (side * side);
+        const std::uint32_t ix = i % side, iy = (i / side) % side, iz = i / (side * side);
         const double dx = random.symmetric(), dy = random.symmetric();
         const Vec3 position{(ix - middle) * options.spacing + 0.02 * dx, (iy - middle) * options.spacing + 0.02 * dy,
                             0.75 + iz * options.spacing};

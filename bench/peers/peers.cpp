@@ -5,7 +5,7 @@ namespace raycontact::bench {
 
 namespace {
 
-[[maybe_unused]] Entrant not_built(std::string name, std::string what, std::string package) {
+[[maybe_unused]] Entrant not_built(std::string name, std::string what, const std::string& package) {
     Entrant entrant;
     entrant.name = std::move(name);
     entrant.why_not = what + " was not found when this program was built; install " + package + " and build again";

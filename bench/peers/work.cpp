@@ -133,7 +133,8 @@ Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& sha
     std::vector<Path> paths(options.pairs);
     for (std::uint32_t i = 0; i < options.pairs; ++i) {
         Path& path = paths[i];
-        path.home = {cell * (i % 4), cell * (i / 4 % 4), cell * (i / 16)};
+        const std::uint32_t column = i % 4, row = i / 4 % 4, layer = i / 16;
+        path.home = {cell * column, cell * row, cell * layer};
         path.way = random_direction(random);
         path.spin_a = random_direction(random);
         path.spin_b = random_direction(random);

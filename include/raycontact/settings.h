@@ -34,23 +34,23 @@ struct Settings {
     Direction direction = Direction::reprojected;
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
-    /// its size, its speed and the counted cost of either kind of step, and chosen again as it moves. With `certified`
-    /// no contact depends on it.
+    /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and chosen
+    /// again as it moves. With `certified` no contact depends on it.
     std::optional<double> displacement_threshold;
     /// How far ahead of a vertex its predictive ray looks, in displacement thresholds; at least 1 (paper equation 1).
     double confidence = 2;
     /// The same in metres, in place of confidence x displacement threshold.
     std::optional<double> culling_distance;
-    /// Metres by which `predictive` widens the bounds whose vertices it looks at (paper section 3.1); at least the
-    /// displacement threshold. Empty: the culling distance.
+    /// Metres by which `predictive` widens the bounds whose vertices it looks at (paper section 3.1); not below a
+    /// displacement threshold that is given, too. Empty: the culling distance.
     std::optional<double> distance_extension;
     /// Triangles a ray may visit when it is followed from step to step (maxIt of Algorithm 1); at least 1.
     std::uint32_t max_iterations = 16;
-    /// Where a walk ends nowhere, cast that ray in full instead of giving it up; counted in StepStats.
+    /// Where a walk of `predictive` ends nowhere, cast that ray in full instead of giving it up; counted in StepStats.
     bool cast_lost_walks = true;
 
-    /// Leave out the rays of vertices that a mesh's outside grid knows to be outside (caster bvh; docs/design.md). No
-    /// contact depends on it; off, every ray is cast.
+    /// Of `standard` with caster bvh: leave out the rays of vertices that a mesh's outside grid knows to be outside
+    /// (docs/design.md). No contact depends on it; off, every ray is cast.
     bool skip_outside = true;
     std::string device = "auto"; ///< "auto", "cpu" or "cpu/k" (the k-th core alone)
     std::uint32_t threads = 0;   ///< of the CPU device; 0: one per core. No count changes a bit of the result

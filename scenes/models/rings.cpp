@@ -26,9 +26,13 @@ std::vector<std::uint32_t> share_out(std::uint32_t total, const std::vector<doub
 void stitch(Mesh& mesh, const Ring& a, const Ring& b, std::uint32_t b_start) {
     const auto a_count = static_cast<std::uint32_t>(a.turn.size()), b_count = static_cast<std::uint32_t>(b.turn.size());
     const double shift = b_start == 0 ? 0 : a.turn[0] - b.turn[b_start];
-    const auto a_turn = [&](std::uint32_t i) { return a.turn[i % a_count] + i / a_count; };
+    const auto a_turn = [&](std::uint32_t i) {
+        const std::uint32_t rounds = i / a_count;
+        return a.turn[i % a_count] + rounds;
+    };
     const auto b_turn = [&](std::uint32_t j) {
-        return b.turn[(b_start + j) % b_count] + (b_start + j) / b_count + shift;
+        const std::uint32_t rounds = (b_start + j) / b_count;
+        return b.turn[(b_start + j) % b_count] + rounds + shift;
     };
     const auto a_point = [&](std::uint32_t i) { return a.first + i % a_count; };
     const auto b_point = [&](std::uint32_t j) { return b.first + (b_start + j) % b_count; };

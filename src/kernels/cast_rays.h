@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays from the vertices of one mesh along their inward normals into the other (Hermann et al. 2008; paper
 // section 2.1).
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define SIDE_DIRECTIONS 4
 #define PROBE_TOLERANCES 32768.0f // length of a short ray: a thirty-second of the box diagonal
@@ -140,3 +141,4 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         }
     }
 }
+// NOLINTEND(modernize-use-using)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which vertices of the source lie inside the target's bounds? Clusters of sixteen blocks first, then blocks of
 // sixteen vertices, then one dense queue of rays (the paper's padded grid, Fig. 6, would waste lanes).
+// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
 
 // The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
 typedef struct {
@@ -245,3 +246,4 @@ KERNEL void write_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters
         }
     }
 }
+// NOLINTEND(modernize-use-using,modernize-use-nullptr)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3), and
 // predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-// Where a ray begins that is not followed: in full, or only ahead, its vertex being known to be outside.
+// Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
 #define IN_FULL NONE
 #define AHEAD_ONLY 0xfffffffeu
 
@@ -117,7 +118,7 @@ DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RE
     return passage;
 }
 
-// Algorithm 1: from the last triangle over neighbours, nearest edge first, until the line passes through one that it
+// Algorithm 1: from the last triangle over neighbours, across the edge that the line passes farthest beyond, until the line passes through one that it
 // leaves through. Ends after max_iterations, at a border, and where it would turn back.
 DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_iterations, const uint predictive,
                     float culling, GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Face* RESTRICT faces,
@@ -333,3 +334,4 @@ KERNEL void write_candidates(RANGE uint count, GLOBAL const uint* RESTRICT range
         }
     }
 }
+// NOLINTEND(modernize-use-using)

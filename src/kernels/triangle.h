@@ -3,6 +3,7 @@
 // functions. Two facts make it exact in float32, given the sheared coordinates, which neighbours share:
 // rounding is monotone, so fl(a) - fl(b) has the sign of a - b unless it is 0; and product_error() gives what the
 // rounding of a product lost, which decides the rest.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 typedef struct {
     float origin[3]; // permuted: x, y, z with z the largest component of the direction
@@ -140,3 +141,4 @@ DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const 
     }
     return pack_sixteen(hit);
 }
+// NOLINTEND(modernize-use-using)

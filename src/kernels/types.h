@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 #define TRIANGLE_LANES 16
 #define NODE_LANES 16
 #define VERTEX_LANES 16
@@ -69,7 +70,7 @@ typedef struct {
     float grid_scale;       // cells a metre
     uint face_first;
     uint clearance_first;   // words of clearances, x fastest
-    uint clearance_size[3]; // cells; 0: none
+    uint clearance_size[3]; // cells
     float clearance_low[3], clearance_high[3]; // a box around that of the shape
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
@@ -177,3 +178,4 @@ typedef struct {
     Packed3 normal; // of the face, target frame
 } LocalContact;
 WIRE_SIZE(LocalContact, 32);
+// NOLINTEND(modernize-use-using)

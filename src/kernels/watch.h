@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
 // once the pair has moved as far as its nearest vertex was from touching.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
 #define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
@@ -218,3 +219,4 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         }
     }
 }
+// NOLINTEND(modernize-use-using)

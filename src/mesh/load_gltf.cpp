@@ -179,11 +179,12 @@ private:
             if (known_[static_cast<std::size_t>(up)]) break;
             chain.push_back(static_cast<std::size_t>(up));
         }
-        for (auto node = chain.rbegin(); node != chain.rend(); ++node) {
-            const Matrix local = local_matrix(*node);
-            const int parent = parents_[*node];
-            to_root_[*node] = parent < 0 ? local : multiply(to_root_[static_cast<std::size_t>(parent)], local);
-            known_[*node] = 1;
+        std::reverse(chain.begin(), chain.end());
+        for (const std::size_t node : chain) {
+            const Matrix local = local_matrix(node);
+            const int parent = parents_[node];
+            to_root_[node] = parent < 0 ? local : multiply(to_root_[static_cast<std::size_t>(parent)], local);
+            known_[node] = 1;
         }
         return to_root_[n];
     }

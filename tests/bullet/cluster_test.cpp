@@ -42,7 +42,7 @@ TEST(ChoosePoints, ThosePresentStayWhileAsGood) {
     std::vector<Applicant> all;
     for (int k = 0; k < 8; ++k) {
         // Two nearly equal points at each corner of a square; the second of each was there before.
-        const double x = k / 2 % 2, y = k / 4;
+        const int x = k / 2 % 2, y = k / 4;
         all.push_back(point(x + 0.01 * (k % 2 ? 0 : x - 0.5), y, 0.01, k % 2 == 1));
     }
     EXPECT_EQ(choose_points(all), (std::vector<int>{1, 3, 5, 7}));

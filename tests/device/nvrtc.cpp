@@ -103,6 +103,7 @@ std::string Nvrtc::compile(const std::string& text, const std::vector<std::strin
     const std::unique_ptr<void, decltype(destroy)> program(made, destroy);
 
     std::vector<const char*> given;
+    given.reserve(options.size());
     for (const std::string& option : options) given.push_back(option.c_str());
     const int status = api_->compile(made, static_cast<int>(given.size()), given.data());
     std::size_t size = 0;

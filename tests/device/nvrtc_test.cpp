@@ -89,7 +89,7 @@ TEST(nvrtc, fast_division_and_flushing_are_noticed) {
         std::vector<std::string> options = target("90");
         for (const std::string& option : exact_options)
             if (!option.starts_with(std::string(wrong).substr(0, 6))) options.push_back(option);
-        options.push_back(wrong);
+        options.emplace_back(wrong);
         EXPECT_FALSE(without_intended_fma(options).inexact.empty()) << wrong;
     }
 }

@@ -30,7 +30,8 @@ std::string text_of(cl_device_id device, cl_device_info what) {
     check(clGetDeviceInfo(device, what, 0, nullptr, &size), "clGetDeviceInfo");
     std::string text(size, '\0');
     check(clGetDeviceInfo(device, what, size, text.data(), nullptr), "clGetDeviceInfo");
-    return text.c_str();
+    text.resize(text.find_last_not_of('\0') + 1);
+    return text;
 }
 
 OpenClInfo describe(cl_device_id id) {
@@ -93,7 +94,8 @@ private:
         if (status == CL_SUCCESS) return;
         std::string log(1 << 16, '\0');
         clGetProgramBuildInfo(program_.get(), device, CL_PROGRAM_BUILD_LOG, log.size(), log.data(), nullptr);
-        throw std::runtime_error("clBuildProgram: OpenCL error " + std::to_string(status) + "\n" + log.c_str());
+        log.resize(log.find_last_not_of('\0') + 1);
+        throw std::runtime_error("clBuildProgram: OpenCL error " + std::to_string(status) + "\n" + log);
     }
 
     void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
@@ -114,7 +116,7 @@ private:
         for (std::size_t i = 0; i < arguments.size(); ++i) {
             const cl_mem memory = arguments[i].buffer ? memory_of(*arguments[i].buffer) : nullptr;
             const auto at = static_cast<cl_uint>(i + 1);
-            check(memory ? clSetKernelArg(kernel, at, sizeof memory, &memory)
+            check(memory ? clSetKernelArg(kernel, at, sizeof(cl_mem), &memory)
                          : clSetKernelArg(kernel, at, sizeof arguments[i].scalar, &arguments[i].scalar),
                   kernel_name(id));
         }
@@ -170,6 +172,7 @@ std::vector<OpenClInfo> opencl_parts(const OpenClInfo& device) {
     std::vector<cl_device_id> ids(count);
     check(clCreateSubDevices(device.id, equally, count, ids.data(), nullptr), "clCreateSubDevices");
     std::vector<OpenClInfo> parts;
+    parts.reserve(count);
     for (cl_device_id id : ids) parts.push_back(describe(id));
     return parts;
 }

@@ -6,6 +6,7 @@
 #include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
 #include "rays/certified.h"
+#include "rays/coherent.h"
 #include "rays/standard.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -53,6 +54,33 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
         for (kernels::LocalContact& contact : contacts)
             contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * first_pair);
         outcome.watched = contacts;
+    }
+}
+
+// Full looks, walks, and walks that are lost and cast again, by both casters.
+void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
+                  std::size_t last) {
+    Executor executor(1);
+    for (const Caster caster : {Caster::bvh, Caster::basic}) {
+        std::vector<PlacedBody> bodies = work.bodies;
+        std::vector<Pair> pairs;
+        for (std::size_t i = (first + 1) / 2; i < (last + 1) / 2; ++i)
+            pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
+        Settings settings;
+        settings.method = Method::predictive;
+        settings.caster = caster;
+        settings.displacement_threshold = 0.02;
+        settings.max_iterations = 2;
+        Motion motion;
+        CoherentRays coherent;
+        for (const double by : {0.0, 0.01, 0.005, 0.1}) {
+            for (std::size_t i = 0; i < bodies.size(); i += 2) {
+                bodies[i].pose.translation.x += by;
+                bodies[i].centred.translation.x += by;
+            }
+            motion.update(executor, bodies);
+            coherent.follow(tracing, executor, store, bodies, pairs, motion, settings);
+        }
     }
 }
 
@@ -107,6 +135,7 @@ Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::s
     for (kernels::LocalContact& contact : outcome.contacts) contact.pair += static_cast<kernels::uint>(first);
     outcome.rays = queue.rays().size();
     run_certified(tracing, store, work, first, last, outcome);
+    run_coherent(tracing, store, work, first, last);
     outcome.trace = tracing.trace();
     return outcome;
 }

@@ -28,7 +28,7 @@ std::string refused(const std::filesystem::path& file) {
     try {
         prepare_mesh(load_mesh(file));
     } catch (const InputError& error) {
-        const std::string line = error.what();
+        std::string line = error.what();
         EXPECT_EQ(line.find_first_of("\n\r"), std::string::npos) << line;
         EXPECT_NE(line.find(file.filename().string()), std::string::npos) << line;
         EXPECT_LT(line.size(), 400u) << line;

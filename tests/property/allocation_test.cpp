@@ -47,7 +47,8 @@ void move(Scene& scene, int step) {
     const int phase = step % 16;
     for (BodyId body = 0; body < 64; ++body) {
         const double sway = 0.02 * (phase < 8 ? phase : 16 - phase);
-        const Vec3 at{0.7 * (body % 4) + sway, 0.7 * (body / 4 % 4) - sway, 0.7 * (body / 16)};
+        const BodyId column = body % 4, row = body / 4 % 4, layer = body / 16;
+        const Vec3 at{0.7 * column + sway, 0.7 * row - sway, 0.7 * layer};
         scene.set_pose(body, pose_from_quaternion(at, 1, 0.1 * body, sway, 0.3));
     }
 }

@@ -205,16 +205,16 @@ void play(const Episode& episode, Counts& counts) {
 }
 
 void report(const char* what, const Counts& c, double wanted) {
+    const std::uint64_t wrong = c.missed + c.invented + c.other;
     std::printf("[ counts   ] %s: %llu decisions in %llu steps of %llu scenes, %llu contacts; certified cast %.2f %%, "
                 "%.1f %% of the pairs asleep; wrong %llu (%llu missed, %llu invented, %llu other)\n",
                 what, static_cast<unsigned long long>(c.decisions), static_cast<unsigned long long>(c.steps),
                 static_cast<unsigned long long>(c.episodes), static_cast<unsigned long long>(c.contacts),
                 c.decisions ? 100.0 * static_cast<double>(c.cast) / static_cast<double>(c.decisions) : 0.0,
                 c.pairs ? 100.0 * static_cast<double>(c.asleep) / static_cast<double>(c.pairs) : 0.0,
-                static_cast<unsigned long long>(c.missed + c.invented + c.other),
-                static_cast<unsigned long long>(c.missed), static_cast<unsigned long long>(c.invented),
-                static_cast<unsigned long long>(c.other));
-    EXPECT_EQ(c.missed + c.invented + c.other, 0u) << c.first;
+                static_cast<unsigned long long>(wrong), static_cast<unsigned long long>(c.missed),
+                static_cast<unsigned long long>(c.invented), static_cast<unsigned long long>(c.other));
+    EXPECT_EQ(wrong, 0u) << c.first;
     EXPECT_GE(static_cast<double>(c.decisions), wanted);
     EXPECT_GT(c.contacts, 0u);
 }
@@ -477,11 +477,11 @@ void strike(Random& random, Counts& counts, std::uint64_t number) {
         const double to = std::fabs(1 - static_cast<double>(step) / steps); // 1 -> 0 -> 1
         const double height =
             step < 0 ? (step % 2 ? 1 : 1000) * scale * (swing ? 1e-3 : 1) : way * (1.03 * to - 0.03 * random.uniform());
-        auto [pose_face, pose_vertex] = poses_at(height);
-        if (shear) pose_face = sheared(pose_face, random), pose_vertex = sheared(pose_vertex, random);
+        auto poses = poses_at(height);
+        if (shear) poses = {sheared(poses.first, random), sheared(poses.second, random)};
         triplet.each([&](Scene& scene) {
-            scene.set_pose(of_face, pose_face);
-            scene.set_pose(of_vertex, pose_vertex);
+            scene.set_pose(of_face, poses.first);
+            scene.set_pose(of_vertex, poses.second);
         });
         triplet.step(counts, pair);
     }

@@ -50,8 +50,8 @@ TEST(inside, every_contact_by_exact_predicates) {
     Random random(41);
     std::uint64_t inside = 0;
     std::uint64_t near = 0;
-    std::vector<Placement> placements;
-    for (int i = 0; i < 1000; ++i) placements.push_back(random_placement(pointers(closed_subjects()), random));
+    std::vector<Placement> placements(1000);
+    for (Placement& p : placements) p = random_placement(pointers(closed_subjects()), random);
     Scene scene;
     const auto parts = by_pair(scene.step(add_all(scene, placements)), placements.size());
     for (std::size_t i = 0; i < placements.size(); ++i)

@@ -41,6 +41,7 @@ const std::vector<Subject>& open_subjects() {
 
 std::vector<const Subject*> pointers(const std::vector<Subject>& subjects) {
     std::vector<const Subject*> list;
+    list.reserve(subjects.size());
     for (const Subject& subject : subjects) list.push_back(&subject);
     return list;
 }

@@ -74,8 +74,8 @@ void report(const Counts& c) {
 TEST(shift, of_both_poses_by_ten_kilometres) {
     Random random(31);
     Counts counts;
-    std::vector<Placement> placements;
-    for (int i = 0; i < 400; ++i) placements.push_back(random_placement(pointers(closed_subjects()), random));
+    std::vector<Placement> placements(400);
+    for (Placement& p : placements) p = random_placement(pointers(closed_subjects()), random);
     for (const Vec3& shift : {Vec3{10000, 0, 0}, Vec3{-6000, 7000, -4000}}) {
         std::vector<Placement> moved_placements = placements;
         for (Placement& p : moved_placements) {

@@ -57,7 +57,7 @@ TEST_P(ReplayOfMethod, ReproducesTheHash) {
     const json all_rays = replayed({"a.glb", "--method", "standard"});
     for (const char* other : {"", "--caster=basic", "--threads=1"}) {
         std::vector<std::string> words{"a.glb", "--compare", "standard"};
-        if (*other != 0) words.push_back(other);
+        if (*other != 0) words.emplace_back(other);
         const json again = replayed(words);
         for (const char* key :
              {"scene", "seed", "steps", "bodies", "pairs_max", "contacts", "ray_length", "penetration_max", "method",

@@ -5,6 +5,9 @@
 #include <scenes/models/model.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -121,6 +124,11 @@ bool same_bits(std::span<const T> p, std::span<const T> q) {
     return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size_bytes()) == 0);
 }
 
+bool same_bits(const Pose& p, const Pose& q) {
+    using Bits = std::array<std::uint64_t, sizeof(Pose) / sizeof(double)>;
+    return std::bit_cast<Bits>(p) == std::bit_cast<Bits>(q);
+}
+
 bool same_shape(const Shape& p, const Shape& q) {
     return p.name() == q.name() && to_json(p.report()) == to_json(q.report()) && p.centre() == q.centre()
            && p.radius() == q.radius() && same_bits(p.vertices(), q.vertices())
@@ -164,7 +172,7 @@ std::string difference(const Sample& sample, Reader& reader, std::uint32_t steps
             }
             if (reader.bodies()[id].shape != body.shape) return "shape of a body" + at;
             if (reader.bodies()[id].alive(i) != body.alive(i)) return "life of a body" + at;
-            if (body.alive(i) && std::memcmp(&poses[id], &sample.poses[i][id], sizeof(Pose)) != 0) return "pose" + at;
+            if (body.alive(i) && !same_bits(poses[id], sample.poses[i][id])) return "pose" + at;
         }
     }
     return {};

@@ -211,6 +211,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         const bool was_empty = m.getNumContacts() == 0;
 
         std::vector<PointKey> wanted;
+        wanted.reserve(chosen.size() + patch.held.size());
         for (const int i : chosen) wanted.push_back(candidates[patch.members[static_cast<std::size_t>(i)]].key);
         for (const std::size_t i : patch.held) wanted.push_back(old[i].key);
         // Survivors are written first so that the manifold never runs empty in between: that would be an "ended" event.

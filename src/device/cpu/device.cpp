@@ -42,8 +42,9 @@ kernels::uint grain_of(KernelId kernel) {
         return 4;
     case KernelId::cast_rays_bvh:
     case KernelId::follow_rays_bvh:
-    case KernelId::look_at_watches:
         return 128;
+    case KernelId::look_at_watches:
+        return 16;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
     case KernelId::count_rays:

@@ -36,7 +36,8 @@ scenes::RunLog small_log() {
         frame.step = step;
         for (int body = 0; body < 9; ++body) {
             Pose pose = pose_from_quaternion({}, 1, 0.3 * body, 0.1 * step, 0.2);
-            pose.translation = {body % 3 * 1.1, body / 3 * 1.1, 3 - 0.12 * step};
+            const int column = body % 3, row = body / 3;
+            pose.translation = {1.1 * column, 1.1 * row, 3 - 0.12 * step};
             frame.poses.push_back(pose);
         }
         frame.poses.emplace_back();
@@ -79,11 +80,11 @@ protected:
 TEST_F(Report, IsOneFileWithTheNumbersOfTheLog) {
     write_report(folder_ / "deep" / "down", small_log());
     const std::string html = bytes_of(folder_ / "deep" / "down" / "report.html");
+    const char* const command = "raycontact run avalanche --bodies 9 --steps 20 --seed 77 --method standard "
+                                "--caster bvh --direction reprojected --devices cpu --out DIR";
     for (const char* text : {"Avalanche: 9 concave meshes", "a gear &lt;of the test&gt;", "1234", "56789", "4326",
                              "12.625", "7.375", "3.0625", "15.625", "2.03125", "1\u202f135\u202f970",
-                             "00ff00ff00ff00ff", "unheard_of", "&lt;b&gt;kept&lt;/b&gt;", "step 19, 0.3 s",
-                             "raycontact run avalanche --bodies 9 --steps 20 --seed 77 --method standard --caster bvh "
-                             "--direction reprojected --devices cpu --out DIR"})
+                             "00ff00ff00ff00ff", "unheard_of", "&lt;b&gt;kept&lt;/b&gt;", "step 19, 0.3 s", command})
         EXPECT_NE(html.find(text), std::string::npos) << text;
     // Nothing may come from elsewhere: no address at all, and every source is inline.
     for (const char* text : {"http:", "https:", "//www", "@import", "url(", "<b>kept"})
