@@ -114,6 +114,7 @@ std::uint64_t Work::pair_steps() const {
 
 std::unique_ptr<Scene> make_scene(const Work& work, Caster caster) {
     Settings settings;
+    settings.method = Method::standard; // the peers keep nothing from step to step: the same rays for all
     settings.caster = caster;
     settings.threads = 1;
     auto scene = std::make_unique<Scene>(settings);
