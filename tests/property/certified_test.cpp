@@ -558,7 +558,7 @@ TEST(certified, packed_shapes) {
     for (std::uint64_t i = 0; i < 20; ++i) {
         Random random(first_seed() + 600000 + i);
         Triplet triplet(some_settings(random), 1e-2, "packed shapes " + std::to_string(i));
-        std::vector<BodyId> ballast;
+        std::vector<BodyId> ballast(4);
         const auto add = [&](const std::shared_ptr<const Shape>& shape, const Pose& pose) {
             BodyId id = 0;
             triplet.each([&](Scene& scene) { id = scene.add(shape, pose); });
@@ -566,7 +566,8 @@ TEST(certified, packed_shapes) {
         };
         Pose away;
         away.translation = {1000, 0, 0};
-        for (int k = 0; k < 4; ++k) ballast.push_back(add(Shape::make(model_mesh(k % 2 ? "gear" : "knot")), away));
+        for (std::size_t k = 0; k < ballast.size(); ++k)
+            ballast[k] = add(Shape::make(model_mesh(k % 2 ? "gear" : "knot")), away);
         std::vector<std::shared_ptr<const Shape>> shapes;
         for (const Mesh& mesh : {bumpy_octahedron_mesh(5), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()})
             for (int k = 0; k < 2; ++k) shapes.push_back(Shape::make(mesh));
