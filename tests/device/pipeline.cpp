@@ -27,60 +27,65 @@ PlacedBody place(const Work& work, std::size_t shape, const Pose& pose) {
     return body;
 }
 
-// A first look, a look at blocks that woke up, and new lists in the place of old ones.
-void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
-                   std::size_t last, Outcome& outcome) {
+// The pairs of [first, last) that are there in both directions.
+std::vector<Pair> whole_pairs(std::size_t first, std::size_t last) {
+    std::vector<Pair> pairs;
+    for (std::size_t i = (first + 1) / 2; i < (last + 1) / 2; ++i)
+        pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
+    return pairs;
+}
+
+// Three steps: where the bodies are, a little farther, and so far that what was kept has run out.
+template <class Step>
+void three_steps(const Work& work, Step step) {
     Executor executor(1);
     std::vector<PlacedBody> bodies = work.bodies;
-    std::vector<Pair> pairs;
-    const std::size_t first_pair = (first + 1) / 2;
-    for (std::size_t i = first_pair; i < (last + 1) / 2; ++i)
-        pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
     Motion motion;
-    CertifiedRays certified;
-    Gather gather;
-    Array<kernels::Hit> hits;
     for (const double by : {0.0, 0.004, 0.1}) {
         for (std::size_t i = 0; i < bodies.size(); i += 2) {
             bodies[i].pose.translation.x += by;
             bodies[i].centred.translation.x += by;
         }
         motion.update(executor, bodies);
+        step(executor, bodies, motion, by == 0);
+    }
+}
+
+// A first look, a look at blocks that woke up, and new lists in the place of old ones.
+void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
+                   std::size_t last, Outcome& outcome) {
+    const std::vector<Pair> pairs = whole_pairs(first, last);
+    CertifiedRays certified;
+    Gather gather;
+    Array<kernels::Hit> hits;
+    three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
         cast_standard(tracing, Caster::bvh, store.arrays(), certified.pairs(), certified.rays(), hits);
         std::vector<kernels::LocalContact> contacts;
         gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), hits, contacts);
-        if (by > 0) continue;
+        if (!begin) return;
         for (kernels::LocalContact& contact : contacts)
-            contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * first_pair);
+            contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * ((first + 1) / 2));
         outcome.watched = contacts;
-    }
+    });
 }
 
-// Full looks, walks, and walks that are lost and cast again, by both casters.
+// Rays in full, rays followed, and rays in full again; by either caster.
 void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
                   std::size_t last) {
-    Executor executor(1);
+    const std::vector<Pair> pairs = whole_pairs(first, last);
     for (const Caster caster : {Caster::bvh, Caster::basic}) {
-        std::vector<PlacedBody> bodies = work.bodies;
-        std::vector<Pair> pairs;
-        for (std::size_t i = (first + 1) / 2; i < (last + 1) / 2; ++i)
-            pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
         Settings settings;
         settings.method = Method::predictive;
         settings.caster = caster;
-        settings.displacement_threshold = 0.02;
-        settings.max_iterations = 2;
-        Motion motion;
+        settings.displacement_threshold = 0.05;
         CoherentRays coherent;
-        for (const double by : {0.0, 0.01, 0.005, 0.1}) {
-            for (std::size_t i = 0; i < bodies.size(); i += 2) {
-                bodies[i].pose.translation.x += by;
-                bodies[i].centred.translation.x += by;
-            }
-            motion.update(executor, bodies);
+        Gather gather;
+        three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool) {
             coherent.follow(tracing, executor, store, bodies, pairs, motion, settings);
-        }
+            std::vector<kernels::LocalContact> contacts;
+            gather.run(tracing, store.arrays(), coherent.pairs(), coherent.rays(), coherent.hits(), contacts);
+        });
     }
 }
 

@@ -31,8 +31,8 @@ struct Outcome {
     std::uint64_t side_tests = 0;
 };
 
-/// Every kernel of a step, both casters, on pairs [first, last) of the work; then some steps of the certified and
-/// of the predictive method.
+/// Every kernel of a step, both casters, on pairs [first, last) of the work; then some steps of the certified
+/// and of the predictive method.
 Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::size_t last);
 Outcome run_pipeline(Device& device, const Work& work);
 /// The same on the CPU device, one thread. instruction_set: of cpu::usable_tables(), empty for the widest.
