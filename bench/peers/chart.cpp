@@ -159,11 +159,13 @@ std::string line_chart(const std::vector<Panel>& panels) {
     constexpr double left = 56, width = 330, height = 260, top = 56, pitch_x = left + width + 34,
                      pitch_y = top + height + 50;
     std::string svg;
-    for (std::size_t k = 0; k < panels.size(); ++k)
+    for (std::size_t k = 0; k < panels.size(); ++k) {
+        const std::size_t row = k / 2;
         svg += panel_svg(panels[k], left + pitch_x * static_cast<double>(k % 2),
-                         top + pitch_y * static_cast<double>(k / 2), width, height);
-    const auto rows = static_cast<double>((panels.size() + 1) / 2);
-    return document(pitch_x * (panels.size() > 1 ? 2 : 1) + 10, pitch_y * rows, svg);
+                         top + pitch_y * static_cast<double>(row), width, height);
+    }
+    const std::size_t rows = (panels.size() + 1) / 2;
+    return document(pitch_x * (panels.size() > 1 ? 2 : 1) + 10, pitch_y * static_cast<double>(rows), svg);
 }
 
 } // namespace raycontact::bench

@@ -177,6 +177,7 @@ std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entran
         }
     }
     std::vector<Result> results;
+    results.reserve(runners.size());
     for (const Runner& runner : runners) results.push_back(figures(work, runner, runners));
     return results;
 }

@@ -47,7 +47,7 @@ std::filesystem::path write_both(const std::filesystem::path& folder, const Mach
     std::error_code error;
     std::filesystem::create_directories(where, error);
     if (error) throw InputError("--out " + folder.string() + ": cannot be made a folder; name another");
-    const std::filesystem::path file = where / (name + "-" + machine.date + ".csv");
+    std::filesystem::path file = where / (name + "-" + machine.date + ".csv");
     write_file(file, csv);
     write_file(where / (name + "-" + machine.date + ".svg"), svg);
     return file;
