@@ -48,11 +48,32 @@ DEVICE RayFrame opposite_frame(const SourceRay* ray) {
 
 // The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
 // (paper equation 1), where the ray is cut (paper section 5.3).
-DEVICE uint predict(const uint caster, const SourceRay* ray, float culling, GLOBAL const ShapeHeader* RESTRICT shape,
-                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    const RayFrame frame = opposite_frame(ray);
-    const Closest ahead = traverse(caster, &frame, culling, shape, nodes, blocks);
-    return ahead.back <= culling && ahead.back <= ahead.front ? ahead.back_triangle : NONE;
+DEVICE uint predicted(const Closest* ahead, float culling) {
+    return ahead->back <= culling && ahead->back <= ahead->front ? ahead->back_triangle : NONE;
+}
+
+// The ray in full, and where it is no contact what lies ahead. `own`: whether the vertex may be in contact at all.
+DEVICE Outcome cast_both(const uint caster, const SourceRay* ray, uint own, const uint predictive, float culling,
+                         GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
+                         GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+    Outcome end;
+    end.how = CAST;
+    if (caster == CASTER_BASIC && predictive != 0u) {
+        const RayFrame frame = frame_ray(ray->position, ray->direction), opposite = opposite_frame(ray);
+        Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
+        traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, blocks);
+        end.hit = own != 0u ? decide(caster, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
+        end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
+        return end;
+    }
+    end.hit = own != 0u ? cast_ray(caster, ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.next = end.hit.triangle;
+    if (end.next == NONE && predictive != 0u) {
+        const RayFrame opposite = opposite_frame(ray);
+        const Closest ahead = traverse(caster, &opposite, culling, shape, nodes, blocks);
+        end.next = predicted(&ahead, culling);
+    }
+    return end;
 }
 
 // One step of a walk: where the ray's line passes, as seen from one triangle.
@@ -144,16 +165,16 @@ DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, u
                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
                           GLOBAL const Packed3* RESTRICT normals) {
-    Outcome end;
-    end.how = 0u;
+    uint how = 0u;
     if (start < AHEAD_ONLY) {
-        end = walk(&ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
-        if ((end.how & LOST) == 0u || cast_lost == 0u) return end;
+        const Outcome end =
+            walk(&ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
+        how = end.how;
+        if ((how & LOST) == 0u || cast_lost == 0u) return end;
     }
-    end.how |= CAST;
-    end.hit = start != AHEAD_ONLY && inside != 0u ? cast_ray(caster, &ray, shape, nodes, blocks, normals) : no_hit(0u);
-    end.next = end.hit.triangle;
-    if (end.next == NONE && predictive != 0u) end.next = predict(caster, &ray, culling, shape, nodes, blocks);
+    Outcome end = cast_both(caster, &ray, start != AHEAD_ONLY ? inside : 0u, predictive, culling, shape, nodes, blocks,
+                            normals);
+    end.how |= how;
     return end;
 }
 

@@ -120,14 +120,15 @@ typedef struct {
 } Followed;
 WIRE_SIZE(Followed, 20);
 
-// A vertex block that its pair watches: nothing in it can touch before the pair's clock exceeds `wake`. lanes: the
-// vertices that cast a ray, valid in a step that looked at it.
+// A vertex block that its pair watches. lanes: vertices that could be in contact; the others cannot before the pair's clock
+// exceeds `wake`. cast: those of lanes that cast a ray in this step.
 typedef struct {
     uint vertex_block; // absolute
     float wake;        // metres
     uint lanes;
+    uint cast;
 } Watch;
-WIRE_SIZE(Watch, 12);
+WIRE_SIZE(Watch, 16);
 
 // Part of a pair's watches. margin: metres of rounding that a certificate must exceed.
 typedef struct {

@@ -2,6 +2,7 @@
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
 // once the pair has moved as far as its nearest vertex was from touching.
 
+#define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
 #define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
 
 typedef struct {
@@ -12,7 +13,7 @@ typedef struct {
 
 // A clearance grid, without its balls.
 typedef struct {
-    float low[3], high[3]; // a box around that of the shape
+    float low_x, low_y, low_z, high_x, high_y, high_z; // a box around that of the shape
     float scale, cell, unit;
     uint size_x, size_y;
     uint outward;
@@ -20,8 +21,12 @@ typedef struct {
 
 DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
     Clearance grid;
-    for (int i = 0; i < 3; ++i) grid.low[i] = shape->clearance_low[i];
-    for (int i = 0; i < 3; ++i) grid.high[i] = shape->clearance_high[i];
+    grid.low_x = shape->clearance_low[0];
+    grid.low_y = shape->clearance_low[1];
+    grid.low_z = shape->clearance_low[2];
+    grid.high_x = shape->clearance_high[0];
+    grid.high_y = shape->clearance_high[1];
+    grid.high_z = shape->clearance_high[2];
     grid.scale = shape->clearance_scale;
     grid.cell = shape->clearance_cell;
     grid.unit = shape->clearance_unit;
@@ -33,29 +38,29 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
 
 // No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of its
 // surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance* grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
+DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
                            float reach) {
     // The nearest point of the box; NaN takes its lower corner.
-    const float up_x = x >= grid->low[0] ? x : grid->low[0], up_y = y >= grid->low[1] ? y : grid->low[1];
-    const float up_z = z >= grid->low[2] ? z : grid->low[2];
-    const float px = up_x <= grid->high[0] ? up_x : grid->high[0], py = up_y <= grid->high[1] ? up_y : grid->high[1];
-    const float pz = up_z <= grid->high[2] ? up_z : grid->high[2];
+    const float up_x = x >= grid.low_x ? x : grid.low_x, up_y = y >= grid.low_y ? y : grid.low_y;
+    const float up_z = z >= grid.low_z ? z : grid.low_z;
+    const float px = up_x <= grid.high_x ? up_x : grid.high_x, py = up_y <= grid.high_y ? up_y : grid.high_y;
+    const float pz = up_z <= grid.high_z ? up_z : grid.high_z;
     const float off_x = x - px, off_y = y - py, off_z = z - pz;
     const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-    const int cx = (int)((px - grid->low[0]) * grid->scale), cy = (int)((py - grid->low[1]) * grid->scale);
-    const int cz = (int)((pz - grid->low[2]) * grid->scale);
-    const int at = (cz * (int)grid->size_y + cy) * (int)grid->size_x + cx;
+    const int cx = (int)((px - grid.low_x) * grid.scale), cy = (int)((py - grid.low_y) * grid.scale);
+    const int cz = (int)((pz - grid.low_z) * grid.scale);
+    const uint at = ((uint)cz * grid.size_y + (uint)cy) * grid.size_x + (uint)cx;
     const uint word = balls[at];
     const int bx = cx + (int)(word & 31u) - CLEARANCE_OFFSET, by = cy + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
     const int bz = cz + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = px - (grid->low[0] + ((float)bx + 0.5f) * grid->cell);
-    const float ay = py - (grid->low[1] + ((float)by + 0.5f) * grid->cell);
-    const float az = pz - (grid->low[2] + ((float)bz + 0.5f) * grid->cell);
-    const float ball = (float)(int)(word >> 16) * grid->unit - root_of((ax * ax + ay * ay) + az * az);
+    const float ax = px - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
+    const float ay = py - (grid.low_y + ((float)by + 0.5f) * grid.cell);
+    const float az = pz - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
+    const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
     const float away = root_of(off2 + clear * clear);
-    const uint outside = (grid->outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & ((word & CLEARANCE_OUTSIDE) >> 15));
+    const uint outside = (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
     return away - (outside != 0u ? 0.0f : reach);
 }
 
@@ -74,7 +79,7 @@ DEVICE WatchLanes watch_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL co
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
         const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        const float safe = safe_distance(&grid, balls, x, y, z, block->exit[k]);
+        const float safe = safe_distance(grid, balls, x, y, z, block->exit[k]);
         found.inside[k] = -(int)inside;
         found.safe[k] = vx == vx ? safe : UNBOUNDED; // empty lanes hold NaN
         found.x[k] = x;
@@ -102,12 +107,13 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
     const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
     const Clearance grid = clearance_of(target);
-    // Of an unknown side nothing is said: the reach of the block's rays is not.
-    return safe_distance(&grid, clearances + target->clearance_first,
+    // Of an unknown side nothing is said: the reach of the block's rays is not. Poses, rigid to 1e-4 each, may stretch
+    // the box by more than the margin, hence the half thousandth.
+    return safe_distance(grid, clearances + target->clearance_first,
                          ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
                          ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
                          ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
-           - root_of((hx * hx + hy * hy) + hz * hz);
+           - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
 }
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
@@ -127,6 +133,7 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
         watch.vertex_block = cluster.vertex_block;
         watch.wake = safe > 0.0f ? safe : AWAKE;
         watch.lanes = 0u;
+        watch.cast = 0u;
         watches[places[cluster.pair] + (i - firsts[cluster.pair])] = watch;
     }
 }
@@ -147,13 +154,13 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         uint ray_count = 0u;
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             float own = watches[i].wake;
+            uint lanes = watches[i].lanes;
             if (own <= segment.clock) {
-                WatchLanes found =
-                    watch_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
+                WatchLanes found = watch_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
                 int unsafe[VERTEX_LANES];
                 FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
                 const uint inside_mask = pack_sixteen(found.inside);
-                uint lanes = inside_mask & pack_sixteen(unsafe);
+                lanes = inside_mask & pack_sixteen(unsafe);
                 if (lanes != 0u && target->grid_size[0] != 0u) {
                     InsideLanes near;
                     FOR_LANES(k, VERTEX_LANES) {
@@ -164,14 +171,26 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                     }
                     lanes &= ~outside_lanes(&near, target, outside_cells);
                 }
-                const float least = least_of_sixteen(found.safe) - segment.margin;
+                watches[i].lanes = lanes;
+                watches[i].cast = lanes;
+                look.blocks += 1u;
+                look.inside += bit_count(inside_mask);
+                for (uint left = lanes; left != 0u; left &= left - 1u) found.safe[lowest_bit(left)] = UNBOUNDED;
+                float least = least_of_sixteen(found.safe) - segment.margin;
+                // Vertices that cast are asked again after a while whether they still must.
+                const float again = REFRESH_TOLERANCES * target->tolerance;
+                if (lanes != 0u && least > again) least = again;
                 // Never asleep, whichever way the clock was rounded.
                 own = least > 0.0f ? segment.clock + least : AWAKE;
                 watches[i].wake = own;
-                watches[i].lanes = lanes;
-                look.blocks += 1u;
-                look.inside += bit_count(inside_mask);
-                ray_count += bit_count(lanes);
+            } else if (lanes != 0u) {
+                const InsideLanes found = inside_lanes(pair, vertices + watches[i].vertex_block);
+                watches[i].cast = lanes & pack_sixteen(found.inside);
+                look.inside += bit_count(watches[i].cast);
+            }
+            if (lanes != 0u) {
+                ray_count += bit_count(watches[i].cast);
+                own = AWAKE;
             }
             if (own < look.wake) look.wake = own;
         }
@@ -180,7 +199,6 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     }
 }
 
-// A block that casts a ray is awake, so that it was looked at in this step.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
                              GLOBAL const Watch* RESTRICT watches, GLOBAL const uint* RESTRICT firsts,
                              GLOBAL Ray* RESTRICT rays) {
@@ -188,7 +206,7 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         const Segment segment = segments[s];
         uint at = firsts[s];
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
-            uint lanes = watches[i].wake == AWAKE ? watches[i].lanes : 0u;
+            uint lanes = watches[i].cast;
             while (lanes != 0u) {
                 Ray ray;
                 ray.pair = segment.pair;

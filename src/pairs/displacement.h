@@ -24,6 +24,12 @@ struct PairPlace {
     Pose pose;        ///< the first body's frame seen from the second's
     Vec3 back;        ///< the origin of the second seen from the first
     double shear = 0; ///< of the rotation
+
+    /// Bit for bit relative_pose(first, second): the products of a transpose are the same, in the same order.
+    Pose pose_of_second() const {
+        const auto& r = pose.rotation;
+        return {{r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]}, back};
+    }
 };
 PairPlace place_pair(const Pose& first, const Pose& second, double shear);
 

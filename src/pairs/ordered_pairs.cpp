@@ -19,7 +19,10 @@ float reach_into(const ShapeData& target, const ShapeData& source) {
 } // namespace
 
 kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target) {
-    const Pose relative = relative_pose(target.centred, source.centred);
+    return order_pair(source, target, relative_pose(target.centred, source.centred));
+}
+
+kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative) {
     const ShapeData& shape = target.shape->data();
     const float grow = reach_into(shape, source.shape->data());
     kernels::OrderedPair pair{};

@@ -21,6 +21,8 @@ struct PlacedBody {
 /// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is
 /// lost far from the origin.
 kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target);
+/// The same where the relative pose is known already: with the bits that relative_pose() gives.
+kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative);
 
 /// Each pair twice, a into b and b into a, in the order of `pairs`.
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,

@@ -100,7 +100,8 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             const bool from_a = active_[i] % 2 == 0;
             const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
             const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
-            host_pairs_[i] = order_pair(source, target);
+            const PairPlace& place = table_.state(active_[i] / 2).reference;
+            host_pairs_[i] = order_pair(source, target, from_a ? place.pose : place.pose_of_second());
             margins_[i] = static_cast<float>(rounding_margin(source, target));
         }
     });

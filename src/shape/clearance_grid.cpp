@@ -45,7 +45,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) extent[axis] = double(high[axis]) - double(low[axis]);
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
         // Balls follow the surface, so cells may be as long as its edges; memory stays like that of the triangles.
-        const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 1e4, 15e4);
+        const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 2e3, 15e4);
         const double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
         scale_ = static_cast<float>(1 / side);
         for (int axis = 0; axis < 3; ++axis) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <string>
 
 using namespace raycontact;
 using namespace raycontact::reference;
@@ -46,19 +47,22 @@ Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spr
 
 void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t steps, const char* golden,
                    std::uint64_t contacts) {
-    for (const Caster caster : {Caster::bvh, Caster::basic})
-        for (const std::uint32_t threads : {1u, 2u, 3u}) {
-            Settings settings;
-            settings.caster = caster;
-            settings.threads = threads;
-            const Result result = run(settings, meshes, spread, steps);
-            if (caster == Caster::bvh && threads == 1)
-                std::printf("[ counts   ] %u steps, %llu rays, %llu contacts, hash %s\n", steps,
-                            static_cast<unsigned long long>(result.rays),
-                            static_cast<unsigned long long>(result.contacts), result.hash.c_str());
-            EXPECT_EQ(result.hash, golden) << to_string(caster) << ", " << threads << " threads";
-            EXPECT_EQ(result.contacts, contacts) << to_string(caster) << ", " << threads << " threads";
-        }
+    for (const Method method : {Method::standard, Method::certified})
+        for (const Caster caster : {Caster::bvh, Caster::basic})
+            for (const std::uint32_t threads : {1u, 2u, 3u}) {
+                Settings settings;
+                settings.method = method;
+                settings.caster = caster;
+                settings.threads = threads;
+                const Result result = run(settings, meshes, spread, steps);
+                if (caster == Caster::bvh && threads == 1)
+                    std::printf("[ counts   ] %s, %u steps, %llu rays, %llu contacts, hash %s\n",
+                                std::string(to_string(method)).c_str(), steps,
+                                static_cast<unsigned long long>(result.rays),
+                                static_cast<unsigned long long>(result.contacts), result.hash.c_str());
+                EXPECT_EQ(result.hash, golden) << to_string(method) << ", " << to_string(caster) << ", " << threads;
+                EXPECT_EQ(result.contacts, contacts) << to_string(method) << ", " << to_string(caster);
+            }
 }
 
 // The meshes of this folder alone: a change here is a change of the library.

@@ -18,6 +18,7 @@ namespace {
 
 Settings with(Caster caster) {
     Settings settings;
+    settings.method = Method::standard; // every ray of the rule
     settings.caster = caster;
     return settings;
 }

@@ -24,6 +24,7 @@ namespace {
 // Every ray is cast, also from vertices that the outside grid would spare: the caster itself is on trial.
 Settings every_ray() {
     Settings settings;
+    settings.method = Method::standard;
     settings.skip_outside = false;
     return settings;
 }

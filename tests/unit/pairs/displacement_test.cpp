@@ -121,6 +121,14 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
                 const double moved = std::max(true_displacement(bodies[a], bodies[b], before[a], before[b]),
                                               true_displacement(bodies[b], bodies[a], before[b], before[a]));
                 ASSERT_GE(bound, moved) << "course " << course;
+                const double shear_before = shear_bound(before[a].centred) + shear_bound(before[b].centred);
+                const auto exact =
+                    displacement_bounds(place_pair(before[a].centred, before[b].centred, shear_before + 1e-15),
+                                        place_pair(bodies[a].centred, bodies[b].centred, motion.pair_shear(pair)),
+                                        bodies[a].shape->data().reach, bodies[b].shape->data().reach);
+                const double slip = 1e-12; // of doubles at tens of metres
+                ASSERT_GE(exact[0] + slip, true_displacement(bodies[a], bodies[b], before[a], before[b]));
+                ASSERT_GE(exact[1] + slip, true_displacement(bodies[b], bodies[a], before[b], before[a]));
                 if (moved == 0) continue;
                 tightest = std::min(tightest, bound / moved);
                 if (course != 3) worst = std::max(worst, bound / moved);

@@ -39,12 +39,14 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
             PairState& state = table.state(i);
             if (const auto found = model.find(pairs[i]); found != model.end()) {
                 ASSERT_EQ(state.speed, found->second);
+                ASSERT_EQ(table.slack(i), found->second);
             } else {
                 ASSERT_EQ(state.speed, 0.0);
                 ASSERT_LT(state.directed[0].expiry, 0.0) << "a new pair begins afresh";
                 ASSERT_LT(state.directed[1].expiry, 0.0);
                 ASSERT_EQ(state.directed[0].capacity, 0u);
-                state.speed = ++mark;
+                ASSERT_LT(table.slack(i), 0.0);
+                state.speed = table.slack(i) = ++mark;
                 state.directed[0].expiry = state.directed[1].expiry = 1;
                 state.directed[0].capacity = 7;
             }
