@@ -2,6 +2,8 @@
 // The same rays through our casters, for each instruction set, and through Embree 3 (rtcIntersect1, one ray at a time),
 // one thread, in alternated runs. Prints nanoseconds a ray, triangle tests a second of `basic`, and the hash of the
 // hits.
+#include "bench/peers/embree_scene.h"
+
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "pairs/ordered_pairs.h"
@@ -15,7 +17,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <embree3/rtcore.h>
 #include <xxhash.h>
 
 namespace rc = raycontact;
@@ -48,68 +49,18 @@ std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pai
     return bodies;
 }
 
-class Embree {
-public:
-    explicit Embree(const rc::Shape& shape) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-        RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto& points = shape.data().points;
-        auto* v = static_cast<float*>(
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, points.size()));
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            v[3 * i] = points[i].x;
-            v[3 * i + 1] = points[i].y;
-            v[3 * i + 2] = points[i].z;
-        }
-        auto* t = static_cast<unsigned*>(
-            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, shape.triangles().size()));
-        for (const auto& triangle : shape.triangles())
-            for (const auto corner : triangle) *t++ = corner;
-        rtcSetGeometryBuildQuality(mesh, RTC_BUILD_QUALITY_HIGH);
-        rtcCommitGeometry(mesh);
-        rtcAttachGeometry(scene_, mesh);
-        rtcReleaseGeometry(mesh);
-        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-        rtcCommitScene(scene_);
+// Contacts found; the transform of the vertex is part of the work, as it is of ours.
+std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::OrderedPair>& pairs,
+                 const rc::ShapeData& shape, const std::vector<rk::Ray>& rays) {
+    std::size_t contacts = 0;
+    for (const rk::Ray& ray : rays) {
+        const rk::prototype::SourceRay source = rk::prototype::source_ray(
+            &pairs[ray.pair], &shape.vertex_blocks[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
+        RTCRayHit hit;
+        if (scene.cast(source.position, source.direction, source.reach, hit)) ++contacts;
     }
-    ~Embree() {
-        rtcReleaseScene(scene_);
-        rtcReleaseDevice(device_);
-    }
-    Embree(const Embree&) = delete;
-    Embree& operator=(const Embree&) = delete;
-
-    // Contacts found; the transform of the vertex is part of the work, as it is of ours.
-    std::size_t cast(const std::vector<rk::OrderedPair>& pairs, const rc::ShapeData& shape,
-                     const std::vector<rk::Ray>& rays) const {
-        std::size_t contacts = 0;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        for (const rk::Ray& ray : rays) {
-            const rk::prototype::SourceRay source = rk::prototype::source_ray(
-                &pairs[ray.pair], &shape.vertex_blocks[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
-            RTCRayHit hit{};
-            hit.ray.org_x = source.position[0];
-            hit.ray.org_y = source.position[1];
-            hit.ray.org_z = source.position[2];
-            hit.ray.dir_x = source.direction[0];
-            hit.ray.dir_y = source.direction[1];
-            hit.ray.dir_z = source.direction[2];
-            hit.ray.tfar = source.reach;
-            hit.ray.mask = 0xffffffffu;
-            hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(scene_, &context, &hit);
-            if (hit.hit.geomID != RTC_INVALID_GEOMETRY_ID
-                && hit.hit.Ng_x * hit.ray.dir_x + hit.hit.Ng_y * hit.ray.dir_y + hit.hit.Ng_z * hit.ray.dir_z > 0)
-                ++contacts;
-        }
-        return contacts;
-    }
-
-private:
-    RTCDevice device_;
-    RTCScene scene_;
-};
+    return contacts;
+}
 
 // Of processor time: the work runs on this one thread, and other jobs on the machine then count less.
 template <typename Work>
@@ -171,7 +122,8 @@ int main(int argc, char** argv) try {
         c.store->add(shape);
         c.pairs.write(*c.device, ordered);
     }
-    const Embree embree(*shape);
+    const rc::bench::EmbreeDevice embree_device;
+    const rc::bench::EmbreeScene embree(embree_device, *shape);
     std::vector<double> embree_ms;
     std::vector<rk::Ray> rays;
     std::size_t embree_contacts = 0;
@@ -190,7 +142,7 @@ int main(int argc, char** argv) try {
             rays.resize(contenders[0].queue.rays().size());
             contenders[0].queue.rays().read(*contenders[0].device, rays);
         }
-        const double theirs = milliseconds([&] { embree_contacts = embree.cast(ordered, shape->data(), rays); });
+        const double theirs = milliseconds([&] { embree_contacts = cast(embree, ordered, shape->data(), rays); });
         if (run > 0) embree_ms.push_back(theirs);
     }
     for (int run = 0; run < 3; ++run)

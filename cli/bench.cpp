@@ -5,6 +5,10 @@
 #include <bench/peers/growth.h>
 #include <bench/peers/machine.h>
 #include <bench/peers/output.h>
+#include <bench/peers/seeds.h>
+#include <bench/peers/swarm.h>
+#include <bench/peers/sweep_output.h>
+#include <bench/peers/thresholds.h>
 #include <bench/peers/work.h>
 #include <raycontact/error.h>
 
@@ -23,6 +27,7 @@ namespace {
 
 using namespace raycontact::bench;
 using raycontact::InputError;
+using raycontact::Method;
 
 struct PeersOptions {
     std::string out, mesh, recording;
@@ -30,6 +35,18 @@ struct PeersOptions {
     std::uint32_t runs = 5;
     ApproachOptions approach;
     AvalancheWorkOptions avalanche;
+    // While the pile still lands and spreads (median speed 2.1 m/s at the first, 0.1 m/s at the last of 512 bodies).
+    std::uint32_t moving_first = 60, moving_steps = 100;
+    bool json = false;
+};
+
+struct SweepCommand {
+    std::string recording, out;
+    std::vector<std::string> only;
+    std::uint32_t first = 0, steps = 600, swarm_steps = 120, bodies = 512, triangles = 20'000;
+    std::uint64_t seed = 1;
+    std::uint32_t seeds = 5;
+    ThresholdOptions thresholds;
     bool json = false;
 };
 
@@ -111,9 +128,17 @@ std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& o
             });
         }
     }
-    works.emplace_back("avalanche", [&options] {
-        return options.recording.empty() ? avalanche_work(options.avalanche)
-                                         : recorded_work(options.recording, options.avalanche);
+    const auto avalanche = [&options](std::string name, const AvalancheWorkOptions& steps) {
+        Work work = options.recording.empty() ? avalanche_work(steps) : recorded_work(options.recording, steps);
+        work.name = std::move(name);
+        return work;
+    };
+    works.emplace_back("avalanche", [=, &options] { return avalanche("avalanche", options.avalanche); });
+    works.emplace_back("avalanche-moving", [=, &options] {
+        AvalancheWorkOptions moving = options.avalanche;
+        moving.first = options.moving_first;
+        moving.steps = options.moving_steps;
+        return avalanche("avalanche-moving", moving);
     });
     std::vector<std::string> names;
     names.reserve(works.size());
@@ -121,6 +146,10 @@ std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& o
     refuse_unknown("--works", options.works, names);
     std::erase_if(works, [&](const auto& work) { return !chosen(options.works, work.first); });
     return works;
+}
+
+WorkNote note_of(const Work& work) {
+    return {work.name, work.source, static_cast<std::uint32_t>(work.steps.size()), work.pair_steps(), pace(work)};
 }
 
 void bench_peers(const PeersOptions& options) {
@@ -131,7 +160,7 @@ void bench_peers(const PeersOptions& options) {
     for (const auto& [name, make] : choose_works(options)) {
         tell(name + ": poses and pairs");
         const Work work = make();
-        notes.push_back({work.name, work.source, static_cast<std::uint32_t>(work.steps.size()), work.pair_steps()});
+        notes.push_back(note_of(work));
         const std::vector<Result> some = contest(work, who, options.runs, tell);
         results.insert(results.end(), some.begin(), some.end());
     }
@@ -142,10 +171,11 @@ void bench_peers(const PeersOptions& options) {
         std::cerr << "written: " << write_results(options.out, machine, notes, results).string() << " and .svg\n";
     std::cout << (options.json ? json(machine, notes, results) : table(machine, notes, results));
     if (std::any_of(results.begin(), results.end(), [](const Result& r) { return !r.agrees; }))
-        throw std::runtime_error("basic and bvh gave different bits; this must not be");
+        throw std::runtime_error("basic or certified gave other bits than bvh; this must not be");
 }
 
 void bench_growth(const GrowthCommand& command) {
+    refuse_unknown("--only", command.options.parts, {std::begin(growth_parts), std::end(growth_parts)});
     Machine machine = this_machine();
     const std::vector<GrowthRow> rows = growth(command.options, tell);
     machine.load = this_machine().load;
@@ -153,6 +183,60 @@ void bench_growth(const GrowthCommand& command) {
     if (!command.out.empty())
         std::cerr << "written: " << write_results(command.out, machine, rows).string() << " and .svg\n";
     std::cout << (command.json ? json(machine, rows) : table(machine, rows));
+}
+
+std::vector<MakeWork> choose_sweeps(const SweepCommand& command) {
+    AvalancheWorkOptions steps;
+    steps.bodies = command.bodies;
+    steps.seed = command.seed;
+    steps.first = command.first;
+    steps.steps = command.steps;
+    if (!command.recording.empty()) return {[=] { return recorded_work(command.recording, steps); }};
+    SwarmOptions swarm;
+    swarm.steps = command.swarm_steps;
+    swarm.triangles = command.triangles;
+    swarm.seed = command.seed;
+    return {[=] { return avalanche_work(steps); }, [=] { return swarm_work(swarm); }};
+}
+
+void bench_sweep(const SweepCommand& command) {
+    refuse_unknown("--only", command.only, {"thresholds", "seeds"});
+    if (!command.recording.empty() && !command.only.empty() && chosen(command.only, "seeds"))
+        throw InputError("--only seeds: simulates its avalanches itself; give no recording");
+    Machine machine = this_machine();
+    std::vector<WorkNote> notes;
+    std::vector<ThresholdRow> thresholds;
+    std::vector<SeedRow> seeds;
+    if (chosen(command.only, "thresholds")) {
+        for (const MakeWork& make : choose_sweeps(command)) {
+            tell("poses and pairs");
+            const Work work = make();
+            notes.push_back(note_of(work));
+            const std::vector<ThresholdRow> some = sweep_thresholds(work, command.thresholds, tell);
+            thresholds.insert(thresholds.end(), some.begin(), some.end());
+        }
+    }
+    if (command.recording.empty() && chosen(command.only, "seeds"))
+        seeds = sweep_seeds({command.seed, command.seeds, command.bodies, command.steps}, tell);
+    machine.load = this_machine().load;
+    tell("");
+    if (!command.out.empty() && !thresholds.empty())
+        std::cerr << "written: " << write_results(command.out, machine, notes, thresholds).string() << " and .svg\n";
+    if (!command.out.empty() && !seeds.empty())
+        std::cerr << "written: " << write_results(command.out, machine, seeds).string() << " and .svg\n";
+    if (command.json) {
+        std::cout << json(machine, notes, thresholds, seeds);
+    } else {
+        if (!thresholds.empty()) std::cout << table(machine, notes, thresholds);
+        if (!thresholds.empty() && !seeds.empty()) std::cout << '\n';
+        if (!seeds.empty()) std::cout << table(machine, seeds);
+    }
+    const bool wrong =
+        std::any_of(thresholds.begin(), thresholds.end(),
+                    [](const ThresholdRow& r) { return r.method == Method::certified && r.wrong.total() > 0; })
+        || std::any_of(seeds.begin(), seeds.end(),
+                       [](const SeedRow& r) { return r.method == Method::certified && r.wrong.total() > 0; });
+    if (wrong) throw std::runtime_error("certified gave other contacts than standard; this must not be");
 }
 
 template <class Number>
@@ -173,10 +257,13 @@ void add_peers(CLI::App& bench) {
     add_number(*command, "--pairs", o->approach.pairs, "approaching pairs, all in one step", 1u, 10'000u);
     add_number(*command, "--depth", o->approach.depth, "metres that they are pushed in beyond first touch", 0.0, 0.5);
     add_number(*command, "--runs", o->runs, "of everyone in turn; figures are medians", 1u, 1000u);
-    command->add_option("--only", o->only, "who: bvh,basic,gimpact,fcl,ode,embree,rays,grid-rays,embree-rays")
+    command
+        ->add_option("--only", o->only,
+                     "who: bvh,basic,iterative,iterative-basic,predictive,certified,gimpact,fcl,ode,embree,rays,"
+                     "grid-rays,embree-rays")
         ->type_name("NAMES")
         ->delimiter(',');
-    command->add_option("--works", o->works, "what: pairs-453,pairs-1598,pairs-10000,avalanche")
+    command->add_option("--works", o->works, "what: pairs-453,pairs-1598,pairs-10000,avalanche,avalanche-moving")
         ->type_name("NAMES")
         ->delimiter(',');
     command->add_option("--mesh", o->mesh, "approaching pairs of this mesh instead, scaled to 1 m (work \"mesh\")")
@@ -186,25 +273,55 @@ void add_peers(CLI::App& bench) {
     add_number(*command, "--bodies", o->avalanche.bodies, "of the avalanche", 1u, 1'000'000u);
     add_number(*command, "--avalanche-first", o->avalanche.first, "first of its steps", 0u, 1'000'000u);
     add_number(*command, "--avalanche-steps", o->avalanche.steps, "steps of the avalanche", 1u, 1'000'000u);
-    add_number(*command, "--avalanche-stride", o->avalanche.stride, "of those, every Nth; 1 takes minutes a run", 1u,
-               1'000'000u);
+    add_number(*command, "--avalanche-stride", o->avalanche.stride,
+               "of those, every Nth for the others; 1 takes minutes a run", 1u, 1'000'000u);
+    add_number(*command, "--moving-first", o->moving_first, "first step of the work avalanche-moving", 0u, 1'000'000u);
+    add_number(*command, "--moving-steps", o->moving_steps, "its steps", 1u, 1'000'000u);
     command->add_flag("--json", o->json, "print one JSON object on stdout");
     command->callback([o] { bench_peers(*o); });
 }
 
 void add_growth(CLI::App& bench) {
     CLI::App* command =
-        bench.add_subcommand("growth", "How the narrow phase grows with bodies and with triangles a mesh");
+        bench.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
     auto c = std::make_shared<GrowthCommand>();
     command->add_option("--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
+    command->add_option("--only", c->options.parts, "parts: triangles,contacts,displacement,bodies")
+        ->type_name("NAMES")
+        ->delimiter(',');
     add_number(*command, "--bodies", c->options.bodies, "largest avalanche, 64 and its doubles up to here; 0: none", 0u,
                1'000'000u);
     add_number(*command, "--steps", c->options.steps, "of each avalanche; the last fifth is measured", 1u, 100'000u);
     add_number(*command, "--triangles", c->options.triangles, "largest mesh; 0: none", 0u, 2'000'000u);
     add_number(*command, "--pairs", c->options.pairs, "of that mesh, at each size", 1u, 10'000u);
+    add_number(*command, "--contacts", c->options.contacts, "of each rolling pair, about", 1u, 10'000u);
     add_number(*command, "--threads", c->options.threads, "0: one per core", 0u, 1024u);
     command->add_flag("--json", c->json, "print one JSON object on stdout");
     command->callback([c] { bench_growth(*c); });
+}
+
+void add_sweep(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "sweep", "Every displacement threshold, and the library's choice: time, and rays that are wrong");
+    auto c = std::make_shared<SweepCommand>();
+    command
+        ->add_option("recording", c->recording,
+                     "poses and pairs (run --record); without: an avalanche, and a few fast, large bodies")
+        ->type_name("RECORDING");
+    command->add_option("--out", c->out, "write DIR/<machine>/sweep-thresholds-<date>.csv and .svg, sweep-seeds too")
+        ->type_name("DIR");
+    command->add_option("--only", c->only, "parts: thresholds,seeds")->type_name("NAMES")->delimiter(',');
+    add_number(*command, "--first", c->first, "first step of the thresholds' avalanche or recording", 0u, 1'000'000u);
+    add_number(*command, "--steps", c->steps, "of each avalanche, or of the recording", 1u, 1'000'000u);
+    add_number(*command, "--swarm-steps", c->swarm_steps, "of the few, fast bodies", 1u, 1'000'000u);
+    add_number(*command, "--bodies", c->bodies, "of each avalanche", 1u, 1'000'000u);
+    add_number(*command, "--triangles", c->triangles, "of each fast body; even", 60u, 1'000'000u);
+    add_number(*command, "--seed", c->seed, "first seed", std::uint64_t{0}, ~std::uint64_t{0} >> 1);
+    add_number(*command, "--seeds", c->seeds, "avalanches of the part seeds", 1u, 1000u);
+    add_number(*command, "--values", c->thresholds.values, "fixed thresholds, 1e-4 to 1e-1 of the size", 1u, 100u);
+    add_number(*command, "--runs", c->thresholds.runs, "of all settings in turn; times are medians", 1u, 1000u);
+    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    command->callback([c] { bench_sweep(*c); });
 }
 
 } // namespace
@@ -214,8 +331,9 @@ void add_bench(CLI::App& app) {
     bench->require_subcommand(0, 1); // none is refused below, with the names to choose from
     bench->callback([bench] {
         if (bench->get_subcommands().empty())
-            throw InputError("bench: a subcommand is required: peers or growth (see raycontact bench --help)");
+            throw InputError("bench: a subcommand is required: peers, growth or sweep (see raycontact bench --help)");
     });
     add_peers(*bench);
     add_growth(*bench);
+    add_sweep(*bench);
 }

@@ -2,6 +2,7 @@
 // Runs groups of kernels once each on a fixed input, for callgrind to count instructions; scripts/instructions reads
 // what is printed: the compiler, then a line `group,item,items` for each group. Everything is done once beforehand, so
 // that no array has to grow while it counts.
+#include "bench/micro/coherence.h"
 #include "bench/micro/pipeline.h"
 
 #include "contacts/place.h"
@@ -33,7 +34,8 @@ class Input {
 public:
     Input()
         : small_batch_(rb::make_batch(902, 64)), large_batch_(rb::make_batch(20000, 8)),
-          small_(executor_, instruction_set, small_batch_), large_(executor_, instruction_set, large_batch_) {}
+          small_(executor_, instruction_set, small_batch_), large_(executor_, instruction_set, large_batch_),
+          kept_(executor_, instruction_set, small_batch_) {}
 
     std::vector<Group> groups() {
         return {
@@ -43,6 +45,12 @@ public:
             {"cast_bvh", "ray", small_.rays(), [this] { small_.cast_bvh(); }},
             {"cast_bvh_large", "ray", large_.rays(), [this] { large_.cast_bvh(); }},
             {"cast_basic", "ray", small_.basic_rays(), [this] { small_.cast_basic(); }},
+            {"near_rays", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_near_rays(); }},
+            {"follow_bvh", "ray", kept_.near_rays(), [this] { kept_.cast_near_rays(rc::Caster::bvh); }},
+            {"follow_basic", "ray", kept_.basic_rays(), [this] { kept_.cast_near_rays(rc::Caster::basic); }},
+            {"walk", "ray", kept_.walks(), [this] { kept_.walk(); }},
+            {"begin_watches", "vertex block", kept_.vertex_blocks(), [this] { kept_.begin_watches(); }},
+            {"look", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_watch_rays(); }},
             {"contacts", "contact", small_.contacts(), [this] { contacts(); }},
             {"order_pairs", "pair", small_batch_.pairs.size(), [this] { order_pairs(); }},
             {"sweep", "box", boxes_.size(), [this] { sweep(); }},
@@ -67,6 +75,7 @@ private:
     rc::Executor executor_{1};
     rb::Batch small_batch_, large_batch_;
     rb::Pipeline small_, large_;
+    rb::Coherence kept_;
     std::vector<rk::LocalContact> local_;
     std::vector<rc::Contact> placed_;
     std::vector<rk::OrderedPair> ordered_;

@@ -5,9 +5,24 @@
 #include "scenes/random.h"
 #include "shape/shape_data.h"
 
+#include <array>
 #include <cmath>
 
 namespace raycontact::bench {
+
+namespace {
+
+using Matrix = std::array<double, 9>;
+
+Matrix product(const Matrix& a, const Matrix& b) {
+    Matrix c{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            c[3 * i + j] = (a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j]) + a[3 * i + 2] * b[6 + j];
+    return c;
+}
+
+} // namespace
 
 Batch make_batch(std::uint32_t triangles, std::size_t pairs) {
     Batch batch;
@@ -29,6 +44,17 @@ Batch make_batch(std::uint32_t triangles, std::size_t pairs) {
     for (BodyId i = 0; i < 2 * pairs; i += 2) batch.pairs.emplace_back(i, i + 1);
     Executor executor(1);
     order_pairs(executor, batch.bodies, batch.pairs, batch.ordered);
+    std::vector<PlacedBody> later = batch.bodies;
+    for (PlacedBody& body : later) {
+        const double step = 0.003 * batch.shape->data().diagonal;
+        const Vec3 shift{step * random.symmetric(), step * random.symmetric(), step * random.symmetric()};
+        const std::array<double, 4> turn = random.tilt(0.006);
+        Pose small = pose_from_quaternion({}, turn[0], turn[1], turn[2], turn[3]);
+        body.centred.rotation = product(body.centred.rotation, small.rotation);
+        body.centred.translation = {body.centred.translation.x + shift.x, body.centred.translation.y + shift.y,
+                                    body.centred.translation.z + shift.z};
+    }
+    order_pairs(executor, later, batch.pairs, batch.moved);
     return batch;
 }
 

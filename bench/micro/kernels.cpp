@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every kernel by itself on a fixed input, one thread, for each instruction set this processor has; then building
 // shapes and the broad phase. Options are Google Benchmark's: --benchmark_filter=cast --benchmark_repetitions=5 ...
+#include "bench/micro/coherence.h"
 #include "bench/micro/limits.h"
 #include "bench/micro/pipeline.h"
 #include "bench/micro/visits.h"
@@ -83,6 +84,38 @@ void add_kernels(rb::Pipeline& on, const rb::Batch& batch, const rb::Visits& vis
     add(name("scan_write"), {"element", elements, 8}, [&] { on.scan_write(); });
 }
 
+// Of the methods that keep something. Bytes of casts are those of cast_rays_*, which ask for the same.
+void add_coherence(rb::Coherence& on, const rb::Batch& batch, std::string_view instruction_set) {
+    const auto name = [&](const char* kernel) {
+        return std::string(kernel) + "/" + batch.name + "/" + std::string(instruction_set);
+    };
+    const double blocks = static_cast<double>(on.vertex_blocks()), near = static_cast<double>(on.near_rays()),
+                 basic = static_cast<double>(on.basic_rays()), walks = static_cast<double>(on.walks()),
+                 watch_rays = static_cast<double>(on.watch_rays());
+    const double pair = sizeof(rk::OrderedPair), header = sizeof(rk::ShapeHeader);
+    const double triangles = static_cast<double>(batch.shape->triangles().size());
+    // Positions and exits of a block, and a word of the clearance grid for each vertex.
+    const double block_look = pair + header + 5 * sizeof(float) * VERTEX_LANES;
+    const double ray = sizeof(rk::Ray) + 4 + pair + header + 7 * sizeof(float) + sizeof(rk::Hit) + 2 * 4;
+    add(name("count_near_rays"), {"vertex block", blocks, block_look + 2 * sizeof(rk::Cluster) + 2 * 4},
+        [&] { on.count_near_rays(); });
+    add(name("write_near_rays"), {"ray", near, sizeof(rk::Ray) + 4 + blocks / near * (sizeof(rk::Cluster) + 4)},
+        [&] { on.write_near_rays(); });
+    add(name("follow_rays_bvh/full"), {"ray", near, ray}, [&] { on.cast_near_rays(rc::Caster::bvh); });
+    add(name("follow_rays_basic/full"), {"triangle test", basic * triangles, ray / triangles},
+        [&] { on.cast_near_rays(rc::Caster::basic); });
+    // Of each triangle of a walk its neighbours and its nine coordinates; one or two of them.
+    add(name("follow_rays_bvh/walk"), {"ray", walks, ray + 1.5 * (sizeof(rk::Face) + 9 * sizeof(float))},
+        [&] { on.walk(); });
+    add(name("begin_watches"),
+        {"vertex block", blocks, pair + 2 * header + 7 * 4 + sizeof(rk::Cluster) + sizeof(rk::Watch)},
+        [&] { on.begin_watches(); });
+    add(name("look_at_watches"), {"vertex block", blocks, block_look + 2 * sizeof(rk::Watch)},
+        [&] { on.look_at_watches(); });
+    add(name("write_watch_rays"), {"ray", watch_rays, sizeof(rk::Ray) + blocks / watch_rays * sizeof(rk::Watch)},
+        [&] { on.write_watch_rays(); });
+}
+
 void add_host(rc::Executor& executor, const rb::Batch& batch, const std::vector<rk::LocalContact>& contacts) {
     add("order_pairs/" + batch.name,
         {"pair", static_cast<double>(batch.pairs.size()), 2 * sizeof(rc::PlacedBody) + 2 * sizeof(rk::OrderedPair)},
@@ -140,9 +173,10 @@ int main(int argc, char** argv) try {
     rc::Executor executor(1);
     const rb::Batch batches[] = {rb::make_batch(902, 256), rb::make_batch(20000, 32)};
     std::vector<std::unique_ptr<rb::Pipeline>> pipelines;
+    std::vector<std::unique_ptr<rb::Coherence>> coherences;
     add_limits();
     for (const rb::Batch& batch : batches) {
-        std::vector<rk::Hit> expected;
+        std::vector<rk::Hit> expected, expected_walks;
         for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables()) {
             auto& on = *pipelines.emplace_back(std::make_unique<rb::Pipeline>(executor, table->instruction_set, batch));
             const std::vector<rk::Hit> hits = on.host_hits();
@@ -158,6 +192,19 @@ int main(int argc, char** argv) try {
             if (std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(rk::Hit)) != 0)
                 throw std::logic_error(std::string(table->instruction_set) + ": other hits than the first set gave");
             add_kernels(on, batch, rb::count_visits(batch, on.host_rays()), table->instruction_set);
+            auto& kept =
+                *coherences.emplace_back(std::make_unique<rb::Coherence>(executor, table->instruction_set, batch));
+            const std::vector<rk::Hit> walks = kept.host_walk_hits();
+            if (expected_walks.empty()) {
+                expected_walks = walks;
+                std::fprintf(stderr,
+                             "  %zu vertex blocks near; %zu rays cast or cast ahead, %zu walks; %zu rays of watches\n",
+                             kept.vertex_blocks(), kept.near_rays(), kept.walks(), kept.watch_rays());
+            }
+            if (walks.size() != expected_walks.size()
+                || std::memcmp(walks.data(), expected_walks.data(), walks.size() * sizeof(rk::Hit)) != 0)
+                throw std::logic_error(std::string(table->instruction_set) + ": walks end elsewhere");
+            add_coherence(kept, batch, table->instruction_set);
         }
         add_host(executor, batch, pipelines.back()->host_contacts());
     }

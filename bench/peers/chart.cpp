@@ -92,18 +92,24 @@ std::string panel_svg(const Panel& panel, double left, double top, double width,
     }
     svg += text(left + width / 2, top + height + 34, "middle", panel.x_unit);
     svg += text(left, top - 8, "start", panel.y_unit, "fill=\"#666\"");
+    int shown = 0;
     for (std::size_t k = 0; k < panel.lines.size(); ++k) {
+        const Line& one = panel.lines[k];
+        if (one.points.empty()) continue;
+        const char* stroke = colour(one.colour == Line::automatic ? k : one.colour);
         std::string path, dots;
-        for (const auto& [a, b] : panel.lines[k].points) {
+        for (const auto& [a, b] : one.points) {
             if (!(a > 0) || !(b > 0)) continue;
             path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', px(a), py(b));
-            dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", px(a), py(b), colour(k));
+            dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", px(a), py(b), stroke);
         }
-        svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"/>\n", path, colour(k)) + dots;
-        const double key = top + 14 + 16 * static_cast<double>(k);
+        svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, stroke,
+                           one.dashed ? " stroke-dasharray=\"6 4\"" : "");
+        if (!one.dashed) svg += dots;
+        const double key = top + 14 + 16 * shown++;
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"10\" height=\"10\" fill=\"{}\"/>\n", left + 8,
-                           key - 9, colour(k));
-        svg += text(left + 24, key, "start", panel.lines[k].name);
+                           key - 9, stroke);
+        svg += text(left + 24, key, "start", one.name);
     }
     return svg;
 }
@@ -150,11 +156,16 @@ std::string bar_chart(const std::string& title, const std::string& unit, const s
 }
 
 std::string line_chart(const std::vector<Panel>& panels) {
-    constexpr double left = 56, width = 330, height = 260, top = 56, pitch = left + width + 34;
+    constexpr double left = 56, width = 330, height = 260, top = 56, pitch_x = left + width + 34,
+                     pitch_y = top + height + 50;
     std::string svg;
-    for (std::size_t k = 0; k < panels.size(); ++k)
-        svg += panel_svg(panels[k], left + pitch * static_cast<double>(k), top, width, height);
-    return document(pitch * static_cast<double>(panels.size()) + 10, top + height + 50, svg);
+    for (std::size_t k = 0; k < panels.size(); ++k) {
+        const std::size_t row = k / 2;
+        svg += panel_svg(panels[k], left + pitch_x * static_cast<double>(k % 2),
+                         top + pitch_y * static_cast<double>(row), width, height);
+    }
+    const std::size_t rows = (panels.size() + 1) / 2;
+    return document(pitch_x * (panels.size() > 1 ? 2 : 1) + 10, pitch_y * static_cast<double>(rows), svg);
 }
 
 } // namespace raycontact::bench

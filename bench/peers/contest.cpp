@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/contest.h>
 
+#include <bench/peers/clock.h>
+#include <bench/peers/reference.h>
+#include <bench/peers/sums.h>
+#include <raycontact/contact.h>
+
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -13,92 +16,108 @@ namespace raycontact::bench {
 
 namespace {
 
-struct Times {
-    double cpu = 0, wall = 0; // microseconds
-};
-
-Times now() {
-    timespec cpu{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-    const auto wall = std::chrono::steady_clock::now().time_since_epoch();
-    return {1e6 * static_cast<double>(cpu.tv_sec) + 1e-3 * static_cast<double>(cpu.tv_nsec),
-            std::chrono::duration<double, std::micro>(wall).count()};
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// An entrant at work; times[run][visited step].
+/// An entrant at work.
 struct Runner {
     const Entrant* entrant = nullptr;
     std::unique_ptr<Peer> peer;
+    std::vector<std::size_t> steps;        ///< of the work, that it is given
+    std::vector<std::vector<Times>> times; ///< of each run, of each of these
     Found found;
-    std::vector<std::vector<Times>> times;
     std::uint64_t memory = 0;
+    StepStats sums;
+    std::vector<std::string> hashes; ///< of each of its steps; ours only
+    std::string hash;
+    std::optional<recording::WrongRays> wrong;
 
     void run(const Work& work, bool first) {
         std::vector<Times>& row = times.emplace_back();
-        for (std::uint32_t k = 0; k < work.steps.size(); k += entrant->every) {
+        peer->restart(work.steps[steps.front()]);
+        for (const std::size_t k : steps) {
             peer->prepare(work.steps[k]);
             const Times start = now();
             const Found one = peer->detect(work.steps[k]);
             const Times end = now();
             row.push_back({end.cpu - start.cpu, end.wall - start.wall});
             if (!first) continue;
-            peer->note(k);
             found.rays += one.rays;
             found.contacts += one.contacts;
             found.depth_sum += one.depth_sum;
         }
     }
 
-    /// Of the steps that an entrant given every `every`-th of them sees; median over the runs.
-    double total(std::uint32_t every, double Times::*which) const {
+    /// One run that is not timed: what was done, and whether it was right.
+    void check(const Work& work, Reference& reference) {
+        const Scene* scene = peer->scene();
+        if (!scene) return;
+        ContactHash all;
+        wrong.emplace();
+        peer->restart(work.steps[steps.front()]);
+        for (const std::size_t k : steps) {
+            peer->prepare(work.steps[k]);
+            peer->detect(work.steps[k]);
+            add(sums, scene->stats());
+            reference.compare(k, scene->contacts(), *wrong);
+            all.add(static_cast<std::uint32_t>(k), scene->contacts());
+            ContactHash one;
+            one.add(static_cast<std::uint32_t>(k), scene->contacts());
+            hashes.push_back(one.hex());
+        }
+        hash = all.hex();
+    }
+
+    /// Median over the runs, of those of its steps that `other` was given too; nothing where there are none.
+    std::optional<double> total(const Runner& other, double Times::*which) const {
         std::vector<double> totals;
         for (const auto& row : times) {
-            double sum = 0;
+            std::optional<double> sum;
             for (std::size_t i = 0; i < row.size(); ++i)
-                if (i * entrant->every % every == 0) sum += row[i].*which;
-            totals.push_back(sum);
+                if (std::binary_search(other.steps.begin(), other.steps.end(), steps[i]))
+                    sum = sum.value_or(0) + row[i].*which;
+            if (!sum) return {};
+            totals.push_back(*sum);
         }
         return median(totals);
+    }
+
+    double ratio_to(const Runner* other) const {
+        if (!other) return 0;
+        const auto own = total(*other, &Times::cpu), theirs = other->total(*this, &Times::cpu);
+        return own && theirs && *theirs > 0 ? *own / *theirs : 0;
     }
 };
 
 /// The hashes of the steps that both saw are the same.
 bool same_bits(const Runner& one, const Runner& other) {
-    const auto a = one.peer->step_hashes(), b = other.peer->step_hashes();
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const std::size_t step = i * one.entrant->every;
-        if (step % other.entrant->every == 0 && step / other.entrant->every < b.size()
-            && a[i] != b[step / other.entrant->every])
-            return false;
+    for (std::size_t i = 0; i < one.hashes.size(); ++i) {
+        const auto at = std::lower_bound(other.steps.begin(), other.steps.end(), one.steps[i]) - other.steps.begin();
+        const auto j = static_cast<std::size_t>(at);
+        if (j < other.hashes.size() && other.steps[j] == one.steps[i] && one.hashes[i] != other.hashes[j]) return false;
     }
     return true;
 }
 
-Result figures(const Work& work, const Runner& runner, const Runner* ours) {
+const Runner* find(const std::vector<Runner>& runners, const std::string& name) {
+    const auto it =
+        std::find_if(runners.begin(), runners.end(), [&](const Runner& r) { return r.entrant->name == name; });
+    return it == runners.end() ? nullptr : &*it;
+}
+
+Result figures(const Work& work, const Runner& runner, const std::vector<Runner>& runners) {
     Result r;
     r.work = work.name;
     r.peer = runner.entrant->name;
     r.what = runner.entrant->what;
     r.rays_alone = runner.entrant->rays_alone;
-    for (std::size_t k = 0; k < work.steps.size(); k += runner.entrant->every) {
-        ++r.steps;
-        r.pair_steps += work.steps[k].pairs.size();
-    }
-    const double cpu = runner.total(runner.entrant->every, &Times::cpu);
+    r.steps = static_cast<std::uint32_t>(runner.steps.size());
+    for (const std::size_t k : runner.steps) r.pair_steps += work.steps[k].pairs.size();
     const double pair_steps = static_cast<double>(std::max<std::uint64_t>(r.pair_steps, 1));
-    r.us = cpu / pair_steps;
-    r.wall_us = runner.total(runner.entrant->every, &Times::wall) / pair_steps;
-    if (ours) {
-        const double theirs = ours->total(runner.entrant->every, &Times::cpu);
-        r.ratio = theirs > 0 ? cpu / theirs : 0;
-        r.agrees = same_bits(runner, *ours);
-    }
+    r.us = runner.total(runner, &Times::cpu).value_or(0) / pair_steps;
+    r.wall_us = runner.total(runner, &Times::wall).value_or(0) / pair_steps;
+    const Runner* ours = find(runners, r.rays_alone ? "rays" : "bvh");
+    r.ratio = runner.ratio_to(ours);
+    for (std::size_t m = 0; m < coherent_methods.size() && !r.rays_alone; ++m)
+        r.method_ratios[m] = runner.ratio_to(find(runners, coherent_methods[m]));
+    r.agrees = !runner.entrant->exact || !ours || same_bits(runner, *ours);
     r.rays = runner.found.rays;
     r.contacts = runner.found.contacts;
     r.depth_sum = runner.found.depth_sum;
@@ -107,7 +126,9 @@ Result figures(const Work& work, const Runner& runner, const Runner* ours) {
         r.memory_bytes = *own;
         r.memory_is_own_count = true;
     }
-    r.hash = runner.peer->hash();
+    r.hash = runner.hash;
+    r.sums = runner.sums;
+    r.wrong = runner.wrong;
     return r;
 }
 
@@ -124,23 +145,29 @@ std::uint64_t heap_in_use() {
 
 std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entrants, std::uint32_t runs,
                             const std::function<void(const std::string&)>& progress) {
+    if (work.steps.empty()) return {};
+    progress(work.name + ": what standard finds");
+    Reference reference(work);
     std::vector<Runner> runners;
     for (const Entrant& entrant : entrants) {
         if (!entrant.make) continue;
         progress(work.name + ": " + entrant.name + ", warming up");
         Runner& runner = runners.emplace_back();
         runner.entrant = &entrant;
+        for (std::size_t k = 0; k < work.steps.size(); ++k)
+            if (is_given(entrant, work, k)) runner.steps.push_back(k);
         const std::uint64_t before = heap_in_use();
         runner.peer = entrant.make(work);
         // The first, a middle and the last of its steps: pages touched, arrays grown, algorithms made.
-        const std::size_t count = (work.steps.size() + entrant.every - 1) / entrant.every;
+        const std::size_t count = runner.steps.size();
         for (const std::size_t i : {std::size_t{0}, count / 2, count - 1}) {
-            const WorkStep& step = work.steps[i * entrant.every];
+            const WorkStep& step = work.steps[runner.steps[i]];
             runner.peer->prepare(step);
             runner.peer->detect(step);
         }
         const std::uint64_t after = heap_in_use();
         runner.memory = after > before ? after - before : 0;
+        runner.check(work, reference);
     }
     for (std::uint32_t run = 0; run < runs; ++run) {
         for (Runner& runner : runners) {
@@ -150,12 +177,8 @@ std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entran
         }
     }
     std::vector<Result> results;
-    for (const Runner& runner : runners) {
-        const auto ours = std::find_if(runners.begin(), runners.end(), [&](const Runner& r) {
-            return r.entrant->name == (runner.entrant->rays_alone ? "rays" : "bvh");
-        });
-        results.push_back(figures(work, runner, ours == runners.end() ? nullptr : &*ours));
-    }
+    results.reserve(runners.size());
+    for (const Runner& runner : runners) results.push_back(figures(work, runner, runners));
     return results;
 }
 

@@ -1,98 +1,175 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/growth.h>
 
+#include <bench/peers/clock.h>
+#include <bench/peers/rolling.h>
 #include <bench/peers/work.h>
-#include <scenes/avalanche.h>
 #include <scenes/models/model.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace raycontact::bench {
 
 namespace {
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+constexpr Method methods[] = {Method::standard, Method::predictive, Method::certified};
+constexpr std::uint32_t sizes[] = {100, 316, 1'000, 3'160, 10'000, 31'600, 100'000};
+constexpr std::uint32_t least_of_slopes = 1'000; // triangles; below, what a pair costs anyhow hides the rest
+constexpr double displacements[] = {0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
+constexpr std::uint32_t displaced_triangles = 10'000;
+
+double mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0 : sum / static_cast<double>(values.size());
 }
 
-GrowthRow of_bodies(std::uint32_t bodies, const GrowthOptions& options) {
-    scenes::AvalancheOptions how;
-    how.bodies = bodies;
-    how.settings.threads = options.threads;
-    scenes::Avalanche scene(how);
-    for (std::uint32_t k = 0; k < options.steps; ++k) scene.step();
-    GrowthRow row;
-    row.part = "bodies";
-    row.size = bodies;
-    row.steps = std::max(options.steps / 5, 1u);
-    std::vector<double> pairs, rays, contacts, narrow, each;
-    const auto& rows = scene.log().rows;
-    for (auto step = rows.end() - row.steps; step != rows.end(); ++step) {
-        pairs.push_back(static_cast<double>(step->pairs));
-        rays.push_back(static_cast<double>(step->rays));
-        contacts.push_back(static_cast<double>(step->contacts));
-        narrow.push_back(step->narrow_ms);
-        each.push_back(1000 * step->narrow_ms / static_cast<double>(std::max<std::uint64_t>(step->pairs, 1)));
+/// What one method did in each step of a work, the first left out.
+struct Trial {
+    Method method;
+    std::unique_ptr<Scene> scene;
+    std::vector<double> pairs, rays, contacts, rays_cast, walks, narrow_ms;
+
+    void run(const Work& work, bool first) {
+        rest(*scene, work.steps.front());
+        for (std::size_t k = 0; k < work.steps.size(); ++k) {
+            place(*scene, work.steps[k]);
+            scene->step(work.steps[k].pairs);
+            if (k == 0) continue;
+            const StepStats& stats = scene->stats();
+            // The same work each time: what exceeds the least is other programs'.
+            if (!first) {
+                narrow_ms[k - 1] = std::min(narrow_ms[k - 1], stats.narrow_ms);
+                continue;
+            }
+            pairs.push_back(static_cast<double>(stats.pairs));
+            rays.push_back(static_cast<double>(stats.rays));
+            contacts.push_back(static_cast<double>(stats.contacts));
+            rays_cast.push_back(static_cast<double>(stats.rays_cast));
+            walks.push_back(static_cast<double>(stats.walks));
+            narrow_ms.push_back(stats.narrow_ms);
+        }
     }
-    row.pairs = median(pairs);
-    row.rays = median(rays);
-    row.contacts = median(contacts);
-    row.narrow_ms = median(narrow);
-    row.us_per_pair = median(each);
-    return row;
+};
+
+void measure(const Work& work, const std::string& part, double size, int runs, const GrowthOptions& options,
+             std::vector<GrowthRow>& rows) {
+    std::vector<Trial> trials;
+    for (const Method method : methods) {
+        Settings settings;
+        settings.method = method;
+        settings.threads = options.threads;
+        trials.push_back({method, make_scene(work, settings), {}, {}, {}, {}, {}, {}});
+    }
+    for (int run = 0; run < runs; ++run)
+        for (Trial& trial : trials) trial.run(work, run == 0);
+    const double moved = pace(work).median;
+    for (const Trial& trial : trials) {
+        const auto middle = [&](const std::vector<double>& values) {
+            return part == "bodies" ? median(values) : mean(values);
+        };
+        GrowthRow& row = rows.emplace_back();
+        row.part = part;
+        row.size = size;
+        row.method = trial.method;
+        row.steps = static_cast<std::uint32_t>(trial.pairs.size());
+        row.pairs = middle(trial.pairs);
+        row.rays = middle(trial.rays);
+        row.contacts = middle(trial.contacts);
+        row.rays_cast = middle(trial.rays_cast);
+        row.walks = middle(trial.walks);
+        row.narrow_ms = middle(trial.narrow_ms);
+        row.us_per_pair = 1000 * row.narrow_ms / std::max(row.pairs, 1e-9);
+        row.pace = moved;
+    }
+}
+
+/// The last fifth of an avalanche, and before it steps in which the methods that keep something settle.
+Work end_of_avalanche(std::uint32_t bodies, const GrowthOptions& options) {
+    AvalancheWorkOptions how;
+    how.bodies = bodies;
+    how.steps = std::min(std::max(options.steps / 5, 1u) + 1, options.steps);
+    how.first = options.steps - how.steps;
+    how.stride = 1;
+    return avalanche_work(how);
 }
 
 /// Always the procedural sphere, which every count can have: the same surface, sampled more and more finely.
-GrowthRow of_triangles(std::uint32_t triangles, const GrowthOptions& options) {
-    const scenes::Model model = scenes::scene_model("sphere", triangles);
-    ApproachOptions approach;
-    approach.pairs = options.pairs;
-    approach.steps = 40;
-    const Work work = approaching_pairs("triangles", Shape::make(model.mesh), model.source, approach);
-    Settings settings;
-    settings.threads = options.threads;
-    Scene scene(settings);
-    for (const std::uint32_t shape : work.body_shape) scene.add(work.shapes[shape]);
-    GrowthRow row;
-    row.part = "triangles";
-    row.size = triangles;
-    row.steps = static_cast<std::uint32_t>(work.steps.size());
-    std::vector<std::vector<double>> times(work.steps.size()); // of each step, over the runs
-    for (int run = 0; run < 5; ++run) {
-        for (std::size_t k = 0; k < work.steps.size(); ++k) {
-            const WorkStep& step = work.steps[k];
-            for (BodyId body = 0; body < step.poses.size(); ++body) scene.set_pose(body, step.poses[body]);
-            scene.step(step.pairs);
-            times[k].push_back(scene.stats().narrow_ms);
-            if (run > 0) continue;
-            row.pairs += static_cast<double>(step.pairs.size()) / row.steps;
-            row.rays += static_cast<double>(scene.stats().rays) / row.steps;
-            row.contacts += static_cast<double>(scene.stats().contacts) / row.steps;
-        }
-    }
-    // The same work each time: what exceeds the least is other programs'.
-    for (const std::vector<double>& of_step : times)
-        row.narrow_ms += *std::min_element(of_step.begin(), of_step.end()) / row.steps;
-    row.us_per_pair = 1000 * row.narrow_ms / std::max(row.pairs, 1e-9);
-    return row;
+std::shared_ptr<const Shape> sphere(std::uint32_t triangles) {
+    return Shape::make(scenes::scene_model("sphere", triangles).mesh);
+}
+
+Work rolling(std::uint32_t triangles, double displacement, const GrowthOptions& options) {
+    RollingOptions roll;
+    roll.pairs = options.pairs;
+    roll.contacts = options.contacts;
+    roll.displacement = displacement;
+    return rolling_pairs("rolling", sphere(triangles), "a bumpy sphere", roll);
 }
 
 } // namespace
 
 std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress) {
+    const auto wanted = [&](const char* part) {
+        return options.parts.empty()
+               || std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
+    };
     std::vector<GrowthRow> rows;
-    for (std::uint32_t triangles : {100u, 316u, 1'000u, 3'160u, 10'000u, 31'600u, 100'000u}) {
-        if (triangles > options.triangles) break;
-        progress("meshes of " + std::to_string(triangles) + " triangles");
-        rows.push_back(of_triangles(triangles, options));
+    for (const std::uint32_t triangles : sizes) {
+        if (triangles > options.triangles || !wanted("triangles")) break;
+        progress("approaching meshes of " + std::to_string(triangles) + " triangles");
+        ApproachOptions approach;
+        approach.pairs = options.pairs;
+        approach.steps = 40;
+        measure(approaching_pairs("triangles", sphere(triangles), "a bumpy sphere", approach), "triangles", triangles,
+                5, options, rows);
     }
-    for (std::uint64_t bodies = 64; bodies <= options.bodies; bodies *= 2) {
+    for (const std::uint32_t triangles : sizes) {
+        if (triangles > options.triangles || !wanted("contacts")) break;
+        if (triangles < least_of_slopes) continue;
+        progress("rolling meshes of " + std::to_string(triangles) + " triangles");
+        measure(rolling(triangles, RollingOptions().displacement, options), "contacts", triangles, 5, options, rows);
+    }
+    for (const double displacement : displacements) {
+        if (options.triangles == 0 || !wanted("displacement")) break;
+        progress("rolling meshes, " + std::to_string(100 * displacement) + " % a step");
+        measure(rolling(std::min(displaced_triangles, options.triangles), displacement, options), "displacement",
+                displacement, 5, options, rows);
+    }
+    for (std::uint64_t bodies = 64; bodies <= options.bodies && wanted("bodies"); bodies *= 2) {
         progress("avalanche of " + std::to_string(bodies) + " bodies");
-        rows.push_back(of_bodies(static_cast<std::uint32_t>(bodies), options));
+        measure(end_of_avalanche(static_cast<std::uint32_t>(bodies), options), "bodies", static_cast<double>(bodies), 3,
+                options, rows);
     }
     return rows;
+}
+
+std::vector<Slope> slopes(std::span<const GrowthRow> rows) {
+    std::vector<Slope> all;
+    for (const char* part : growth_parts) {
+        const bool of_meshes = std::string(part) == "triangles" || std::string(part) == "contacts";
+        for (const Method method : methods) {
+            double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+            Slope slope{part, method, 0, 0, 0};
+            for (const GrowthRow& row : rows) {
+                if (row.part != part || row.method != method || !(row.size > 0) || !(row.us_per_pair > 0)) continue;
+                if (of_meshes && row.size < least_of_slopes) continue;
+                const double a = std::log(row.size), b = std::log(row.us_per_pair);
+                n += 1;
+                x += a;
+                y += b;
+                xx += a * a;
+                xy += a * b;
+                if (slope.from == 0) slope.from = row.size;
+                slope.to = row.size;
+            }
+            if (n < 2 || !(slope.to > slope.from)) continue;
+            slope.power = (n * xy - x * y) / (n * xx - x * x);
+            all.push_back(slope);
+        }
+    }
+    return all;
 }
 
 } // namespace raycontact::bench

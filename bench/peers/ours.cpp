@@ -9,12 +9,14 @@ namespace {
 
 class Ours : public Peer {
 public:
-    Ours(const Work& work, Caster caster) : scene_(make_scene(work, caster)) {
+    Ours(const Work& work, const Settings& settings) : scene_(make_scene(work, settings)) {
         for (const auto& shape : work.shapes) shapes_ += shape->memory_bytes();
     }
 
+    void restart(const WorkStep& first) override { rest(*scene_, first); }
+
     Found detect(const WorkStep& step) override {
-        for (BodyId body = 0; body < step.poses.size(); ++body) scene_->set_pose(body, step.poses[body]);
+        place(*scene_, step);
         Found found;
         for (const Contact& contact : scene_->step(step.pairs)) found.depth_sum += static_cast<double>(contact.depth);
         found.rays = scene_->stats().rays;
@@ -22,32 +24,25 @@ public:
         return found;
     }
 
-    void note(std::uint32_t step) override {
-        all_.add(step, scene_->contacts());
-        ContactHash one;
-        one.add(step, scene_->contacts());
-        each_.push_back(one.hex());
-    }
-    std::string hash() const override { return all_.hex(); }
-    std::vector<std::string> step_hashes() const override { return each_; }
+    const Scene* scene() const override { return scene_.get(); }
     std::uint64_t shared_memory() const override { return shapes_; }
 
 private:
     std::unique_ptr<Scene> scene_;
     std::uint64_t shapes_ = 0;
-    ContactHash all_;
-    std::vector<std::string> each_;
 };
 
 } // namespace
 
-Entrant ours(bool bvh) {
-    const Caster caster = bvh ? Caster::bvh : Caster::basic;
+Entrant ours(std::string name, Method method, Caster caster) {
+    const Settings settings = one_thread(method, caster);
     Entrant entrant;
-    entrant.name = bvh ? "bvh" : "basic";
-    entrant.what = bvh ? "RayContact standard bvh" : "RayContact standard basic";
-    entrant.every = bvh ? 1 : 10;
-    entrant.make = [caster](const Work& work) { return std::make_unique<Ours>(work, caster); };
+    entrant.name = std::move(name);
+    entrant.what = "RayContact " + std::string(to_string(method)) + " " + std::string(to_string(caster));
+    entrant.exact = method == Method::standard || method == Method::certified;
+    entrant.all_steps = method != Method::standard || caster == Caster::bvh;
+    entrant.every = 10;
+    entrant.make = [settings](const Work& work) { return std::make_unique<Ours>(work, settings); };
     return entrant;
 }
 

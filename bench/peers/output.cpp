@@ -2,13 +2,12 @@
 #include <bench/peers/output.h>
 
 #include <bench/peers/chart.h>
-#include <raycontact/error.h>
+#include <bench/peers/files.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 
 namespace raycontact::bench {
 
@@ -24,53 +23,55 @@ double ns_per_ray(const Result& r) {
     return 1000 * r.us * static_cast<double>(r.pair_steps) / static_cast<double>(std::max<std::uint64_t>(r.rays, 1));
 }
 
-std::string heading(const Machine& m) {
-    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}\n", m.date, m.cpu, m.cores,
-                       m.governor, m.load, m.compiler, m.commit);
-}
-
-Json machine_json(const Machine& m) {
-    return {{"date", m.date},         {"commit", m.commit},     {"cpu", m.cpu},  {"cores", m.cores},
-            {"compiler", m.compiler}, {"governor", m.governor}, {"load", m.load}};
-}
-
-std::string quoted(const std::string& text) {
-    std::string field = "\"";
-    for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return field + '"';
-}
-
-constexpr const char* machine_columns = "date,commit,cpu,cores,compiler,governor,load";
-std::string machine_fields(const Machine& m) {
-    return fmt::format("{},{},{},{},{},{},{:.2f}", m.date, m.commit, quoted(m.cpu), m.cores, quoted(m.compiler),
-                       m.governor, m.load);
-}
-
 std::string hash_of(const Result& r) {
     if (!r.agrees) return "DIFFERS from bvh";
     return r.peer == "basic" && r.ratio > 0 ? "same bits as bvh" : r.hash;
 }
 
 std::string csv(const Machine& machine, std::span<const WorkNote> works, std::span<const Result> results) {
+    // The columns of earlier results come first, so that both can be read alike.
     std::string text = fmt::format("{},work,source,peer,what,steps,pair_steps,us_per_pair_step,wall_us_per_pair_step,"
-                                   "times_ours,rays,contacts,memory_bytes,memory_count,hash\n",
+                                   "times_ours,rays,contacts,memory_bytes,memory_count,hash,times_iterative,"
+                                   "times_predictive,times_certified,pace_median,pace_most,rays_cast,walks,walks_lost,"
+                                   "pairs_full,pair_bytes,missed,invented,other_triangle,wrong,rays_compared,"
+                                   "contacts_compared\n",
                                    machine_columns);
     for (const Result& r : results) {
         const auto work = std::find_if(works.begin(), works.end(), [&](const WorkNote& w) { return w.name == r.work; });
-        text += fmt::format("{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{},{},{}\n", machine_fields(machine),
-                            r.work, quoted(work == works.end() ? "" : work->source), r.peer, quoted(r.what), r.steps,
-                            r.pair_steps, r.us, r.wall_us, r.ratio, r.rays, r.contacts, r.memory_bytes,
-                            r.memory_is_own_count ? "own" : "heap", r.hash);
+        const Pace pace = work == works.end() ? Pace() : work->pace;
+        text +=
+            fmt::format("{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.6f},{:.6f}",
+                        machine_fields(machine), r.work, quoted(work == works.end() ? "" : work->source), r.peer,
+                        quoted(r.what), r.steps, r.pair_steps, r.us, r.wall_us, r.ratio, r.rays, r.contacts,
+                        r.memory_bytes, r.memory_is_own_count ? "own" : "heap", r.hash, r.method_ratios[0],
+                        r.method_ratios[1], r.method_ratios[2], pace.median, pace.most);
+        if (r.wrong)
+            text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{}\n", r.sums.rays_cast, r.sums.walks,
+                                r.sums.walks_lost, r.sums.pairs_full, r.sums.pair_bytes, r.wrong->missed,
+                                r.wrong->invented, r.wrong->other_triangle, r.wrong->total(), r.wrong->rays_compared,
+                                r.wrong->contacts_compared);
+        else
+            text += ",,,,,,,,,,,\n";
     }
     return text;
 }
 
 std::string csv(const Machine& machine, std::span<const GrowthRow> rows) {
-    std::string text = fmt::format("{},part,size,steps,pairs,rays,contacts,narrow_ms,us_per_pair\n", machine_columns);
+    std::string text =
+        fmt::format("{},part,size,steps,pairs,rays,contacts,narrow_ms,us_per_pair,method,rays_cast,walks,"
+                    "pace_median\n",
+                    machine_columns);
     for (const GrowthRow& r : rows)
-        text += fmt::format("{},{},{},{},{:.2f},{:.2f},{:.2f},{:.5f},{:.4f}\n", machine_fields(machine), r.part, r.size,
-                            r.steps, r.pairs, r.rays, r.contacts, r.narrow_ms, r.us_per_pair);
+        text += fmt::format("{},{},{:g},{},{:.2f},{:.2f},{:.2f},{:.5f},{:.4f},{},{:.2f},{:.2f},{:.6f}\n",
+                            machine_fields(machine), r.part, r.size, r.steps, r.pairs, r.rays, r.contacts, r.narrow_ms,
+                            r.us_per_pair, to_string(r.method), r.rays_cast, r.walks, r.pace);
     return text;
+}
+
+const char* unit_of(const std::string& part) {
+    if (part == "bodies") return "bodies";
+    if (part == "displacement") return "displacement";
+    return part == "contacts" ? "triangles, contacts alike," : "triangles";
 }
 
 std::string chart(std::span<const WorkNote> works, std::span<const Result> results) {
@@ -85,44 +86,26 @@ std::string chart(std::span<const WorkNote> works, std::span<const Result> resul
 }
 
 std::string chart(std::span<const GrowthRow> rows) {
-    Panel bodies{"Avalanche",
-                 "bodies",
-                 "a step, one scale for all",
-                 {{"pairs", {}}, {"rays", {}}, {"contacts", {}}, {"narrow phase, us", {}}}};
-    Panel triangles{
-        "Approaching pairs", "triangles a mesh", "a pair and step", {{"rays", {}}, {"contacts", {}}, {"us", {}}}};
-    for (const GrowthRow& r : rows) {
-        if (r.part == "bodies") {
-            bodies.lines[0].points.emplace_back(r.size, r.pairs);
-            bodies.lines[1].points.emplace_back(r.size, r.rays);
-            bodies.lines[2].points.emplace_back(r.size, r.contacts);
-            bodies.lines[3].points.emplace_back(r.size, 1000 * r.narrow_ms);
-        } else {
-            const double pairs = std::max(r.pairs, 1e-9);
-            triangles.lines[0].points.emplace_back(r.size, r.rays / pairs);
-            triangles.lines[1].points.emplace_back(r.size, r.contacts / pairs);
-            triangles.lines[2].points.emplace_back(r.size, r.us_per_pair);
+    Panel panels[] = {
+        {"Avalanche", "bodies", "us a pair and step", {}},
+        {"Approaching pairs", "triangles a mesh", "us a pair and step", {}},
+        {"Rolling pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
+        {"Rolling pairs, contacts alike", "displacement a step, part of the size", "us a pair and step", {}}};
+    const std::string parts[] = {"bodies", "triangles", "contacts", "displacement"};
+    for (std::size_t i = 0; i < std::size(parts); ++i) {
+        for (const Method method : {Method::standard, Method::predictive, Method::certified}) {
+            Line& line = panels[i].lines.emplace_back();
+            line.name = to_string(method);
+            for (const GrowthRow& r : rows)
+                if (r.part == parts[i] && r.method == method) line.points.emplace_back(r.size, r.us_per_pair);
         }
+        Line& contacts = panels[i].lines.emplace_back();
+        contacts.name = "contacts a pair";
+        for (const GrowthRow& r : rows)
+            if (r.part == parts[i] && r.method == Method::standard)
+                contacts.points.emplace_back(r.size, r.contacts / std::max(r.pairs, 1e-9));
     }
-    return line_chart({bodies, triangles});
-}
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw InputError(file.string() + ": cannot be written; name another folder with --out");
-}
-
-std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                 const std::string& csv_text, const std::string& svg) {
-    const std::filesystem::path where = folder / machine.slug;
-    std::error_code error;
-    std::filesystem::create_directories(where, error);
-    if (error) throw InputError("--out " + folder.string() + ": cannot be made a folder; name another");
-    std::filesystem::path file = where / (name + "-" + machine.date + ".csv");
-    write_file(file, csv_text);
-    write_file(where / (name + "-" + machine.date + ".svg"), svg);
-    return file;
+    return line_chart({std::begin(panels), std::end(panels)});
 }
 
 } // namespace
@@ -130,43 +113,78 @@ std::filesystem::path write_both(const std::filesystem::path& folder, const Mach
 std::string table(const Machine& machine, std::span<const WorkNote> works, std::span<const Result> results) {
     std::string text = heading(machine);
     for (const WorkNote& work : works) {
-        text += fmt::format("\n{}: {} steps, {} pair-steps; {}\n", work.name, work.steps, work.pair_steps, work.source);
-        text += fmt::format("  {:<12}{:>12}{:>10}{:>9}{:>11}{:>11}{:>11}  {}\n", "", "us/pair", "wall us", "x ours",
-                            "rays/pair", "contacts", "memory MB", "hash");
+        text += fmt::format("\n{}: {} steps, {} pair-steps; {}\na pair moves {:.3g} % of its size a step (median; most "
+                            "{:.3g} %)\n",
+                            work.name, work.steps, work.pair_steps, work.source, 100 * work.pace.median,
+                            100 * work.pace.most);
+        text += fmt::format("  {:<16}{:>10}{:>10} | {:>8}{:>13}{:>12}{:>12} | {:>10}{:>10}{:>11}  {}\n", "", "us/pair",
+                            "wall us", "x bvh", "x iterative", "x predict.", "x certif.", "rays/pair", "contacts",
+                            "memory MB", "hash");
         for (const Result& r : results) {
             if (r.work != work.name || r.rays_alone) continue;
             text +=
-                fmt::format("  {:<12}{:>12.2f}{:>10.2f}{:>9.2f}{:>11.1f}{:>11.2f}{:>10.2f}{} {}\n", r.peer, r.us,
-                            r.wall_us, r.ratio, per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps),
+                fmt::format("  {:<16}{:>10.3f}{:>10.3f} | {:>8.2f}{:>13.2f}{:>12.2f}{:>12.2f} | "
+                            "{:>10.2f}{:>10.3f}{:>10.2f}{} {}\n",
+                            r.peer, r.us, r.wall_us, r.ratio, r.method_ratios[0], r.method_ratios[1],
+                            r.method_ratios[2], per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps),
                             static_cast<double>(r.memory_bytes) / 1e6, r.memory_is_own_count ? '*' : ' ', hash_of(r));
         }
         for (const Result& r : results) {
             if (r.work != work.name || !r.rays_alone) continue;
-            text += fmt::format("  {:<12}{:>9.1f} ns a ray{:>11.2f}{:>11.1f}{:>11.2f}\n", r.peer, ns_per_ray(r),
-                                r.ratio, per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps));
+            text +=
+                fmt::format("  {:<16}{:>7.1f} ns a ray, {:.2f} x rays, {:.1f} rays and {:.2f} contacts a pair\n",
+                            r.peer, ns_per_ray(r), r.ratio, per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps));
+        }
+        if (std::none_of(results.begin(), results.end(),
+                         [&](const Result& r) { return r.work == work.name && r.wrong.has_value(); }))
+            continue;
+        text += fmt::format("  {:<16}{:>10}{:>10}{:>10}{:>10}{:>10} | {:>8}{:>9}{:>8}{:>8}{:>14}{:>12}\n", "ours",
+                            "cast/pair", "walks", "lost", "full %", "kept MB", "missed", "invented", "other", "wrong",
+                            "of rays", "of contacts");
+        for (const Result& r : results) {
+            if (r.work != work.name || !r.wrong) continue;
+            text += fmt::format(
+                "  {:<16}{:>10.3f}{:>10.3f}{:>10.4f}{:>10.2f}{:>10.2f} | {:>8}{:>9}{:>8}{:>8}{:>14}{:>12}\n", r.peer,
+                per(r.sums.rays_cast, r.pair_steps), per(r.sums.walks, r.pair_steps),
+                per(r.sums.walks_lost, r.pair_steps), 50 * per(r.sums.pairs_full, r.pair_steps),
+                static_cast<double>(r.sums.pair_bytes) / 1e6, r.wrong->missed, r.wrong->invented,
+                r.wrong->other_triangle, r.wrong->total(), r.wrong->rays_compared, r.wrong->contacts_compared);
         }
     }
     return text
-           + "\nTimes are of one processor, medians of the runs; rays and contacts are a pair and step; memory is "
-             "the growth of the C library's heap, * the library's own count.\n";
+           + "\nTimes are of one processor, medians of the runs; ratios are over the steps that both were given; rays "
+             "and "
+             "contacts are a pair and step; memory is the growth of the C library's heap, * the library's own count. "
+             "Of "
+             "ours: rays cast and followed (walks), of these lost, pairs looked at in full, memory kept for pairs; "
+             "wrong against standard with every ray cast: contacts missed, invented, on another triangle.\n";
 }
 
 std::string table(const Machine& machine, std::span<const GrowthRow> rows) {
     std::string text = heading(machine);
-    text += fmt::format("  {:<10}{:>9}{:>11}{:>12}{:>11}{:>12}{:>10}\n", "", "", "pairs", "rays", "contacts",
-                        "narrow ms", "us/pair");
+    text += fmt::format("  {:<13}{:>9} {:<11}{:>10}{:>12}{:>11}{:>11}{:>9}{:>12}{:>10}{:>8}\n", "", "", "", "pairs",
+                        "rays", "cast", "contacts", "walks", "narrow ms", "us/pair", "pace %");
     for (const GrowthRow& r : rows)
-        text += fmt::format("  {:<10}{:>9}{:>11.1f}{:>12.1f}{:>11.1f}{:>12.4f}{:>10.3f}\n", r.part, r.size, r.pairs,
-                            r.rays, r.contacts, r.narrow_ms, r.us_per_pair);
+        text +=
+            fmt::format("  {:<13}{:>9g} {:<11}{:>10.1f}{:>12.1f}{:>11.1f}{:>11.1f}{:>9.1f}{:>12.4f}{:>10.3f}{:>8.2f}\n",
+                        r.part, r.size, to_string(r.method), r.pairs, r.rays, r.rays_cast, r.contacts, r.walks,
+                        r.narrow_ms, r.us_per_pair, 100 * r.pace);
+    for (const Slope& s : slopes(rows))
+        text += fmt::format("us a pair grows as {} to the power of {:.2f} with {} ({:g} to {:g})\n", unit_of(s.part),
+                            s.power, to_string(s.method), s.from, s.to);
     return text;
 }
 
 std::string json(const Machine& machine, std::span<const WorkNote> works, std::span<const Result> results) {
     Json out{{"machine", machine_json(machine)}, {"works", Json::array()}, {"results", Json::array()}};
     for (const WorkNote& w : works)
-        out["works"].push_back(
-            {{"work", w.name}, {"source", w.source}, {"steps", w.steps}, {"pair_steps", w.pair_steps}});
-    for (const Result& r : results)
+        out["works"].push_back({{"work", w.name},
+                                {"source", w.source},
+                                {"steps", w.steps},
+                                {"pair_steps", w.pair_steps},
+                                {"pace_median", w.pace.median},
+                                {"pace_most", w.pace.most}});
+    for (const Result& r : results) {
         out["results"].push_back({{"work", r.work},
                                   {"peer", r.peer},
                                   {"what", r.what},
@@ -181,6 +199,22 @@ std::string json(const Machine& machine, std::span<const WorkNote> works, std::s
                                   {"memory_count", r.memory_is_own_count ? "own" : "heap"},
                                   {"hash", r.hash},
                                   {"agrees", r.agrees}});
+        Json& result = out["results"].back();
+        for (std::size_t m = 0; m < coherent_methods.size(); ++m)
+            result[std::string("times_") + coherent_methods[m]] = r.method_ratios[m];
+        if (!r.wrong) continue;
+        result["rays_cast"] = r.sums.rays_cast;
+        result["walks"] = r.sums.walks;
+        result["walks_lost"] = r.sums.walks_lost;
+        result["pairs_full"] = r.sums.pairs_full;
+        result["pair_bytes"] = r.sums.pair_bytes;
+        result["wrong_rays"] = {{"total", r.wrong->total()},
+                                {"missed", r.wrong->missed},
+                                {"invented", r.wrong->invented},
+                                {"other_triangle", r.wrong->other_triangle}};
+        result["rays_compared"] = r.wrong->rays_compared;
+        result["contacts_compared"] = r.wrong->contacts_compared;
+    }
     return out.dump() + "\n";
 }
 
@@ -189,12 +223,20 @@ std::string json(const Machine& machine, std::span<const GrowthRow> rows) {
     for (const GrowthRow& r : rows)
         out["rows"].push_back({{"part", r.part},
                                {"size", r.size},
+                               {"method", to_string(r.method)},
                                {"steps", r.steps},
                                {"pairs", r.pairs},
                                {"rays", r.rays},
                                {"contacts", r.contacts},
                                {"narrow_ms", r.narrow_ms},
-                               {"us_per_pair", r.us_per_pair}});
+                               {"us_per_pair", r.us_per_pair},
+                               {"rays_cast", r.rays_cast},
+                               {"walks", r.walks},
+                               {"pace_median", r.pace}});
+    out["slopes"] = Json::array();
+    for (const Slope& s : slopes(rows))
+        out["slopes"].push_back(
+            {{"part", s.part}, {"method", to_string(s.method)}, {"power", s.power}, {"from", s.from}, {"to", s.to}});
     return out.dump() + "\n";
 }
 

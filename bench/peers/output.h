@@ -16,6 +16,7 @@ struct WorkNote {
     std::string name, source;
     std::uint32_t steps = 0;
     std::uint64_t pair_steps = 0;
+    Pace pace;
 };
 
 // For a person.

@@ -22,16 +22,14 @@ struct Found {
 class Peer {
 public:
     virtual ~Peer() = default;
+    /// Not timed: before each run; what is kept from step to step is forgotten.
+    virtual void restart(const WorkStep&) {}
     /// Not timed: what is no part of the question.
     virtual void prepare(const WorkStep&) {}
     /// Timed: poses set, pairs collided, contacts read, on the calling thread alone.
     virtual Found detect(const WorkStep& step) = 0;
-    /// Not timed, after each step of the first run.
-    virtual void note(std::uint32_t) {}
-
-    virtual std::string hash() const { return {}; }
-    /// Per step that note() was called for, in order; empty for those who promise no bits.
-    virtual std::vector<std::string> step_hashes() const { return {}; }
+    /// For those that are a scene of ours: what the last step found and did.
+    virtual const Scene* scene() const { return nullptr; }
     /// Bytes by the library's own count, for those that allocate behind the C library's back.
     virtual std::optional<std::uint64_t> own_memory() const { return {}; }
     /// Bytes it uses that were there before it was made.
@@ -42,7 +40,9 @@ struct Entrant {
     std::string name; ///< as in --only
     std::string what; ///< for a person: library, version, how it is asked
     bool rays_alone = false;
-    std::uint32_t every = 1;                                ///< of the steps, for one too slow to be given all
+    bool all_steps = false;                                 ///< it keeps something from step to step, or is quick
+    bool exact = false;                                     ///< its contacts must be those of `bvh`, bit for bit
+    std::uint32_t every = 1;                                ///< else, of the steps, for one too slow to be given all
     std::function<std::unique_ptr<Peer>(const Work&)> make; ///< empty: not built
     std::string why_not;                                    ///< what to install, where it was not built
 };
@@ -50,8 +50,12 @@ struct Entrant {
 /// All there are, ours first.
 std::vector<Entrant> entrants();
 
+/// Which steps of a work an entrant is given: all, or one in the middle of every `stride`.
+std::uint32_t stride(const Entrant& entrant, const Work& work);
+bool is_given(const Entrant& entrant, const Work& work, std::size_t step);
+
 // One a file; those of libraries that CMake did not find are answered by entrants() itself.
-Entrant ours(bool bvh);
+Entrant ours(std::string name, Method method, Caster caster);
 Entrant gimpact();
 Entrant fcl();
 Entrant ode();

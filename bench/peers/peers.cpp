@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/peer.h>
 
+#include <algorithm>
+
 namespace raycontact::bench {
 
 namespace {
@@ -17,8 +19,12 @@ namespace {
 
 std::vector<Entrant> entrants() {
     return {
-        ours(true),
-        ours(false),
+        ours("bvh", Method::standard, Caster::bvh),
+        ours("basic", Method::standard, Caster::basic),
+        ours("iterative", Method::iterative, Caster::bvh),
+        ours("iterative-basic", Method::iterative, Caster::basic),
+        ours("predictive", Method::predictive, Caster::bvh),
+        ours("certified", Method::certified, Caster::bvh),
         gimpact(),
 #ifdef RAYCONTACT_HAS_FCL
         fcl(),
@@ -35,6 +41,15 @@ std::vector<Entrant> entrants() {
         spared_rays_of_ours(),
         rays_of_embree(),
     };
+}
+
+std::uint32_t stride(const Entrant& entrant, const Work& work) {
+    return entrant.all_steps ? 1 : std::max(entrant.every, work.stride);
+}
+
+bool is_given(const Entrant& entrant, const Work& work, std::size_t step) {
+    const std::size_t apart = stride(entrant, work);
+    return step % apart == std::min(apart / 2, work.steps.size() - 1);
 }
 
 } // namespace raycontact::bench

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/work.h>
 
+#include <bench/peers/clock.h>
+#include <bench/peers/turns.h>
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <scenes/avalanche.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
+#include "pairs/displacement.h"
+#include "pairs/ordered_pairs.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace raycontact::bench {
@@ -18,31 +24,9 @@ namespace {
 
 constexpr double cell = 4; // metres between pairs; meshes are 1 m, so no pair sees another
 
-using Quaternion = std::array<double, 4>; // w x y z
-
-Quaternion times(const Quaternion& a, const Quaternion& b) {
-    return {
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-}
-
-/// In a ball, not too near its middle.
-std::array<double, 3> random_direction(scenes::Random& random) {
-    for (;;) {
-        const double x = random.symmetric(), y = random.symmetric(), z = random.symmetric();
-        const double square = x * x + y * y + z * z;
-        if (square > 1 || square < 0.01) continue;
-        const double length = std::sqrt(square);
-        return {x / length, y / length, z / length};
-    }
-}
-
-Quaternion random_rotation(scenes::Random& random) {
-    for (;;) {
-        const Quaternion q{random.symmetric(), random.symmetric(), random.symmetric(), random.symmetric()};
-        const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-        if (square <= 1 && square > 0.01) return q;
-    }
+double size_of(const Shape& shape) {
+    const Vec3 low = shape.box_min(), high = shape.box_max();
+    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 
 /// One pair's path: along `way` from far to near, each body turning about an axis of its own.
@@ -64,7 +48,7 @@ struct Path {
 
 /// Largest distance at which each pair has a contact: from afar in steps of 2 cm, then halved eight times.
 void find_touch(Work& work, std::vector<Path>& paths) {
-    const auto scene = make_scene(work, Caster::bvh);
+    const auto scene = make_scene(work, one_thread(Method::standard));
     std::vector<Pair> pairs;
     for (BodyId i = 0; i < paths.size(); ++i) pairs.emplace_back(2 * i, 2 * i + 1);
     const auto touching = [&](const std::vector<double>& distances) {
@@ -94,16 +78,6 @@ void find_touch(Work& work, std::vector<Path>& paths) {
     for (std::size_t i = 0; i < paths.size(); ++i) paths[i].touch = distances[i];
 }
 
-/// The pairs whose world boxes overlap, by our own sweep and prune: the same list for everyone.
-void find_pairs(Work& work) {
-    const auto scene = make_scene(work, Caster::bvh);
-    for (WorkStep& step : work.steps) {
-        for (BodyId body = 0; body < step.poses.size(); ++body) scene->set_pose(body, step.poses[body]);
-        scene->step();
-        step.pairs.assign(scene->pairs().begin(), scene->pairs().end());
-    }
-}
-
 } // namespace
 
 std::uint64_t Work::pair_steps() const {
@@ -112,14 +86,67 @@ std::uint64_t Work::pair_steps() const {
     return count;
 }
 
-std::unique_ptr<Scene> make_scene(const Work& work, Caster caster) {
+Settings one_thread(Method method, Caster caster) {
     Settings settings;
-    settings.method = Method::standard; // the peers keep nothing from step to step: the same rays for all
+    settings.method = method;
     settings.caster = caster;
     settings.threads = 1;
+    return settings;
+}
+
+std::unique_ptr<Scene> make_scene(const Work& work, const Settings& settings) {
     auto scene = std::make_unique<Scene>(settings);
     for (const std::uint32_t shape : work.body_shape) scene->add(work.shapes[shape]);
     return scene;
+}
+
+void place(Scene& scene, const WorkStep& step) {
+    for (BodyId body = 0; body < step.poses.size(); ++body) scene.set_pose(body, step.poses[body]);
+}
+
+void rest(Scene& scene, const WorkStep& first) {
+    place(scene, first);
+    scene.step(first.pairs);
+    scene.set_settings(Settings(scene.settings())); // forgets
+}
+
+void find_pairs(Work& work) {
+    const auto scene = make_scene(work, one_thread(Method::standard));
+    for (WorkStep& step : work.steps) {
+        place(*scene, step);
+        scene->step();
+        step.pairs.assign(scene->pairs().begin(), scene->pairs().end());
+    }
+}
+
+Pace pace(const Work& work) {
+    std::vector<double> moved;
+    for (std::size_t k = 1; k < work.steps.size(); ++k) {
+        const WorkStep &before = work.steps[k - 1], &now = work.steps[k];
+        for (const Pair& pair : now.pairs) {
+            if (!std::binary_search(before.pairs.begin(), before.pairs.end(), pair)) continue;
+            const Shape &a = work.shape(pair.first), &b = work.shape(pair.second);
+            const bool a_is_smaller = size_of(a) <= size_of(b);
+            const Shape& small = a_is_smaller ? a : b;
+            const BodyId own = a_is_smaller ? pair.first : pair.second, other = a_is_smaller ? pair.second : pair.first;
+            moved.push_back(displacement_bound(relative_pose(before.poses[other], before.poses[own]),
+                                               relative_pose(now.poses[other], now.poses[own]), small.radius(), 0)
+                            / size_of(small));
+        }
+    }
+    if (moved.empty()) return {};
+    return {median(moved), *std::max_element(moved.begin(), moved.end())};
+}
+
+double body_size(const Work& work) {
+    double size = std::numeric_limits<double>::infinity();
+    for (BodyId body = 0; body < work.body_shape.size(); ++body) {
+        const bool moves = std::any_of(work.steps.begin(), work.steps.end(), [&](const WorkStep& step) {
+            return step.poses[body] != work.steps.front().poses[body];
+        });
+        if (moves || work.steps.size() == 1) size = std::min(size, size_of(work.shape(body)));
+    }
+    return std::isfinite(size) ? size : size_of(*work.shapes.front());
 }
 
 Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
@@ -184,6 +211,7 @@ std::shared_ptr<const Shape> one_metre_mesh(const std::filesystem::path& file) {
 Work avalanche_work(const AvalancheWorkOptions& options) {
     scenes::AvalancheOptions how;
     how.bodies = options.bodies;
+    how.seed = options.seed;
     scenes::Avalanche scene(how);
     Work work;
     work.name = "avalanche";
@@ -191,10 +219,11 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
     work.shapes = log.shapes;
     work.body_shape = log.body_shape;
     work.source = std::to_string(options.bodies) + " bodies and the ground, steps " + std::to_string(options.first)
-                  + " to " + std::to_string(options.first + options.steps - 1) + " of the avalanche, every "
-                  + std::to_string(options.stride) + "th; " + log.mesh_source;
+                  + " to " + std::to_string(options.first + options.steps - 1) + " of the avalanche" + "; "
+                  + log.mesh_source;
+    work.stride = options.stride;
     for (std::uint32_t k = 0; k < options.first + options.steps; ++k) {
-        if (k >= options.first && (k - options.first) % options.stride == 0) {
+        if (k >= options.first) {
             // Bullet detects at the poses a step begins with.
             WorkStep& step = work.steps.emplace_back();
             for (std::uint32_t body = 0; body < options.bodies; ++body) step.poses.push_back(scene.pose(body));
@@ -217,9 +246,10 @@ Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions
     for (const recording::Body& body : reader.bodies()) work.body_shape.push_back(body.shape);
     const std::uint32_t end = std::min(reader.steps(), options.first + options.steps);
     work.source = "recording of " + reader.info().scene + ", " + std::to_string(work.body_shape.size())
-                  + " bodies, steps " + std::to_string(options.first) + " to " + std::to_string(end - 1) + ", every "
-                  + std::to_string(options.stride) + "th; " + reader.info().mesh_source;
-    for (std::uint32_t k = options.first; k < end; k += options.stride) {
+                  + " bodies, steps " + std::to_string(options.first) + " to " + std::to_string(end - 1) + "; "
+                  + reader.info().mesh_source;
+    work.stride = options.stride;
+    for (std::uint32_t k = options.first; k < end; ++k) {
         WorkStep& step = work.steps.emplace_back();
         reader.read_step(k, step.poses, step.pairs);
         for (std::size_t body = 0; body < step.poses.size(); ++body)

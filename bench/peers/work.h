@@ -23,11 +23,22 @@ struct Work {
     std::string source; ///< what it is made of, for a person
     std::vector<std::shared_ptr<const Shape>> shapes;
     std::vector<std::uint32_t> body_shape; ///< index into shapes, per body
-    std::vector<WorkStep> steps;
+    std::vector<WorkStep> steps;           ///< one after the other, as a simulation goes
+    std::uint32_t stride = 1; ///< of these, every how many are given to those who keep nothing and are slow
 
     const Shape& shape(BodyId body) const { return *shapes[body_shape[body]]; }
     std::uint64_t pair_steps() const;
 };
+
+/// How far pairs move from one step to the next, as a part of the size of the smaller body: any of its vertices, seen
+/// from the other body. The size of a body is the largest extent of its box.
+struct Pace {
+    double median = 0, most = 0;
+};
+Pace pace(const Work& work);
+
+/// Of the smallest shape that moves, metres.
+double body_size(const Work& work);
 
 struct ApproachOptions {
     std::uint32_t pairs = 32, steps = 100;
@@ -50,7 +61,8 @@ struct AvalancheWorkOptions {
     std::uint32_t bodies = 512;
     std::uint32_t first = 200; ///< step
     std::uint32_t steps = 200; ///< from there on
-    std::uint32_t stride = 20; ///< of those, every how many are given to the peers
+    std::uint32_t stride = 20; ///< see Work
+    std::uint64_t seed = 1;
 };
 
 /// Steps of the scene avalanche, simulated here and now; its pairs by our own sweep and prune.
@@ -60,7 +72,15 @@ Work avalanche_work(const AvalancheWorkOptions& options);
 /// InputError for a file that is none or damaged, or that ends before `first`.
 Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions& options);
 
-/// A scene's bodies in one RayContact scene on one thread.
-std::unique_ptr<Scene> make_scene(const Work& work, Caster caster);
+/// A work's bodies in one scene of ours.
+std::unique_ptr<Scene> make_scene(const Work& work, const Settings& settings);
+/// The default settings but for the method, on one thread.
+Settings one_thread(Method method, Caster caster = Caster::bvh);
+void place(Scene& scene, const WorkStep& step);
+/// Before a run over the steps of a work: the scene keeps nothing, as if it had never moved; its arrays stay.
+void rest(Scene& scene, const WorkStep& first);
+
+/// Fills in the pairs whose world boxes overlap, by our own sweep and prune: the same list for everyone.
+void find_pairs(Work& work);
 
 } // namespace raycontact::bench

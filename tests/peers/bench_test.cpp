@@ -10,9 +10,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -61,6 +64,43 @@ std::string content(const fs::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
+using Row = std::map<std::string, std::string>; ///< by the names of the columns
+
+/// Of a CSV whose quoted fields hold no line ends.
+std::vector<Row> table_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> lines;
+    std::istringstream in(csv);
+    for (std::string line; std::getline(in, line);) {
+        std::vector<std::string>& fields = lines.emplace_back(1);
+        bool quoted = false;
+        for (const char c : line) {
+            if (c == '"')
+                quoted = !quoted;
+            else if (c == ',' && !quoted)
+                fields.emplace_back();
+            else
+                fields.back() += c;
+        }
+    }
+    std::vector<Row> rows;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        EXPECT_EQ(lines[i].size(), lines[0].size()) << csv;
+        Row& row = rows.emplace_back();
+        for (std::size_t k = 0; k < lines[0].size() && k < lines[i].size(); ++k) row[lines[0][k]] = lines[i][k];
+    }
+    return rows;
+}
+
+/// Kinds of wrong rays add up, and so do contacts with those missed and invented.
+void expect_whole(const Row& row) {
+    const auto number = [&](const char* column) { return std::stoll(row.at(column)); };
+    EXPECT_EQ(number("missed") + number("invented") + number("other_triangle"), number("wrong"));
+    EXPECT_EQ(number("contacts") + number("missed"), number("contacts_compared") + number("invented"));
+    EXPECT_LE(number("contacts_compared"), number("rays_compared"));
+    EXPECT_GT(number("contacts_compared"), 0);
+    EXPECT_LE(number("walks_lost"), number("walks"));
+}
+
 } // namespace
 
 TEST(BenchPeers, PairsWithEveryPeerThatIsThere) {
@@ -77,12 +117,19 @@ TEST(BenchPeers, PairsWithEveryPeerThatIsThere) {
         EXPECT_GT(r["times_ours"], 0);
         EXPECT_TRUE(r["agrees"]);
     }
-    for (const char* peer : {"bvh", "basic", "gimpact", "embree", "rays", "embree-rays"})
+    for (const char* peer : {"bvh", "basic", "iterative", "iterative-basic", "predictive", "certified", "gimpact",
+                             "embree", "rays", "embree-rays"})
         EXPECT_TRUE(peers.contains(peer)) << peer;
     EXPECT_TRUE(out["machine"].contains("commit"));
 
     const std::string csv = content(file_with(folder.path, "peers-", ".csv"));
     EXPECT_TRUE(csv.starts_with("date,commit,cpu,")) << csv.substr(0, 80);
+    for (const auto& row : table_of(csv)) {
+        if (row.at("rays_compared").empty()) continue; // not ours
+        expect_whole(row);
+        const bool exact = row.at("peer") == "certified" || row.at("peer") == "bvh";
+        EXPECT_TRUE(!exact || row.at("wrong") == "0") << row.at("peer");
+    }
     EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 1 + out["results"].size());
     const std::string svg = content(file_with(folder.path, "peers-", ".svg"));
     EXPECT_TRUE(svg.starts_with("<svg"));
@@ -96,38 +143,109 @@ TEST(BenchPeers, AvalancheAndItsRecordingAreTheSameWork) {
     const std::string record = "\"" RAYCONTACT_PROGRAM_FILE "\" run avalanche --bodies 8 --steps 60 --json --record \""
                                + file + "\" >/dev/null 2>&1";
     ASSERT_EQ(std::system(record.c_str()), 0);
-    const std::string how = "peers --works avalanche --only bvh --bodies 8 --avalanche-first 40 --avalanche-steps 20 "
-                            "--avalanche-stride 5 --runs 1 --json";
+    const std::string how =
+        "peers --works avalanche --only bvh,certified,embree --bodies 8 --avalanche-first 40 --avalanche-steps 20 "
+        "--avalanche-stride 5 --runs 1 --json";
     const Ran here = run(how), recorded = run(how + " --recording \"" + file + "\"");
     ASSERT_EQ(here.status, 0);
     ASSERT_EQ(recorded.status, 0);
     const Json one = Json::parse(here.out)["results"][0], two = Json::parse(recorded.out)["results"][0];
-    EXPECT_EQ(one["steps"], 4);
+    EXPECT_EQ(one["steps"], 20); // ours keep something from step to step, so they are given all
     EXPECT_GT(one["contacts"], 0);
     EXPECT_EQ(one["hash"], two["hash"]); // the poses are the same bits, whoever found the pairs
+    const Json results = Json::parse(here.out)["results"];
+    ASSERT_EQ(results.size(), 3u);
+    EXPECT_EQ(results[1]["peer"], "certified");
+    EXPECT_EQ(results[1]["hash"], one["hash"]);
+    EXPECT_EQ(results[1]["wrong_rays"]["total"], 0);
+    EXPECT_EQ(results[2]["steps"], 4); // one in the middle of every stride
+    EXPECT_GT(results[2]["times_certified"], 0);
 }
 
 TEST(BenchPeers, BadUsage) {
-    for (const char* arguments :
-         {"", "peers --only nobody", "peers --works nothing", "peers --mesh /no/such.obj",
-          "peers --works avalanche --recording /no/such.glb", "peers --runs 0", "growth --pairs 0"}) {
+    for (const char* arguments : {"", "peers --only nobody", "peers --works nothing", "peers --mesh /no/such.obj",
+                                  "peers --works avalanche --recording /no/such.glb", "peers --runs 0",
+                                  "growth --pairs 0", "growth --only nothing", "sweep --only nothing",
+                                  "sweep /no/such.glb", "sweep /no/such.glb --only seeds", "sweep --values 0"}) {
         const Ran ran = run(arguments, true);
         EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
         EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << arguments << ": " << ran.out;
     }
 }
 
-TEST(BenchGrowth, BothParts) {
+TEST(BenchGrowth, EveryPart) {
     const Folder folder;
     const Ran ran =
         run("growth --bodies 64 --steps 30 --triangles 316 --pairs 2 --json --out \"" + folder.path.string() + "\"");
     ASSERT_EQ(ran.status, 0);
     const Json rows = Json::parse(ran.out)["rows"];
-    ASSERT_EQ(rows.size(), 3u);
-    EXPECT_EQ(rows[0]["part"], "triangles");
-    EXPECT_EQ(rows[2]["part"], "bodies");
-    EXPECT_EQ(rows[2]["size"], 64);
-    EXPECT_GT(rows[2]["narrow_ms"], 0);
+    std::map<std::string, std::size_t> parts;
+    for (const Json& row : rows) {
+        ++parts[row["part"]];
+        EXPECT_GT(row["narrow_ms"], 0);
+    }
+    // Three methods; of meshes so small none is in the part that keeps the contacts.
+    EXPECT_EQ(parts, (std::map<std::string, std::size_t>{{"triangles", 6}, {"displacement", 24}, {"bodies", 3}}));
+    EXPECT_EQ(rows.back()["size"], 64);
+    EXPECT_EQ(rows.back()["method"], "certified");
+    EXPECT_EQ(table_of(content(file_with(folder.path, "growth-", ".csv"))).size(), rows.size());
     EXPECT_NE(content(file_with(folder.path, "growth-", ".csv")).find("triangles,316"), std::string::npos);
     EXPECT_TRUE(content(file_with(folder.path, "growth-", ".svg")).starts_with("<svg"));
+    EXPECT_FALSE(Json::parse(ran.out)["slopes"].empty());
+}
+
+TEST(BenchSweep, BothPartsWithoutARecording) {
+    const Folder folder;
+    const Ran ran =
+        run("sweep --bodies 8 --steps 50 --swarm-steps 8 --triangles 400 --values 3 --runs 1 --seeds 2 --json "
+            "--out \""
+            + folder.path.string() + "\"");
+    ASSERT_EQ(ran.status, 0);
+    const Json out = Json::parse(ran.out);
+    ASSERT_EQ(out["works"].size(), 2u);
+    EXPECT_EQ(out["works"][1]["work"], "swarm");
+    EXPECT_EQ(out["verdicts"].size(), 6u);
+
+    const std::vector<Row> thresholds = table_of(content(file_with(folder.path, "sweep-thresholds-", ".csv")));
+    ASSERT_EQ(thresholds.size(), 2 * (1 + 3 * (3 + 1u)));
+    std::map<std::string, int> chosen;
+    for (const Row& row : thresholds) {
+        expect_whole(row);
+        const bool exact = row.at("method") == "certified" || row.at("method") == "standard";
+        EXPECT_TRUE(!exact || row.at("wrong") == "0") << row.at("method");
+        if (row.at("threshold") == "auto") ++chosen[row.at("method")];
+        EXPECT_GT(std::stod(row.at("us_per_step")), 0);
+    }
+    EXPECT_EQ(chosen, (std::map<std::string, int>{{"certified", 2}, {"iterative", 2}, {"predictive", 2}}));
+    const std::string svg = content(file_with(folder.path, "sweep-thresholds-", ".svg"));
+    EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
+
+    const std::vector<Row> seeds = table_of(content(file_with(folder.path, "sweep-seeds-", ".csv")));
+    ASSERT_EQ(seeds.size(), 2 * 7u);
+    for (const Row& row : seeds) {
+        expect_whole(row);
+        EXPECT_TRUE(row.at("method") != "certified" || row.at("wrong") == "0");
+    }
+    EXPECT_TRUE(content(file_with(folder.path, "sweep-seeds-", ".svg")).starts_with("<svg"));
+}
+
+TEST(BenchSweep, ARecording) {
+    const Folder folder;
+    fs::create_directories(folder.path);
+    const std::string file = (folder.path / "small.glb").string();
+    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE "\" run avalanche --bodies 8 --steps 50 --json --record \""
+                               + file + "\" >/dev/null 2>&1";
+    ASSERT_EQ(std::system(record.c_str()), 0);
+    const std::string how = " --bodies 8 --first 20 --steps 30 --values 2 --runs 1 --json --only thresholds";
+    const Ran recorded = run("sweep \"" + file + "\"" + how), here = run("sweep --swarm-steps 1 --triangles 60" + how);
+    ASSERT_EQ(recorded.status, 0);
+    ASSERT_EQ(here.status, 0);
+    const Json one = Json::parse(recorded.out)["thresholds"], two = Json::parse(here.out)["thresholds"];
+    ASSERT_EQ(one.size(), 1 + 3 * 3u);
+    // The poses are the same, and so is what is right; the pairs are not, since Bullet's boxes are larger.
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(one[i]["threshold"], two[i]["threshold"]) << i;
+        EXPECT_EQ(one[i]["contacts_compared"], two[i]["contacts_compared"]) << i;
+        EXPECT_GT(one[i]["contacts_compared"], 0) << i;
+    }
 }

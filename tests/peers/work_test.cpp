@@ -2,11 +2,17 @@
 // The question that everyone is asked: is it the same each time, and does it hold what it promises?
 #include <bench/peers/contest.h>
 #include <bench/peers/growth.h>
+#include <bench/peers/reference.h>
+#include <bench/peers/rolling.h>
+#include <bench/peers/seeds.h>
+#include <bench/peers/swarm.h>
+#include <bench/peers/thresholds.h>
 #include <scenes/models/model.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace raycontact;
 using namespace raycontact::bench;
@@ -36,10 +42,10 @@ const Result& of(const std::vector<Result>& results, const std::string& peer) {
 TEST(PeersWork, PairsStartApartAndEndInContact) {
     const Work work = some_pairs();
     ASSERT_EQ(work.steps.size(), 20u);
-    const auto scene = make_scene(work, Caster::bvh);
+    const auto scene = make_scene(work, one_thread(Method::standard));
     std::vector<std::size_t> contacts;
     for (const WorkStep& step : work.steps) {
-        for (BodyId body = 0; body < step.poses.size(); ++body) scene->set_pose(body, step.poses[body]);
+        place(*scene, step);
         contacts.push_back(scene->step(step.pairs).size());
         for (const Pair& pair : step.pairs) {
             EXPECT_EQ(pair.first % 2, 0u);
@@ -80,6 +86,32 @@ TEST(PeersContest, OursAgreeAndEmbreeFindsTheSameContacts) {
     EXPECT_NEAR(of(results, "embree").depth_sum, bvh.depth_sum, 1e-3 * bvh.depth_sum);
 }
 
+TEST(PeersContest, EveryMethodIsHeldAgainstStandard) {
+    const Work work = some_pairs();
+    const std::vector<std::string> methods{"bvh", "basic", "iterative", "iterative-basic", "predictive", "certified"};
+    const std::vector<Result> results = contest(work, only(methods), 1, [](const std::string&) {});
+    ASSERT_EQ(results.size(), methods.size());
+    const Result& bvh = of(results, "bvh");
+    for (const Result& r : results) {
+        ASSERT_TRUE(r.wrong.has_value()) << r.peer;
+        EXPECT_TRUE(r.agrees) << r.peer;
+        EXPECT_EQ(r.contacts, r.sums.contacts) << r.peer; // checked and timed runs did the same
+        EXPECT_EQ(r.contacts + r.wrong->missed, r.wrong->contacts_compared + r.wrong->invented) << r.peer;
+        EXPECT_GT(r.method_ratios[0], 0) << r.peer;
+    }
+    for (const char* exact : {"bvh", "basic", "certified"}) EXPECT_EQ(of(results, exact).wrong->total(), 0u) << exact;
+    EXPECT_EQ(of(results, "certified").hash, bvh.hash);
+    EXPECT_EQ(bvh.wrong->contacts_compared, bvh.contacts);
+    EXPECT_EQ(bvh.wrong->rays_compared, bvh.rays);
+    // Both casters give the same bits, wrong ones too.
+    EXPECT_EQ(of(results, "iterative").hash, of(results, "iterative-basic").hash);
+    // The state from step to step is at work: iterative follows rays, certified leaves rays out.
+    EXPECT_EQ(of(results, "iterative").steps, 20u);
+    EXPECT_GT(of(results, "iterative").sums.walks, 0u);
+    EXPECT_GT(of(results, "predictive").sums.pair_bytes, 0u);
+    EXPECT_LT(of(results, "certified").rays, bvh.rays);
+}
+
 TEST(PeersContest, PeersMeetWhereWeDo) {
     const Work work = some_pairs();
     std::vector<std::string> names{"bvh", "gimpact", "fcl", "ode"};
@@ -98,18 +130,160 @@ TEST(PeersContest, PeersMeetWhereWeDo) {
         EXPECT_EQ(r.contacts, 0u) << r.peer;
 }
 
+TEST(PeersWork, StepsOfPairsFollowEachOther) {
+    ApproachOptions options;
+    options.pairs = 2; // as many steps as usual
+    const Pace pairs = pace(approaching_pairs("some", Shape::make(scenes::scene_model("knot", 300).mesh), "", options));
+    EXPECT_GT(pairs.median, 0.002);
+    EXPECT_LT(pairs.most, 0.015);
+}
+
+TEST(PeersWork, RollingPairsKeepTheirContactsAndTheirPace) {
+    RollingOptions options;
+    options.pairs = 2;
+    options.steps = 12;
+    options.displacement = 0.01;
+    for (const std::uint32_t triangles : {1000u, 4000u}) {
+        const Work work =
+            rolling_pairs("rolling", Shape::make(scenes::scene_model("sphere", triangles).mesh), "", options);
+        EXPECT_NEAR(pace(work).median, 0.01, 0.002);
+        const auto scene = make_scene(work, one_thread(Method::standard));
+        double contacts = 0;
+        for (const WorkStep& step : work.steps) {
+            place(*scene, step);
+            contacts += static_cast<double>(scene->step(step.pairs).size());
+        }
+        EXPECT_NEAR(contacts / static_cast<double>(work.pair_steps()), options.contacts, 0.5) << triangles;
+    }
+    options.displacement = 0;
+    const Work still = rolling_pairs("rolling", Shape::make(scenes::scene_model("sphere", 1000).mesh), "", options);
+    EXPECT_EQ(pace(still).most, 0);
+}
+
+TEST(PeersWork, SwarmIsFastAndMeets) {
+    SwarmOptions options;
+    options.steps = 30;
+    options.triangles = 600;
+    const Work one = swarm_work(options), two = swarm_work(options);
+    EXPECT_EQ(one.body_shape.size(), 6u);
+    EXPECT_GT(pace(one).median, 0.03);
+    EXPECT_EQ(one.steps.back().poses, two.steps.back().poses);
+    const auto scene = make_scene(one, one_thread(Method::certified));
+    std::size_t contacts = 0;
+    for (const WorkStep& step : one.steps) {
+        place(*scene, step);
+        contacts += scene->step(step.pairs).size();
+    }
+    EXPECT_GT(contacts, 30u);
+}
+
+TEST(Sweep, EveryThresholdAndTheChosenOne) {
+    const Work work = some_pairs();
+    ThresholdOptions options;
+    options.values = 4;
+    options.runs = 1;
+    const std::vector<ThresholdRow> rows = sweep_thresholds(work, options, [](const std::string&) {});
+    ASSERT_EQ(rows.size(), 1 + 3 * (4 + 1u));
+    for (const ThresholdRow& row : rows) {
+        EXPECT_GT(row.us, 0);
+        EXPECT_EQ(row.sums.contacts + row.wrong.missed, row.wrong.contacts_compared + row.wrong.invented);
+        EXPECT_EQ(row.wrong.contacts_compared, rows[0].sums.contacts);
+        EXPECT_LE(row.sums.pairs_full, 2 * row.pair_steps);
+        const bool exact = row.method == Method::standard || row.method == Method::certified;
+        EXPECT_TRUE(!exact || row.wrong.total() == 0);
+    }
+    EXPECT_EQ(*rows[1].fraction, 1e-4);
+    EXPECT_NEAR(*rows[4].fraction, 1e-1, 1e-12);
+    EXPECT_FALSE(rows[5].fraction.has_value());
+    EXPECT_LT(rows[4].sums.pairs_full, rows[1].sums.pairs_full); // a larger threshold looks less often
+    EXPECT_NEAR(rows[0].size, 1, 0.01);
+    const std::vector<Verdict> found = verdicts(rows);
+    ASSERT_EQ(found.size(), 3u);
+    for (const Verdict& v : found) {
+        EXPECT_LE(v.fastest->us, v.rightest->us);
+        EXPECT_LE(v.rightest->wrong.total(), v.fastest->wrong.total());
+        EXPECT_TRUE(v.fastest->fraction && v.rightest->fraction && !v.chosen->fraction);
+    }
+}
+
+TEST(Sweep, Seeds) {
+    SeedOptions options;
+    options.count = 2;
+    options.bodies = 27;
+    options.steps = 80;
+    const std::vector<SeedRow> rows = sweep_seeds(options, [](const std::string&) {});
+    ASSERT_EQ(rows.size(), 2 * 7u);
+    EXPECT_EQ(rows[0].seed, 1u);
+    EXPECT_EQ(rows[7].seed, 2u);
+    EXPECT_GT(rows[0].wrong.contacts_compared, 0u);
+    EXPECT_NE(rows[0].wrong.contacts_compared, rows[7].wrong.contacts_compared); // another seed, another avalanche
+    for (const SeedRow& row : rows) {
+        EXPECT_EQ(row.steps, 80u);
+        EXPECT_EQ(row.sums.contacts + row.wrong.missed, row.wrong.contacts_compared + row.wrong.invented);
+        EXPECT_TRUE(row.method != Method::certified || row.wrong.total() == 0);
+    }
+}
+
+TEST(Sweep, ReductionIsOfTheSameSeedAndSetting) {
+    std::vector<SeedRow> rows;
+    const auto add_row = [&](std::uint64_t seed, Method method, bool fixed, bool cast, std::uint64_t missed) {
+        SeedRow& row = rows.emplace_back();
+        row.seed = seed;
+        row.method = method;
+        row.fixed = fixed;
+        row.cast_lost_walks = cast;
+        row.wrong.missed = missed;
+    };
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        add_row(seed, Method::iterative, true, true, 100 * seed);
+        add_row(seed, Method::predictive, true, true, 10);
+        add_row(seed, Method::predictive, true, false, 20);
+        add_row(seed, Method::iterative, false, true, 0);
+        add_row(seed, Method::predictive, false, true, 0);
+    }
+    const std::vector<Reduction> all = reductions(rows);
+    ASSERT_EQ(all.size(), 4u);
+    EXPECT_EQ(all[0].of_seeds.size(), 3u);
+    EXPECT_DOUBLE_EQ(all[0].least, 0.9);
+    EXPECT_DOUBLE_EQ(all[0].median, 0.95);
+    EXPECT_DOUBLE_EQ(all[1].least, 0.8);
+    EXPECT_TRUE(all[2].of_seeds.empty()); // nothing wrong to begin with is no reduction
+}
+
 TEST(Growth, RaysGrowWithTriangles) {
     GrowthOptions options;
+    options.parts = {"triangles", "contacts"};
     options.bodies = 0;
-    options.triangles = 1000;
+    options.triangles = 3160;
     options.pairs = 2;
     const std::vector<GrowthRow> rows = growth(options, [](const std::string&) {});
-    ASSERT_EQ(rows.size(), 3u);
-    EXPECT_EQ(rows[2].size, 1000u);
-    EXPECT_LT(rows[0].rays, rows[1].rays);
-    EXPECT_LT(rows[1].rays, rows[2].rays);
+    ASSERT_EQ(rows.size(), 3 * (4 + 2u));
     for (const GrowthRow& row : rows) {
         EXPECT_GT(row.contacts, 0);
         EXPECT_GT(row.us_per_pair, 0);
     }
+    for (std::size_t i = 3; i < 12; i += 3) EXPECT_LT(rows[i - 3].rays, rows[i].rays);
+    EXPECT_LT(1.5 * rows[6].contacts, rows[9].contacts);
+    // Rolling pairs have more rays, too, but the contacts stay.
+    EXPECT_EQ(rows[12].part, "contacts");
+    EXPECT_LT(rows[12].rays, rows[15].rays);
+    EXPECT_NEAR(rows[12].contacts, rows[15].contacts, 0.1 * rows[12].contacts);
+    // Certified finds what standard finds.
+    for (std::size_t i = 0; i < rows.size(); i += 3) EXPECT_EQ(rows[i].contacts, rows[i + 2].contacts);
+    EXPECT_EQ(slopes(rows).size(), 6u);
+}
+
+TEST(Growth, SlopeOfAPower) {
+    std::vector<GrowthRow> rows;
+    for (const double size : {64.0, 128.0, 256.0, 512.0}) {
+        GrowthRow& row = rows.emplace_back();
+        row.part = "bodies";
+        row.size = size;
+        row.us_per_pair = 3 * size * std::sqrt(size);
+    }
+    const std::vector<Slope> all = slopes(rows);
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_NEAR(all[0].power, 1.5, 1e-9);
+    EXPECT_EQ(all[0].from, 64);
+    EXPECT_EQ(all[0].to, 512);
 }
