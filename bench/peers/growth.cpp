@@ -85,7 +85,7 @@ void measure(const Work& work, const std::string& part, double size, int runs, c
     }
 }
 
-/// The last fifth of an avalanche, and before it steps in which the methods that keep something settle.
+/// The last fifth of an avalanche, and the step before it, in which every pair is new.
 Work end_of_avalanche(std::uint32_t bodies, const GrowthOptions& options) {
     AvalancheWorkOptions how;
     how.bodies = bodies;

@@ -83,7 +83,8 @@ Work rolling_pairs(std::string name, const std::shared_ptr<const Shape>& shape, 
     std::vector<Roll> rolls(options.pairs);
     for (std::uint32_t i = 0; i < options.pairs; ++i) {
         Roll& one = rolls[i];
-        one.home = {cell * (i % 4u), cell * static_cast<double>(i / 4u % 4u), cell * static_cast<double>(i / 16u)};
+        const std::uint32_t row = i / 4 % 4, layer = i / 16;
+        one.home = {cell * (i % 4), cell * row, cell * layer};
         one.way = random_direction(random);
         one.spin_a = random_direction(random);
         one.spin_b = random_direction(random);
