@@ -21,13 +21,16 @@ constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followe
 // not clocks: equal input, equal result.
 double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+    const double least = 0.001 * size, most = 0.015 * size;
+    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
+    if (state.speed > most) return 0.2 * least;
     double threshold = 4 * state.speed;
-    if (state.threshold > 0) {
+    if (state.threshold >= least) {
         const double looks = cost_of_look + state.look_cost;
         const double follows = state.steps * (state.directed[0].count + state.directed[1].count);
         threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
     }
-    return std::clamp(threshold, 0.001 * size, 0.015 * size);
+    return std::clamp(threshold, least, most);
 }
 
 } // namespace
