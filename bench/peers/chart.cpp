@@ -11,9 +11,9 @@ namespace raycontact::bench {
 
 namespace {
 
-// Told apart with and without colour vision (Okabe and Ito 2008).
-constexpr const char* colours[] = {"#0072b2", "#56b4e9", "#d55e00", "#e69f00",
-                                   "#009e73", "#cc79a7", "#777777", "#000000"};
+// Told apart with and without colour vision (Okabe and Ito 2008), two more at the end (Tol 2021).
+constexpr const char* colours[] = {"#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73",
+                                   "#cc79a7", "#777777", "#000000", "#882255", "#999933"};
 const char* colour(std::size_t i) {
     return colours[i % std::size(colours)];
 }
@@ -92,7 +92,15 @@ std::string panel_svg(const Panel& panel, double left, double top, double width,
     }
     svg += text(left + width / 2, top + height + 34, "middle", panel.x_unit);
     svg += text(left, top - 8, "start", panel.y_unit, "fill=\"#666\"");
-    int shown = 0;
+    // The key is where the lines begin farther away; dashed ones have the colour of another.
+    int named = 0, high = 0, low = 0, shown = 0;
+    for (const Line& one : panel.lines) {
+        if (one.points.empty()) continue;
+        named += one.dashed ? 0 : 1;
+        const auto [a, b] = one.points.front();
+        if (a > 0 && b > 0) ++(y.at(b) > 0.5 ? high : low);
+    }
+    const double key_top = high > low ? top + height - 16 * named : top + 14;
     for (std::size_t k = 0; k < panel.lines.size(); ++k) {
         const Line& one = panel.lines[k];
         if (one.points.empty()) continue;
@@ -105,8 +113,9 @@ std::string panel_svg(const Panel& panel, double left, double top, double width,
         }
         svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, stroke,
                            one.dashed ? " stroke-dasharray=\"6 4\"" : "");
-        if (!one.dashed) svg += dots;
-        const double key = top + 14 + 16 * shown++;
+        if (one.dashed) continue;
+        svg += dots;
+        const double key = key_top + 16 * shown++;
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"10\" height=\"10\" fill=\"{}\"/>\n", left + 8,
                            key - 9, stroke);
         svg += text(left + 24, key, "start", one.name);
