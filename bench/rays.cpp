@@ -131,7 +131,8 @@ int main(int argc, char** argv) try {
         for (Contender& c : contenders) {
             const double queue = milliseconds([&] { c.queue.fill(*c.device, c.store->arrays(), c.pairs, false); });
             const double bvh = milliseconds([&] {
-                rc::cast_standard(*c.device, rc::Caster::bvh, c.store->arrays(), c.pairs, c.queue.rays(), c.hits);
+                rc::cast_standard(*c.device, rc::Caster::bvh, c.store->arrays(), c.pairs, c.queue.rays(), c.hits,
+                                  false);
             });
             c.hash = c.hash_hits();
             if (run == 0) continue; // warm-up

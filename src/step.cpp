@@ -26,8 +26,9 @@ void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const P
     Device& on = device();
     order_pairs(executor(), bodies, pairs, ordered_);
     device_pairs_.write(on, ordered_);
-    queue_.fill(on, shapes_.arrays(), device_pairs_, settings_.skip_outside && settings_.caster != Caster::basic);
-    cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_);
+    const bool use_grid = settings_.skip_outside && settings_.caster != Caster::basic;
+    queue_.fill(on, shapes_.arrays(), device_pairs_, use_grid);
+    cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, use_grid);
     stats.side_tests = gather_.run(on, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, local_);
     stats.vertices = queue_.vertices_tested();
     stats.rays = queue_.vertices_inside();
@@ -56,8 +57,7 @@ void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const P
     Device& on = device();
     motion_.update(executor(), bodies);
     coherent_.follow(on, executor(), shapes_, bodies, pairs, motion_, settings_);
-    stats.side_tests =
-        gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
+    stats.side_tests = gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
     // Two runs, pairs looked at in full and followed ones, each in the order of the pairs.
     for (kernels::LocalContact& contact : local_) contact.pair = coherent_.ordered()[contact.pair];
     const auto by_pair = [](const auto& a, const auto& b) { return a.pair < b.pair; };

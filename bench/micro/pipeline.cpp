@@ -62,7 +62,7 @@ void Pipeline::write_rays() {
 
 void Pipeline::cast_bvh() {
     const auto& shapes = store_.arrays();
-    launch<KernelId::cast_rays_bvh>(*device_, rays_.size(), pairs_, shapes.headers, shapes.vertex_blocks, shapes.nodes,
+    launch<KernelId::cast_rays_bvh>(*device_, rays_.size(), 0u, pairs_, shapes.headers, shapes.vertex_blocks, shapes.nodes,
                                     shapes.triangle_blocks, shapes.face_normals, rays_, hits_);
 }
 

@@ -56,7 +56,7 @@ Visits count_visits(const Batch& batch, const std::vector<kernels::Ray>& rays) {
     const auto count = static_cast<kernels::uint>(rays.size());
     std::vector<kernels::Hit> hits(count);
     counted::seen = {};
-    counted::cast_rays_bvh({0, count}, count, batch.ordered.data(), &shape.header, shape.vertex_blocks.data(),
+    counted::cast_rays_bvh({0, count}, count, 0u, batch.ordered.data(), &shape.header, shape.vertex_blocks.data(),
                            shape.nodes.data(), shape.triangle_blocks.data(), shape.face_normals.data(), rays.data(),
                            hits.data());
     std::uint64_t traversals = 0; // the rare side tests included

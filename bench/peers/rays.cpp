@@ -51,12 +51,13 @@ public:
 
     Found detect(const WorkStep&) override {
         const FloatEnvironment environment;
-        return cast();
+        return cast(false);
     }
 
 protected:
-    Found cast() {
-        cast_standard(*opened_.device, Caster::bvh, shapes_.arrays(), pairs_, queue_.rays(), hits_);
+    /// near: see cast_standard().
+    Found cast(bool near) {
+        cast_standard(*opened_.device, Caster::bvh, shapes_.arrays(), pairs_, queue_.rays(), hits_, near);
         host_.resize(hits_.size());
         hits_.read(*opened_.device, host_);
         Found found;
@@ -83,7 +84,7 @@ public:
     Found detect(const WorkStep&) override {
         const FloatEnvironment environment;
         queue_.fill(*opened_.device, shapes_.arrays(), pairs_, true);
-        Found found = cast();
+        Found found = cast(true);
         found.rays = queue_.vertices_inside();
         return found;
     }

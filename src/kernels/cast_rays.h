@@ -50,13 +50,13 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
     return closest;
 }
 
-// What the ray meets first. Most rays of the BVH caster end close by: a short one visits few boxes, and what it finds
-// within its length is the closest of all.
-DEVICE Closest find_closest(const uint caster, const RayFrame* frame, float reach,
+// What the ray meets first. Where a grid has sorted out the vertices far outside, most rays end close by
+// (`short_first`): a short one visits few boxes, and what it finds within its length is the closest of all.
+DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame* frame, float reach,
                             GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                             GLOBAL const TriangleBlock* RESTRICT blocks) {
     const float probe = PROBE_TOLERANCES * shape->tolerance;
-    if (caster == CASTER_BVH && probe < reach) {
+    if (caster == CASTER_BVH && short_first != 0u && probe < reach) {
         const Closest near = traverse(caster, frame, probe, shape, nodes, blocks);
         if (near.back <= probe || near.front <= probe) return near;
     }
@@ -93,15 +93,15 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
     return hit;
 }
 
-DEVICE Hit cast_ray(const uint caster, const SourceRay* ray, GLOBAL const ShapeHeader* RESTRICT shape,
+DEVICE Hit cast_ray(const uint caster, uint short_first, const SourceRay* ray, GLOBAL const ShapeHeader* RESTRICT shape,
                     GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                     GLOBAL const Packed3* RESTRICT normals) {
     const RayFrame frame = frame_ray(ray->position, ray->direction);
-    const Closest own = find_closest(caster, &frame, ray->reach, shape, nodes, blocks);
+    const Closest own = find_closest(caster, short_first, &frame, ray->reach, shape, nodes, blocks);
     return decide(caster, ray, &own, shape, nodes, blocks, normals);
 }
 
-KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const OrderedPair* RESTRICT pairs,
                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                           GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
@@ -110,7 +110,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BVH, &ray, shape, nodes, blocks, normals);
+        hits[i] = cast_ray(CASTER_BVH, short_first, &ray, shape, nodes, blocks, normals);
     }
 }
 

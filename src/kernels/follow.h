@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3), and
-// predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
+// Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3),
+// and predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 // Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
@@ -67,7 +67,7 @@ DEVICE Outcome cast_both(const uint caster, const SourceRay* ray, uint own, cons
         end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
         return end;
     }
-    end.hit = own != 0u ? cast_ray(caster, ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.hit = own != 0u ? cast_ray(caster, 1u, ray, shape, nodes, blocks, normals) : no_hit(0u);
     end.next = end.hit.triangle;
     if (end.next == NONE && predictive != 0u) {
         const RayFrame opposite = opposite_frame(ray);
@@ -97,7 +97,8 @@ DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RE
     edge[0] = cross_accurate(x[1], y[0], y[1], x[0]);
     const float area = (edge[1] + edge[2]) + edge[0];
     Passage passage;
-    passage.through = (uint)(edge[0] <= 0.0f) & (uint)(edge[1] <= 0.0f) & (uint)(edge[2] <= 0.0f) & (uint)(area != 0.0f);
+    passage.through =
+        (uint)(edge[0] <= 0.0f) & (uint)(edge[1] <= 0.0f) & (uint)(edge[2] <= 0.0f) & (uint)(area != 0.0f);
     passage.across = NONE;
     passage.t = ((edge[1] * z[0] + edge[2] * z[1] + edge[0] * z[2]) / area) * ray->shear[2];
     if (passage.through == 0u) {
@@ -118,8 +119,8 @@ DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RE
     return passage;
 }
 
-// Algorithm 1: from the last triangle over neighbours, across the edge that the line passes farthest beyond, until the line passes through one that it
-// leaves through. Ends after max_iterations, at a border, and where it would turn back.
+// Algorithm 1: from the last triangle over neighbours, across the edge that the line passes farthest beyond, until the
+// line passes through one that it leaves through. Ends after max_iterations, at a border, and where it would turn back.
 DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_iterations, const uint predictive,
                     float culling, GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Face* RESTRICT faces,
                     GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
@@ -135,13 +136,11 @@ DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_i
         uint came_by = NONE;
         for (uint e = 0u; e < 3u; ++e)
             if (came_from != NONE && face.neighbour[e] == came_from) came_by = e;
-        GLOBAL const TriangleBlock* RESTRICT block =
-            blocks + shape->triangle_block_first + face.slot / TRIANGLE_LANES;
+        GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + face.slot / TRIANGLE_LANES;
         const Passage passage = pass_triangle(&frame, block, face.slot % TRIANGLE_LANES, came_by);
         if (passage.through != 0u) {
             const Packed3 n = normals[shape->normal_first + at];
-            const float facing =
-                (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
+            const float facing = (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
             end.how = WALKED;
             if (passage.t >= 0.0f && passage.t <= ray->reach && inside != 0u) {
                 end.hit.triangle = at;
@@ -173,15 +172,15 @@ DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, u
         how = end.how;
         if ((how & LOST) == 0u || cast_lost == 0u) return end;
     }
-    Outcome end = cast_both(caster, &ray, start != AHEAD_ONLY ? inside : 0u, predictive, culling, shape, nodes, blocks,
-                            normals);
+    Outcome end =
+        cast_both(caster, &ray, start != AHEAD_ONLY ? inside : 0u, predictive, culling, shape, nodes, blocks, normals);
     end.how |= how;
     return end;
 }
 
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
-// the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The upper
-// half of Cluster.lanes tells those whose own ray must be cast.
+// the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The
+// upper half of Cluster.lanes tells those whose own ray must be cast.
 KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT wide,
                             GLOBAL const float* RESTRICT reach, GLOBAL const float* RESTRICT margins,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
@@ -195,7 +194,8 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         clusters[i].lanes = 0u;
         inside[i] = 0u;
         counts[i] = 0u;
-        if (safe_block(pair, shapes + pair->source, boxes, clusters[i].vertex_block, target, clearances) > near) continue;
+        if (safe_block(pair, shapes + pair->source, boxes, clusters[i].vertex_block, target, clearances) > near)
+            continue;
         const WatchLanes found = watch_lanes(pair, vertices + clusters[i].vertex_block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
@@ -258,9 +258,9 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        const Outcome end = follow_ray(CASTER_BVH, ray, is_inside(pair->bounds, ray.position),
-                                       starts[i], max_iterations, predictive, cast_lost,
-                                       cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        const Outcome end =
+            follow_ray(CASTER_BVH, ray, is_inside(pair->bounds, ray.position), starts[i], max_iterations, predictive,
+                       cast_lost, cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;
         hows[i] = end.how;
@@ -277,9 +277,9 @@ KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predic
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        const Outcome end = follow_ray(CASTER_BASIC, ray, is_inside(pair->bounds, ray.position),
-                                       starts[i], max_iterations, predictive, cast_lost,
-                                       cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        const Outcome end =
+            follow_ray(CASTER_BASIC, ray, is_inside(pair->bounds, ray.position), starts[i], max_iterations, predictive,
+                       cast_lost, cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;
         hows[i] = end.how;

@@ -53,8 +53,7 @@ DEVICE void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_coun
 // A ray and its opposite in one pass (paper section 5.3): the sixteen tests ask where the line passes, whichever way it
 // runs, so the second ray costs no more than its close looks.
 DEVICE void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
-                                GLOBAL const ShapeHeader* RESTRICT shape,
-                                GLOBAL const TriangleBlock* RESTRICT blocks) {
+                                GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
         GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + b;
         const uint lanes = hit_block(closest, ray, block, shape->tolerance, false);

@@ -9,8 +9,8 @@
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
-// A word of a clearance grid: bits 0 to 14 the cell in whose middle a ball without surface lies, relative to its own, plus
-// CLEARANCE_OFFSET; bit 15: the ball is outside; the rest its radius in steps, CLEARANCE_STEPS a cell.
+// A word of a clearance grid: bits 0 to 14 the cell in whose middle a ball without surface lies, relative to its own,
+// plus CLEARANCE_OFFSET; bit 15: the ball is outside; the rest its radius in steps, CLEARANCE_STEPS a cell.
 #define CLEARANCE_OFFSET 16
 #define CLEARANCE_OUTSIDE 0x8000u
 #define CLEARANCE_STEPS 2048
@@ -67,10 +67,10 @@ typedef struct {
     uint grid_first;   // words of outside_cells, a bit for each cell, x fastest
     uint grid_size[3]; // cells; 0: no grid
     float grid_low[3];
-    float grid_scale;       // cells a metre
+    float grid_scale; // cells a metre
     uint face_first;
-    uint clearance_first;   // words of clearances, x fastest
-    uint clearance_size[3]; // cells
+    uint clearance_first;                      // words of clearances, x fastest
+    uint clearance_size[3];                    // cells
     float clearance_low[3], clearance_high[3]; // a box around that of the shape
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
@@ -95,8 +95,8 @@ typedef struct {
 } Cluster;
 WIRE_SIZE(Cluster, 12);
 
-// Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across its
-// edges 0-1, 1-2, 2-0 (NONE at a border).
+// Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
+// its edges 0-1, 1-2, 2-0 (NONE at a border).
 typedef struct {
     uint slot;
     uint neighbour[3];
@@ -121,8 +121,8 @@ typedef struct {
 } Followed;
 WIRE_SIZE(Followed, 20);
 
-// A vertex block that its pair watches. lanes: vertices that could be in contact; the others cannot before the pair's clock
-// exceeds `wake`. cast: those of lanes that cast a ray in this step.
+// A vertex block that its pair watches. lanes: vertices that could be in contact; the others cannot before the pair's
+// clock exceeds `wake`. cast: those of lanes that cast a ray in this step.
 typedef struct {
     uint vertex_block; // absolute
     float wake;        // metres

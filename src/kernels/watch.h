@@ -4,11 +4,11 @@
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
-#define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
+#define AWAKE (-1.0f)              // of Watch.wake: to be looked at in every step
 
 typedef struct {
-    int inside[VERTEX_LANES];      // the bounds, -1 or 0
-    float safe[VERTEX_LANES];      // metres a vertex can move before it could be in contact; may be negative
+    int inside[VERTEX_LANES]; // the bounds, -1 or 0
+    float safe[VERTEX_LANES]; // metres a vertex can move before it could be in contact; may be negative
     float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES];
 } WatchLanes;
 
@@ -37,8 +37,8 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
     return grid;
 }
 
-// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of its
-// surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
+// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
+// its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
 DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
                            float reach) {
     // The nearest point of the box; NaN takes its lower corner.
@@ -61,7 +61,8 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
     const float away = root_of(off2 + clear * clear);
-    const uint outside = (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
+    const uint outside =
+        (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
     return away - (outside != 0u ? 0.0f : reach);
 }
 
@@ -127,9 +128,9 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
     FOR_EACH(i, count) {
         const Cluster cluster = clusters[i];
         GLOBAL const OrderedPair* pair = pairs + cluster.pair;
-        const float safe = safe_block(pair, shapes + pair->source, boxes, cluster.vertex_block, shapes + pair->target,
-                                      clearances)
-                           - margins[cluster.pair];
+        const float safe =
+            safe_block(pair, shapes + pair->source, boxes, cluster.vertex_block, shapes + pair->target, clearances)
+            - margins[cluster.pair];
         Watch watch;
         watch.vertex_block = cluster.vertex_block;
         watch.wake = safe > 0.0f ? safe : AWAKE;

@@ -62,7 +62,8 @@ std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t last) {
 }
 
 double TriangleBvh::squared_distance_of(const Box& box, const Vec3& p) {
-    const Vec3 off{std::max({box.low.x - p.x, p.x - box.high.x, 0.0}), std::max({box.low.y - p.y, p.y - box.high.y, 0.0}),
+    const Vec3 off{std::max({box.low.x - p.x, p.x - box.high.x, 0.0}),
+                   std::max({box.low.y - p.y, p.y - box.high.y, 0.0}),
                    std::max({box.low.z - p.z, p.z - box.high.z, 0.0})};
     return dot(off, off);
 }

@@ -11,8 +11,8 @@ namespace raycontact {
 double shear_bound(const Pose& pose);
 
 /// No less than ||(to - from) v|| / |v| for any v: the spectral norm of a difference of rotations is its Frobenius norm
-/// divided by sqrt(2), since such a difference has two equal singular values and a third that is 0; `shear` accounts for
-/// matrices that are rotations only nearly. 0 where both are the same.
+/// divided by sqrt(2), since such a difference has two equal singular values and a third that is 0; `shear` accounts
+/// for matrices that are rotations only nearly. 0 where both are the same.
 double turn_bound(const Pose& from, const Pose& to, double shear);
 
 /// How far any point within `reach` of the frame's origin moved at most between two poses, metres.

@@ -27,9 +27,9 @@ private:
     struct Body {
         Pose centred; ///< of the last step
         bool known = false;
-        Vec3 shift;       ///< of the centre, metres
+        Vec3 shift;        ///< of the centre, metres
         double origin = 0; ///< its length
-        double turn = 0;  ///< turn_bound
+        double turn = 0;   ///< turn_bound
         double shear = 0;
         double reach = 0; ///< of the shape, about its centre
     };

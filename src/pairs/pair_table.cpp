@@ -25,7 +25,8 @@ void PairTable::clear() {
 }
 
 std::uint64_t PairTable::bytes() const {
-    return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t)) + (states_.size() - free_.size()) * (sizeof(PairState) + sizeof(double));
+    return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t))
+           + (states_.size() - free_.size()) * (sizeof(PairState) + sizeof(double));
 }
 
 } // namespace raycontact

@@ -25,11 +25,11 @@ struct DirectedState {
 /// directions.
 struct PairState {
     PairPlace reference;
-    double speed = 0;     ///< metres a step, smoothed; decides how far a full look looks ahead
-    double culling = 0;   ///< metres a predictive ray looks ahead
-    double threshold = 0; ///< metres, of the last full look
-    double look_cost = 0; ///< what that look cost, in rays
-    double steps = 0;     ///< how many steps lay before it
+    double speed = 0;         ///< metres a step, smoothed; decides how far a full look looks ahead
+    double culling = 0;       ///< metres a predictive ray looks ahead
+    double threshold = 0;     ///< metres, of the last full look
+    double look_cost = 0;     ///< what that look cost, in rays
+    double steps = 0;         ///< how many steps lay before it
     std::uint64_t looked = 0; ///< its step
     DirectedState directed[2];
 };

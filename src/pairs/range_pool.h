@@ -19,7 +19,7 @@ public:
     void give_back(Range range);
     void clear();
 
-    std::uint32_t end() const { return end_; }     ///< the array must be this long
+    std::uint32_t end() const { return end_; }       ///< the array must be this long
     std::uint64_t in_use() const { return in_use_; } ///< elements of the ranges handed out
 
 private:

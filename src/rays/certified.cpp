@@ -16,11 +16,12 @@ constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes ke
 
 enum Due : std::uint8_t { look_0 = 1, list_0 = 4 };
 
-// How far beyond the bounds a new list reaches: some steps' worth between the lengths that `bench sweep` found best, on a
-// pile and on fast bodies alike.
+// How far beyond the bounds a new list reaches: some steps' worth between the lengths that `bench sweep` found best, on
+// a pile and on fast bodies alike.
 double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    return std::max(0.015 * size, std::min(0.027 * size, 24 * speed)); // in this order also for a speed that is no number
+    return std::max(0.015 * size,
+                    std::min(0.027 * size, 24 * speed)); // in this order also for a speed that is no number
 }
 
 // Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
@@ -182,8 +183,8 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     }
     for (const std::uint32_t ordered : active_) {
         const PairState& state = table_.state(ordered / 2);
-        table_.slack(ordered / 2) =
-            std::min(state.directed[0].wake - state.directed[0].clock, state.directed[1].wake - state.directed[1].clock);
+        table_.slack(ordered / 2) = std::min(state.directed[0].wake - state.directed[0].clock,
+                                             state.directed[1].wake - state.directed[1].clock);
     }
 }
 

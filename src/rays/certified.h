@@ -40,8 +40,8 @@ private:
     PairTable table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<std::uint8_t> due_;                 ///< per pair: bits 0, 1 look; bits 2, 3 make a new list
-    std::vector<std::uint32_t> active_, stale_;     ///< ordered pairs; stale_ are places in active_
+    std::vector<std::uint8_t> due_;             ///< per pair: bits 0, 1 look; bits 2, 3 make a new list
+    std::vector<std::uint32_t> active_, stale_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> margins_, stale_margins_; ///< of active_, of stale_
     std::vector<kernels::uint> host_counts_, places_;

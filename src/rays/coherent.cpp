@@ -16,9 +16,9 @@ namespace {
 
 constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followed
 
-// How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full looks
-// and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time. Counts,
-// not clocks: equal input, equal result.
+// How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full
+// looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
+// Counts, not clocks: equal input, equal result.
 double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = 0.015 * size;
@@ -129,7 +129,8 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     counts_.resize(device, clusters_.size());
     inside_.resize(device, clusters_.size());
     launch<KernelId::count_near_rays>(device, clusters_.size(), device_wide_, device_reaches_, device_margins_,
-                                      arrays.headers, arrays.clusters, arrays.vertex_blocks, arrays.clearances, clusters_, inside_, counts_);
+                                      arrays.headers, arrays.clusters, arrays.vertex_blocks, arrays.clearances,
+                                      clusters_, inside_, counts_);
     sums_.vertices = VERTEX_LANES * clusters_.size();
     sums_.rays = scan_.run(device, inside_, firsts_);
     full_rays_ = scan_.run(device, counts_, firsts_);

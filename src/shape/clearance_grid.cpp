@@ -19,8 +19,8 @@ using kernels::uint;
 
 constexpr double half_diagonal = 0.8660254037844387; // of a unit cell
 constexpr double far = 1e15;
-constexpr int pad = 4;                               // cells around the box, for balls that touch it from outside
-constexpr int farthest = CLEARANCE_OFFSET - 1;       // cells from a cell to the middle of its ball, each axis
+constexpr int pad = 4;                         // cells around the box, for balls that touch it from outside
+constexpr int farthest = CLEARANCE_OFFSET - 1; // cells from a cell to the middle of its ball, each axis
 
 // Without surface, around the middle of a cell; lengths in cells.
 struct Ball {
@@ -102,8 +102,8 @@ public:
         }
     }
 
-    // For each cell, of the empty balls around middles near it the one that reaches farthest past its own middle. A large
-    // ball that touches the surface tells the distance of the points between almost exactly.
+    // For each cell, of the empty balls around middles near it the one that reaches farthest past its own middle. A
+    // large ball that touches the surface tells the distance of the points between almost exactly.
     std::vector<Ball> choose_balls(bool outside) const {
         std::vector<Ball> balls(distance_.size());
         for (int z = 0; z < size_[2]; ++z)
