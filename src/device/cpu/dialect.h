@@ -18,6 +18,7 @@ struct Range {
 
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
+#define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
 #define GLOBAL
 #define RESTRICT __restrict__
 #define RANGE [[maybe_unused]] Range range,

@@ -5,6 +5,7 @@ typedef unsigned long long ulong;
 
 #define KERNEL extern "C" __global__
 #define DEVICE static inline __device__
+#define DEVICE_CALL static __noinline__ __device__
 #define GLOBAL
 #define RESTRICT __restrict__
 #define RANGE

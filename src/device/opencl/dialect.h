@@ -4,6 +4,7 @@
 
 #define KERNEL __kernel
 #define DEVICE static inline
+#define DEVICE_CALL DEVICE
 #define GLOBAL __global
 #define RESTRICT restrict
 #define RANGE
