@@ -8,6 +8,14 @@
 
 namespace raycontact {
 
+namespace {
+
+bool by_pair(const kernels::LocalContact& a, const kernels::LocalContact& b) {
+    return a.pair < b.pair;
+}
+
+} // namespace
+
 NarrowPhase::NarrowPhase(const Settings& settings)
     : settings_(settings), opened_(open_device(settings.device, settings.threads)), shapes_(*opened_.device) {}
 
@@ -21,19 +29,35 @@ void NarrowPhase::forget() {
     coherent_.clear();
 }
 
+// From places in a list of ordered pairs to 2 x pair + direction.
+void NarrowPhase::rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered) {
+    for (kernels::LocalContact& contact : contacts) contact.pair = ordered[contact.pair];
+}
+
+// Makes one of two runs of local_, the second beginning there.
+void NarrowPhase::merge(std::vector<kernels::LocalContact>::iterator second) {
+    other_.resize(local_.size());
+    std::merge(local_.begin(), second, second, local_.end(), other_.begin(), by_pair);
+    local_.swap(other_);
+}
+
 // Every vertex in the other body's bounds casts its ray, unless a grid knows that it is outside.
-void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+void NarrowPhase::cast_whole(std::vector<kernels::LocalContact>& contacts, StepStats& stats) {
     Device& on = device();
-    order_pairs(executor(), bodies, pairs, ordered_);
     device_pairs_.write(on, ordered_);
     const bool use_grid = settings_.skip_outside && settings_.caster != Caster::basic;
     queue_.fill(on, shapes_.arrays(), device_pairs_, use_grid);
     cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, use_grid);
-    stats.side_tests = gather_.run(on, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, local_);
-    stats.vertices = queue_.vertices_tested();
-    stats.rays = queue_.vertices_inside();
-    stats.rays_cast = queue_.rays().size();
-    stats.pairs_full = 2 * pairs.size();
+    stats.side_tests += gather_.run(on, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, contacts);
+    stats.vertices += queue_.vertices_tested();
+    stats.rays += queue_.vertices_inside();
+    stats.rays_cast += queue_.rays().size();
+    stats.pairs_full += ordered_.size();
+}
+
+void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+    order_pairs(executor(), bodies, pairs, ordered_);
+    cast_whole(local_, stats);
 }
 
 // The same contacts; pairs, and blocks of vertices, that cannot touch yet are left alone.
@@ -41,15 +65,23 @@ void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const 
     Device& on = device();
     motion_.update(executor(), bodies);
     certified_.fill(on, executor(), shapes_, bodies, pairs, motion_, settings_.displacement_threshold);
-    cast_standard(on, settings_.caster, shapes_.arrays(), certified_.pairs(), certified_.rays(), hits_);
-    stats.side_tests = gather_.run(on, shapes_.arrays(), certified_.pairs(), certified_.rays(), hits_, local_);
-    for (kernels::LocalContact& contact : local_) contact.pair = certified_.ordered()[contact.pair];
+    certified_.cast(on, settings_.caster, shapes_);
+    stats.side_tests =
+        gather_.run(on, shapes_.arrays(), certified_.pairs(), certified_.rays(), certified_.hits(), local_);
+    rename(local_, certified_.ordered());
     stats.vertices = certified_.vertices_tested();
     stats.rays = certified_.vertices_inside();
-    stats.rays_cast = certified_.rays().size();
+    stats.rays_cast = certified_.rays_cast();
     stats.pairs_full = certified_.full_looks();
-    stats.pairs_asleep = 2 * pairs.size() - certified_.ordered().size();
+    stats.pairs_asleep = 2 * pairs.size() - certified_.ordered().size() - certified_.fast().size();
     stats.pair_bytes = certified_.bytes();
+    if (certified_.fast().empty()) return;
+
+    order_pairs(executor(), bodies, pairs, certified_.fast(), ordered_);
+    cast_whole(other_, stats);
+    rename(other_, certified_.fast());
+    const auto kept = local_.insert(local_.end(), other_.begin(), other_.end());
+    merge(kept);
 }
 
 // Contacts followed from the last step, and in full for pairs that moved too far; not always those of `standard`.
@@ -59,12 +91,8 @@ void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const P
     coherent_.follow(on, executor(), shapes_, bodies, pairs, motion_, settings_);
     stats.side_tests = gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
     // Two runs, pairs looked at in full and followed ones, each in the order of the pairs.
-    for (kernels::LocalContact& contact : local_) contact.pair = coherent_.ordered()[contact.pair];
-    const auto by_pair = [](const auto& a, const auto& b) { return a.pair < b.pair; };
-    const auto second = std::is_sorted_until(local_.begin(), local_.end(), by_pair);
-    merged_.resize(local_.size());
-    std::merge(local_.begin(), second, second, local_.end(), merged_.begin(), by_pair);
-    local_.swap(merged_);
+    rename(local_, coherent_.ordered());
+    merge(std::is_sorted_until(local_.begin(), local_.end(), by_pair));
     coherent_.count(stats);
 }
 

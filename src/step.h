@@ -34,6 +34,10 @@ private:
     void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    /// `standard` for ordered_.
+    void cast_whole(std::vector<kernels::LocalContact>& contacts, StepStats& stats);
+    static void rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered);
+    void merge(std::vector<kernels::LocalContact>::iterator second);
     void forget();
 
     Settings settings_;
@@ -47,7 +51,7 @@ private:
     CoherentRays coherent_;
     Array<kernels::Hit> hits_;
     Gather gather_;
-    std::vector<kernels::LocalContact> local_, merged_;
+    std::vector<kernels::LocalContact> local_, other_;
     Changes changes_;
 };
 

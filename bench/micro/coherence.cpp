@@ -6,6 +6,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace raycontact::bench {
@@ -93,13 +94,32 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
                                      counts = copy_of(*device_, pair_clusters_);
     for (kernels::uint p = 0; p < wide.size(); ++p)
         for (kernels::uint done = 0; done < counts[p]; done += segment_size)
-            segments.push_back({p, firsts[p] + done, std::min(segment_size, counts[p] - done), UNBOUNDED, margins[p]});
+            segments.push_back(
+                {p, firsts[p] + done, std::min(segment_size, counts[p] - done), UNBOUNDED, 0, margins[p]});
     segments_.write(*device_, segments);
     watches_.resize(*device_, clusters.size());
     looks_.resize(*device_, segments.size());
     segment_rays_.resize(*device_, segments.size());
     begin_watches();
     find_watch_rays();
+
+    std::vector<kernels::Holder> holders(wide.size());
+    for (std::size_t p = 0; p < wide.size(); ++p)
+        holders[p] = {0, 0, margins[p],
+                      static_cast<float>(batch.shape->data().diagonal
+                                         / (4 * std::sqrt(double(batch.shape->triangles().size()))))};
+    seekers_.write(*device_, holders);
+    const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
+    for (std::size_t i = watched.size(); i-- > 0;) {
+        holders[watched[i].pair].first = static_cast<kernels::uint>(i);
+        ++holders[watched[i].pair].count;
+    }
+    holders_.write(*device_, holders);
+    held_.resize(*device_, watched.size());
+    held_again_.resize(*device_, watched.size());
+    held_hits_.resize(*device_, watched.size());
+    held_casts_.resize(*device_, watched.size());
+    seek_tubes();
     if (walks() == 0 || watch_rays() == 0) throw std::logic_error("the batch " + batch.name + " has nothing to follow");
 }
 
@@ -161,6 +181,22 @@ void Coherence::look_at_watches() {
 
 void Coherence::write_watch_rays() {
     launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, segment_firsts_, watch_rays_);
+}
+
+void Coherence::hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before,
+                     Array<kernels::Held>& after) {
+    const auto& shapes = store_.arrays();
+    launch<KernelId::hold_rays>(*device_, watch_rays_.size(), pairs_, holders, shapes.headers, shapes.vertex_blocks,
+                                shapes.nodes, shapes.triangle_blocks, shapes.face_normals, watch_rays_, before, after,
+                                held_hits_, held_casts_);
+}
+
+void Coherence::seek_tubes() {
+    hold(seekers_, held_again_, held_);
+}
+
+void Coherence::decide_held() {
+    hold(holders_, held_, held_again_);
 }
 
 void Coherence::find_near_rays() {

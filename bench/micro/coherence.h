@@ -28,6 +28,8 @@ public:
     void begin_watches();
     void look_at_watches(); ///< at all of them: their clock is ahead of every certificate
     void write_watch_rays();
+    void seek_tubes();  ///< rays of the watches, cast in full, and the tube around each
+    void decide_held(); ///< the same rays at the same poses, by the triangle of each tube
 
     // As a step strings them together.
     void find_near_rays();
@@ -44,6 +46,7 @@ public:
     std::vector<kernels::Hit> host_walk_hits();
 
 private:
+    void hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before, Array<kernels::Held>& after);
     void follow(Caster caster, std::size_t count, const Array<kernels::OrderedPair>& pairs,
                 const Array<kernels::Ray>& rays, const Array<kernels::uint>& starts, Array<kernels::Hit>& hits,
                 Array<kernels::uint>& nexts, Array<kernels::uint>& hows);
@@ -64,6 +67,10 @@ private:
     Array<kernels::Watch> watches_;
     Array<kernels::Look> looks_;
     Array<kernels::uint> segment_rays_, segment_firsts_;
+    Array<kernels::Holder> seekers_, holders_;
+    Array<kernels::Held> held_, held_again_;
+    Array<kernels::Hit> held_hits_;
+    Array<kernels::uint> held_casts_;
 };
 
 } // namespace raycontact::bench

@@ -114,6 +114,10 @@ void add_coherence(rb::Coherence& on, const rb::Batch& batch, std::string_view i
         [&] { on.look_at_watches(); });
     add(name("write_watch_rays"), {"ray", watch_rays, sizeof(rk::Ray) + blocks / watch_rays * sizeof(rk::Watch)},
         [&] { on.write_watch_rays(); });
+    const double held = ray + sizeof(rk::Holder) + sizeof(rk::Held);
+    add(name("hold_rays/seek"), {"ray", watch_rays, held}, [&] { on.seek_tubes(); });
+    add(name("hold_rays/held"), {"ray", watch_rays, held + sizeof(rk::Held) + 9 * sizeof(float)},
+        [&] { on.decide_held(); });
 }
 
 void add_host(rc::Executor& executor, const rb::Batch& batch, const std::vector<rk::LocalContact>& contacts) {

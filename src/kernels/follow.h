@@ -196,13 +196,15 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         counts[i] = 0u;
         if (safe_block(pair, shapes + pair->source, boxes, clusters[i].vertex_block, target, clearances) > near)
             continue;
-        const WatchLanes found = watch_lanes(pair, vertices + clusters[i].vertex_block, target, clearances);
+        GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
+        const SafeLanes found = safe_lanes(pair, block, target, clearances);
+        const InsideLanes held = inside_lanes(pair, block);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
             close[k] = -(int)!(found.safe[k] > near);
             unsafe[k] = -(int)!(found.safe[k] > margin);
         }
-        const uint inside_mask = pack_sixteen(found.inside);
+        const uint inside_mask = pack_sixteen(held.inside);
         const uint lanes = inside_mask & pack_sixteen(close);
         clusters[i].lanes = lanes | ((lanes & pack_sixteen(unsafe)) << VERTEX_LANES);
         inside[i] = bit_count(inside_mask);

@@ -7,9 +7,11 @@
 
 #include "kernels/find_vertices.h"
 
+#include "kernels/clearance.h"
 #include "kernels/watch.h"
 
 #include "kernels/cast_rays.h"
+#include "kernels/hold.h"
 
 #include "kernels/follow.h"
 

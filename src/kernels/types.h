@@ -131,22 +131,45 @@ typedef struct {
 } Watch;
 WIRE_SIZE(Watch, 16);
 
-// Part of a pair's watches. margin: metres of rounding that a certificate must exceed.
+// Part of a pair's watches. now: what its clock shows, metres. from: from where on a certificate given now counts.
+// margin: metres of rounding that it must exceed.
 typedef struct {
     uint pair;
     uint first, count; // watches
-    float clock;       // metres the pair has moved at most
+    float now, from;
     float margin;
 } Segment;
-WIRE_SIZE(Segment, 20);
+WIRE_SIZE(Segment, 24);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. inside: vertices in the bounds.
+// rays: those that are cast.
 typedef struct {
     float wake;
     uint blocks;
     uint inside;
+    uint rays;
 } Look;
-WIRE_SIZE(Look, 12);
+WIRE_SIZE(Look, 16);
+
+// A ray that one triangle decides, or none, while no point of it has moved by `safe`.
+typedef struct {
+    uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
+    uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near
+    float safe;        // metres; 0: it is cast in every step
+    float limit;       // metres along the ray: where its tube ends; of one without, steps until it is sought again
+    float position[3]; // when the tube was sought
+    float direction[3];
+} Held;
+WIRE_SIZE(Held, 40);
+
+// A pair's rays of the last step. margin: metres of rounding. radius: of the tubes to be sought; 0: none, the pair
+// moves too fast.
+typedef struct {
+    uint first, count; // Held
+    float margin;
+    float radius;
+} Holder;
+WIRE_SIZE(Holder, 16);
 
 typedef struct {
     uint pair;

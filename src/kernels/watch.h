@@ -6,118 +6,6 @@
 #define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
 #define AWAKE (-1.0f)              // of Watch.wake: to be looked at in every step
 
-typedef struct {
-    int inside[VERTEX_LANES]; // the bounds, -1 or 0
-    float safe[VERTEX_LANES]; // metres a vertex can move before it could be in contact; may be negative
-    float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES];
-} WatchLanes;
-
-// A clearance grid, without its balls.
-typedef struct {
-    float low_x, low_y, low_z, high_x, high_y, high_z; // a box around that of the shape
-    float scale, cell, unit;
-    uint size_x, size_y;
-    uint outward;
-} Clearance;
-
-DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
-    Clearance grid;
-    grid.low_x = shape->clearance_low[0];
-    grid.low_y = shape->clearance_low[1];
-    grid.low_z = shape->clearance_low[2];
-    grid.high_x = shape->clearance_high[0];
-    grid.high_y = shape->clearance_high[1];
-    grid.high_z = shape->clearance_high[2];
-    grid.scale = shape->clearance_scale;
-    grid.cell = shape->clearance_cell;
-    grid.unit = shape->clearance_unit;
-    grid.size_x = shape->clearance_size[0];
-    grid.size_y = shape->clearance_size[1];
-    grid.outward = shape->outward;
-    return grid;
-}
-
-// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
-// its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
-                           float reach) {
-    // The nearest point of the box; NaN takes its lower corner.
-    const float up_x = x >= grid.low_x ? x : grid.low_x, up_y = y >= grid.low_y ? y : grid.low_y;
-    const float up_z = z >= grid.low_z ? z : grid.low_z;
-    const float px = up_x <= grid.high_x ? up_x : grid.high_x, py = up_y <= grid.high_y ? up_y : grid.high_y;
-    const float pz = up_z <= grid.high_z ? up_z : grid.high_z;
-    const float off_x = x - px, off_y = y - py, off_z = z - pz;
-    const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-    const int cx = (int)((px - grid.low_x) * grid.scale), cy = (int)((py - grid.low_y) * grid.scale);
-    const int cz = (int)((pz - grid.low_z) * grid.scale);
-    const uint at = ((uint)cz * grid.size_y + (uint)cy) * grid.size_x + (uint)cx;
-    const uint word = balls[at];
-    const int bx = cx + (int)(word & 31u) - CLEARANCE_OFFSET, by = cy + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
-    const int bz = cz + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = px - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
-    const float ay = py - (grid.low_y + ((float)by + 0.5f) * grid.cell);
-    const float az = pz - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
-    const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
-    const float clear = ball > 0.0f ? ball : 0.0f;
-    // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
-    const float away = root_of(off2 + clear * clear);
-    const uint outside =
-        (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
-    return away - (outside != 0u ? 0.0f : reach);
-}
-
-DEVICE WatchLanes watch_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
-                              GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
-    WatchLanes found;
-    float r[9], t[3], b[6];
-    for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
-    for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
-    for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
-    FOR_LANES(k, VERTEX_LANES) {
-        const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
-        const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
-        const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
-        const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
-        const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        const float safe = safe_distance(grid, balls, x, y, z, block->exit[k]);
-        found.inside[k] = -(int)inside;
-        found.safe[k] = vx == vx ? safe : UNBOUNDED; // empty lanes hold NaN
-        found.x[k] = x;
-        found.y[k] = y;
-        found.z[k] = z;
-    }
-    return found;
-}
-
-DEVICE float least_of_sixteen(const float* values) {
-    float least[8];
-    FOR_LANES(k, 8) least[k] = values[k] < values[k + 8] ? values[k] : values[k + 8];
-    for (int left = 4; left > 0; left /= 2)
-        for (int k = 0; k < left; ++k) least[k] = least[k] < least[k + left] ? least[k] : least[k + left];
-    return least[0];
-}
-
-// What the ball around a block's box says for all its vertices, without looking at them.
-DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT source,
-                        GLOBAL const ClusterBlock* RESTRICT clusters, uint vertex_block,
-                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
-    const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
-    GLOBAL const ClusterBlock* RESTRICT box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
-    GLOBAL const float* r = pair->rotation;
-    const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
-    const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
-    const Clearance grid = clearance_of(target);
-    // Of an unknown side nothing is said: the reach of the block's rays is not. Poses, rigid to 1e-4 each, may stretch
-    // the box by more than the margin, hence the half thousandth.
-    return safe_distance(grid, clearances + target->clearance_first,
-                         ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
-                         ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
-                         ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
-           - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-}
-
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
 KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
@@ -154,48 +42,43 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         look.blocks = 0u;
         look.inside = 0u;
         uint ray_count = 0u;
+        if (s + 4u < count) {
+            PREFETCH(watches, segments[s + 4u].first);
+            PREFETCH(watches, segments[s + 4u].first + 4u);
+            PREFETCH(watches, segments[s + 4u].first + 8u);
+        }
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             float own = watches[i].wake;
             uint lanes = watches[i].lanes;
-            if (own <= segment.clock) {
-                WatchLanes found = watch_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
+            if (own <= segment.now) {
+                SafeLanes found = safe_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
                 int unsafe[VERTEX_LANES];
                 FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
-                const uint inside_mask = pack_sixteen(found.inside);
-                lanes = inside_mask & pack_sixteen(unsafe);
-                if (lanes != 0u && target->grid_size[0] != 0u) {
-                    InsideLanes near;
-                    FOR_LANES(k, VERTEX_LANES) {
-                        near.inside[k] = found.inside[k];
-                        near.x[k] = found.x[k];
-                        near.y[k] = found.y[k];
-                        near.z[k] = found.z[k];
-                    }
-                    lanes &= ~outside_lanes(&near, target, outside_cells);
-                }
+                lanes = pack_sixteen(unsafe);
                 watches[i].lanes = lanes;
-                watches[i].cast = lanes;
                 look.blocks += 1u;
-                look.inside += bit_count(inside_mask);
                 for (uint left = lanes; left != 0u; left &= left - 1u) found.safe[lowest_bit(left)] = UNBOUNDED;
                 float least = least_of_sixteen(found.safe) - segment.margin;
                 // Vertices that cast are asked again after a while whether they still must.
                 const float again = REFRESH_TOLERANCES * target->tolerance;
                 if (lanes != 0u && least > again) least = again;
                 // Never asleep, whichever way the clock was rounded.
-                own = least > 0.0f ? segment.clock + least : AWAKE;
+                own = least > 0.0f ? segment.from + least : AWAKE;
                 watches[i].wake = own;
-            } else if (lanes != 0u) {
-                const InsideLanes found = inside_lanes(pair, vertices + watches[i].vertex_block);
-                watches[i].cast = lanes & pack_sixteen(found.inside);
-                look.inside += bit_count(watches[i].cast);
             }
+            uint cast = 0u;
             if (lanes != 0u) {
-                ray_count += bit_count(watches[i].cast);
+                const InsideLanes found = inside_lanes(pair, vertices + watches[i].vertex_block);
+                cast = lanes & pack_sixteen(found.inside);
+                look.inside += bit_count(cast);
+                if (cast != 0u && target->grid_size[0] != 0u) cast &= ~outside_lanes(&found, target, outside_cells);
+                ray_count += bit_count(cast);
                 own = AWAKE;
             }
+            watches[i].cast = cast;
             if (own < look.wake) look.wake = own;
         }
+        look.rays = ray_count;
         looks[s] = look;
         rays[s] = ray_count;
     }

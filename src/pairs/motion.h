@@ -21,19 +21,23 @@ public:
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const Pair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
-    double pair_shear(const Pair& pair) const { return bodies_[pair.first].shear + bodies_[pair.second].shear + 1e-15; }
+    double pair_shear(const Pair& pair) const { return lasts_[pair.first].shear + lasts_[pair.second].shear + 1e-15; }
 
 private:
+    /// What a pair asks of a body; together in two cache lines.
     struct Body {
-        Pose centred; ///< of the last step
-        bool known = false;
-        Vec3 shift;        ///< of the centre, metres
-        double origin = 0; ///< its length
-        double turn = 0;   ///< turn_bound
-        double shear = 0;
+        Vec3 centre;
+        Vec3 shift;       ///< of the centre, metres
+        double turn = 0;  ///< turn_bound
         double reach = 0; ///< of the shape, about its centre
     };
+    struct Last {
+        Pose centred; ///< of the last step
+        double shear = 0;
+        bool known = false;
+    };
     std::vector<Body> bodies_;
+    std::vector<Last> lasts_;
 };
 
 } // namespace raycontact

@@ -28,4 +28,8 @@ kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& targ
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered);
 
+/// Those directions only: 2 x pair + 0 for a into b, + 1 for b into a.
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                 std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered);
+
 } // namespace raycontact

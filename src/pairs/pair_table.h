@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pairs/displacement.h"
-
 #include <raycontact/scene.h>
 
 #include <cstdint>
@@ -11,31 +9,9 @@
 
 namespace raycontact {
 
-/// What a method keeps for one direction of a pair: a range of its own array, and the pair's clock.
-struct DirectedState {
-    double clock = 0;        ///< metres moved at most since the last full look, up to the reference pose
-    double wake = 0;         ///< nothing need be looked at before the clock reaches this
-    double expiry = -1;      ///< a full look is due when the clock reaches this; below 0: at once
-    std::uint32_t first = 0; ///< of what the method keeps
-    std::uint32_t count = 0;
-    std::uint32_t capacity = 0;
-};
-
-/// What lives from step to step for a pair: where its bodies were when either direction was last looked at, and both
-/// directions.
-struct PairState {
-    PairPlace reference;
-    double speed = 0;         ///< metres a step, smoothed; decides how far a full look looks ahead
-    double culling = 0;       ///< metres a predictive ray looks ahead
-    double threshold = 0;     ///< metres, of the last full look
-    double look_cost = 0;     ///< what that look cost, in rays
-    double steps = 0;         ///< how many steps lay before it
-    std::uint64_t looked = 0; ///< its step
-    DirectedState directed[2];
-};
-
 /// The pairs that were open in the last step, each with its state; others have none. Slots are reused, so memory is
-/// proportional to the most pairs ever open at once.
+/// proportional to the most pairs ever open at once. State is what a method keeps for a pair.
+template <class State>
 class PairTable {
 public:
     /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
@@ -56,14 +32,30 @@ public:
     }
 
     /// Of the i-th pair of the last match.
-    PairState& state(std::size_t i) { return states_[slots_[i]]; }
+    State& state(std::size_t i) { return states_[slots_[i]]; }
     /// How far that pair may move, by a cheap bound, before the exact one is asked; below 0 for a new pair. Kept apart:
     /// of most pairs nothing else is read in a step.
     double& slack(std::size_t i) { return slacks_[slots_[i]]; }
 
+    /// A state that will be asked for soon.
+    void prefetch(std::size_t i) const {
+        const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
+        for (std::size_t at = 0; at < sizeof(State); at += 64) __builtin_prefetch(bytes + at);
+    }
+
     /// Forgets every pair.
-    void clear();
-    std::uint64_t bytes() const;
+    void clear() {
+        open_.clear();
+        slots_.clear();
+        free_.clear();
+        states_.clear();
+        slacks_.clear();
+    }
+
+    std::uint64_t bytes() const {
+        return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t))
+               + (states_.size() - free_.size()) * (sizeof(State) + sizeof(double));
+    }
 
 private:
     template <class Closed>
@@ -71,11 +63,23 @@ private:
         closed(states_[slots_[old]]);
         free_.push_back(slots_[old]);
     }
-    std::uint32_t take_slot();
+
+    std::uint32_t take_slot() {
+        if (free_.empty()) {
+            states_.emplace_back();
+            slacks_.push_back(-1);
+            return static_cast<std::uint32_t>(states_.size() - 1);
+        }
+        const std::uint32_t slot = free_.back();
+        free_.pop_back();
+        states_[slot] = State{};
+        slacks_[slot] = -1;
+        return slot;
+    }
 
     std::vector<Pair> open_;
     std::vector<std::uint32_t> slots_, next_slots_, free_;
-    std::vector<PairState> states_;
+    std::vector<State> states_;
     std::vector<double> slacks_;
 };
 

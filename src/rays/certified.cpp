@@ -4,9 +4,11 @@
 #include "mesh/vector.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
+#include "rays/standard.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace raycontact {
 
@@ -14,14 +16,31 @@ namespace {
 
 constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes keeps every thread busy
 
-enum Due : std::uint8_t { look_0 = 1, list_0 = 4 };
+enum What : std::uint8_t { look_0 = 1, list_0 = 4, is_fast = 16 };
+
+double size_of(const PlacedBody& a, const PlacedBody& b) {
+    return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+}
 
 // How far beyond the bounds a new list reaches: some steps' worth between the lengths that `bench sweep` found best, on
 // a pile and on fast bodies alike.
-double look_ahead(const PlacedBody& a, const PlacedBody& b, double speed) {
-    const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+double look_ahead(double size, double speed) {
     return std::max(0.015 * size,
                     std::min(0.027 * size, 24 * speed)); // in this order also for a speed that is no number
+}
+
+// A list made at this speed, of the smaller size a step, would not last long enough to pay for itself.
+constexpr double fastest = 0.006;
+// The reference pose is moved once the pair is this far from it, of the smaller size.
+constexpr double trembling = 0.001;
+// How fast a pair may be for tubes to be sought, of their radius a step.
+constexpr double slow = 0.25;
+
+// How wide a tube is sought around a ray: other triangles are about this near, so that a wider one only takes longer to
+// find.
+double tube_radius(double size, const PlacedBody& target) {
+    const ShapeData& shape = target.shape->data();
+    return std::min(size / 128, shape.diagonal / (4 * std::sqrt(double(target.shape->triangles().size()))));
 }
 
 // Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
@@ -36,76 +55,112 @@ void CertifiedRays::clear() {
     pool_.clear();
 }
 
-// Decides for each pair, in double, what must be looked at; a cheap bound first, which most pairs at rest pass.
+void CertifiedRays::close(PairState& state) {
+    for (Watched& own : state.watched) {
+        pool_.give_back({own.first, own.capacity});
+        own = {};
+    }
+}
+
+// Decides for one pair, in double, what must be looked at.
+void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair,
+                              const Motion& motion, std::optional<double> threshold) {
+    PairState& state = table_.state(i);
+    const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
+    const double size = size_of(*body[0], *body[1]), speed = motion.pair_speed(pair);
+    if (!threshold && speed > fastest * size) {
+        what_[i] = is_fast;
+        state.speed = speed;
+        return;
+    }
+    const bool fresh = state.watched[0].expiry < 0;
+    const PairPlace now = place_pair(body[0]->centred, body[1]->centred, motion.pair_shear(pair));
+    std::array<double, 2> moved{0, 0};
+    if (!fresh)
+        moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
+    std::uint8_t what = 0;
+    double slack = 1e300;
+    for (std::size_t d = 0; d < 2; ++d) {
+        const Watched& own = state.watched[d];
+        const double clock = own.clock + moved[d];
+        // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
+        if (fresh || !(clock < own.expiry))
+            what |= static_cast<std::uint8_t>(list_0 << d);
+        else if (!(clock < own.wake))
+            what |= static_cast<std::uint8_t>(look_0 << d);
+        else
+            slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
+    }
+    what_[i] = what;
+    table_.slack(i) = slack;
+    if (what == 0) return;
+
+    const bool list = (what & (3 * list_0)) != 0;
+    if (list) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
+    const bool move = list || !(std::max(moved[0], moved[1]) < trembling * size);
+    if (move) state.reference = now;
+    for (std::size_t d = 0; d < 2; ++d) {
+        Watched& own = state.watched[d];
+        if (move) {
+            own.clock += moved[d];
+            moved[d] = 0;
+        }
+        if ((what & (list_0 << d)) != 0) {
+            own.clock = 0;
+            own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
+        }
+        if ((what & ((look_0 | list_0) << d)) == 0) continue;
+        Due& due = due_[2 * i + d];
+        due.pair = order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second());
+        due.now = static_cast<float>(own.clock + moved[d]);
+        due.from = static_cast<float>(own.clock - moved[d]);
+        due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
+        const double radius = tube_radius(size, *body[1 - d]);
+        due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+    }
+}
+
+// A cheap bound first, which most pairs at rest pass.
 void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
-    due_.resize(pairs.size());
+    what_.resize(pairs.size());
+    due_.resize(2 * pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            due_[i] = 0;
-            double& left = table_.slack(i);
-            left -= motion.pair_bound(pairs[i]);
-            if (left > 0) continue;
-            PairState& state = table_.state(i);
-            const bool fresh = state.directed[0].expiry < 0;
-
-            const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
-            const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pairs[i]));
-            std::array<double, 2> clock{0, 0};
-            if (!fresh) {
-                clock = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
-                for (std::size_t d = 0; d < 2; ++d) clock[d] += state.directed[d].clock;
+        // By handfuls: what the rest of them will read is on its way while the next are asked.
+        std::uint32_t awake[32];
+        for (std::uint32_t first = begin; first < end; first += 32) {
+            std::uint32_t count = 0;
+            for (std::uint32_t i = first; i < std::min(first + 32, end); ++i) {
+                what_[i] = 0;
+                double& left = table_.slack(i);
+                left -= motion.pair_bound(pairs[i]);
+                if (left > 0) continue;
+                awake[count++] = i;
+                table_.prefetch(i);
             }
-            double slack = 1e300;
-            for (std::size_t d = 0; d < 2; ++d) {
-                const DirectedState& own = state.directed[d];
-                // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to
-                // look.
-                if (fresh || !(clock[d] < own.expiry))
-                    due_[i] |= static_cast<std::uint8_t>(list_0 << d);
-                else if (!(clock[d] < own.wake))
-                    due_[i] |= static_cast<std::uint8_t>(look_0 << d);
-                slack = std::min(slack, std::min(own.wake, own.expiry) - clock[d]);
-            }
-            left = slack;
-            if (due_[i] == 0) continue; // the reference stays, so that a jitter adds up to nothing
-            state.reference = now;
-            const double speed = motion.pair_speed(pairs[i]);
-            state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-            for (std::size_t d = 0; d < 2; ++d) {
-                DirectedState& own = state.directed[d];
-                own.clock = clock[d];
-                if ((due_[i] & (list_0 << d)) == 0) continue;
-                own.clock = 0;
-                own.expiry =
-                    threshold ? std::min(*threshold, longest_clock(d == 0 ? b : a)) : look_ahead(a, b, state.speed);
-            }
+            for (std::uint32_t k = 0; k < count; ++k) wake_pair(awake[k], bodies, pairs[awake[k]], motion, threshold);
         }
     });
 
     active_.clear();
     stale_.clear();
+    fast_.clear();
+    host_pairs_.clear();
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        if (due_[i] == 0) continue;
+        if (what_[i] == 0) continue;
+        if (what_[i] == is_fast) {
+            close(table_.state(i));
+            table_.slack(i) = -1;
+            fast_.insert(fast_.end(), {2 * i, 2 * i + 1});
+            continue;
+        }
         for (std::uint32_t d = 0; d < 2; ++d) {
-            if ((due_[i] & ((look_0 | list_0) << d)) == 0) continue;
-            if ((due_[i] & (list_0 << d)) != 0) stale_.push_back(static_cast<std::uint32_t>(active_.size()));
+            if ((what_[i] & ((look_0 | list_0) << d)) == 0) continue;
+            if ((what_[i] & (list_0 << d)) != 0) stale_.push_back(static_cast<std::uint32_t>(active_.size()));
             active_.push_back(2 * i + d);
+            host_pairs_.push_back(due_[2 * i + d].pair);
         }
     }
-    host_pairs_.resize(active_.size());
-    margins_.resize(active_.size());
-    executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const Pair& pair = pairs[active_[i] / 2];
-            const bool from_a = active_[i] % 2 == 0;
-            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
-            const PairPlace& place = table_.state(active_[i] / 2).reference;
-            host_pairs_[i] = order_pair(source, target, from_a ? place.pose : place.pose_of_second());
-            margins_[i] = static_cast<float>(rounding_margin(source, target));
-        }
-    });
 }
 
 // The blocks of each stale pair that reach into its bounds widened by what the list is to last.
@@ -115,9 +170,9 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     stale_margins_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         wide_pairs_[i] = host_pairs_[stale_[i]];
-        const DirectedState& own = directed(active_[stale_[i]]);
-        stale_margins_[i] = margins_[stale_[i]];
-        const float wide = static_cast<float>(own.expiry) + margins_[stale_[i]];
+        const std::uint32_t ordered = active_[stale_[i]];
+        stale_margins_[i] = due_[ordered].margin;
+        const float wide = static_cast<float>(watched(ordered).expiry) + stale_margins_[i];
         for (int k = 0; k < 3; ++k) {
             wide_pairs_[i].bounds[k] -= wide;
             wide_pairs_[i].bounds[3 + k] += wide;
@@ -134,7 +189,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        DirectedState& own = directed(active_[stale_[i]]);
+        Watched& own = watched(active_[stale_[i]]);
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
         const RangePool::Range range = pool_.take(host_counts_[i]);
@@ -156,11 +211,12 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
     host_segments_.clear();
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
-        DirectedState& own = directed(active_[i]);
+        Watched& own = watched(active_[i]);
+        const Due& due = due_[active_[i]];
         own.wake = own.expiry;
         for (std::uint32_t done = 0; done < own.count; done += segment_size)
-            host_segments_.push_back({i, own.first + done, std::min(segment_size, own.count - done),
-                                      static_cast<float>(own.clock), margins_[i]});
+            host_segments_.push_back(
+                {i, own.first + done, std::min(segment_size, own.count - done), due.now, due.from, due.margin});
     }
     device_pairs_.write(device, host_pairs_);
     segments_.write(device, host_segments_);
@@ -176,16 +232,46 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     looks_.read(device, host_looks_);
     inside_ = blocks_ = 0;
     for (std::size_t s = 0; s < host_segments_.size(); ++s) {
-        DirectedState& own = directed(active_[host_segments_[s].pair]);
+        Watched& own = watched(active_[host_segments_[s].pair]);
         own.wake = std::min(own.wake, double(host_looks_[s].wake));
         inside_ += host_looks_[s].inside;
         blocks_ += host_looks_[s].blocks;
     }
     for (const std::uint32_t ordered : active_) {
-        const PairState& state = table_.state(ordered / 2);
-        table_.slack(ordered / 2) = std::min(state.directed[0].wake - state.directed[0].clock,
-                                             state.directed[1].wake - state.directed[1].clock);
+        double& slack = table_.slack(ordered / 2); // of the other direction, if it need not be looked at
+        slack = std::min(slack, watched(ordered).wake - double(due_[ordered].now));
     }
+}
+
+// Where every ray of the last step lies, by pair, and how wide a tube this step may seek.
+void CertifiedRays::find_holders() {
+    host_holders_.clear();
+    for (const std::uint32_t ordered : active_) {
+        Watched& own = watched(ordered);
+        host_holders_.push_back({own.held_first, own.held_count, due_[ordered].margin, due_[ordered].radius});
+        own.held_count = 0;
+    }
+    std::uint32_t ray = 0;
+    for (std::size_t s = 0; s < host_segments_.size(); ++s) {
+        Watched& own = watched(active_[host_segments_[s].pair]);
+        if (own.held_count == 0) own.held_first = ray;
+        own.held_count += host_looks_[s].rays;
+        ray += host_looks_[s].rays;
+    }
+}
+
+void CertifiedRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
+    find_holders();
+    const auto holds = [](const kernels::Holder& holder) { return holder.count > 0 || holder.radius > 0; };
+    if (caster != Caster::basic && std::any_of(host_holders_.begin(), host_holders_.end(), holds)) {
+        held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
+        cast_ = held_.cast_in_full();
+        return;
+    }
+    cast_standard(device, caster, shapes.arrays(), device_pairs_, rays_, hits_);
+    cast_ = rays_.size();
+    held_.forget(device);
+    for (const std::uint32_t ordered : active_) watched(ordered).held_count = 0;
 }
 
 void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
@@ -193,9 +279,7 @@ void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& s
                          std::optional<double> threshold) {
     if (packed_ != shapes.packed()) clear(); // lists name vertex blocks by their place
     packed_ = shapes.packed();
-    table_.match(pairs, [this](PairState& state) {
-        for (const DirectedState& own : state.directed) pool_.give_back({own.first, own.capacity});
-    });
+    table_.match(pairs, [this](PairState& state) { close(state); });
     wake_up(executor, bodies, pairs, motion, threshold);
     make_lists(device, shapes);
     look(device, shapes);

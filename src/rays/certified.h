@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pairs/displacement.h"
 #include "pairs/motion.h"
 #include "pairs/pair_table.h"
 #include "pairs/range_pool.h"
+#include "rays/held.h"
 #include "rays/ray_queue.h"
 
 #include <optional>
@@ -12,7 +14,8 @@ namespace raycontact {
 
 /// The rays of a step by the certified method: those of `standard` that could be contacts, and hardly any other
 /// (docs/certified.md). Each ordered pair watches the vertex blocks within some distance of its target; a block, and a
-/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching.
+/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs too fast for that to pay
+/// are left to `standard`.
 class CertifiedRays {
 public:
     /// threshold: metres that a list of blocks reaches beyond the bounds; empty: chosen by the pair's speed and size.
@@ -22,32 +25,65 @@ public:
 
     const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
     const Array<kernels::Ray>& rays() const { return rays_; }
+    /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast.
+    void cast(Device& device, Caster caster, const ShapeStore& shapes);
+    const Array<kernels::Hit>& hits() const { return hits_; }
+    std::uint64_t rays_cast() const { return cast_; }
     /// 2 x pair + direction of each of pairs(), ascending.
     std::span<const std::uint32_t> ordered() const { return active_; }
+    /// The same of the pairs that are none of ours in this step: every vertex of theirs is to be looked at.
+    std::span<const std::uint32_t> fast() const { return fast_; }
 
     std::uint64_t vertices_inside() const { return inside_; }
     std::uint64_t vertices_tested() const { return VERTEX_LANES * blocks_; }
     std::uint64_t full_looks() const { return stale_.size(); }
-    std::uint64_t bytes() const { return table_.bytes() + pool_.in_use() * sizeof(kernels::Watch); }
+    std::uint64_t bytes() const { return table_.bytes() + pool_.in_use() * sizeof(kernels::Watch) + held_.bytes(); }
 
 private:
+    /// One direction of a pair: its list of blocks, and its clock. All of it in metres of the clock, which runs from
+    /// the pair's reference pose on.
+    struct Watched {
+        double clock = 0;   ///< at the reference pose
+        double wake = 0;    ///< nothing need be looked at before the clock reaches this
+        double expiry = -1; ///< a new list is due when the clock reaches this; below 0: at once
+        std::uint32_t first = 0, count = 0, capacity = 0; ///< of watches_
+        std::uint32_t held_first = 0, held_count = 0;     ///< of the rays of the last step
+    };
+    struct PairState {
+        PairPlace reference;
+        double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
+        Watched watched[2];
+    };
+    /// What a direction that is due is looked at with. The clock now, and that from which new wakes count: the
+    /// reference is kept while a pair only trembles about it, and what is seen from beside it holds for that much less.
+    struct Due {
+        kernels::OrderedPair pair;
+        float now, from, margin, radius;
+    };
+
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  const Motion& motion, std::optional<double> threshold);
     void make_lists(Device& device, const ShapeStore& shapes);
     void look(Device& device, const ShapeStore& shapes);
-    DirectedState& directed(std::uint32_t ordered) { return table_.state(ordered / 2).directed[ordered % 2]; }
+    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
+                   std::optional<double> threshold);
+    void find_holders();
+    void close(PairState& state);
+    Watched& watched(std::uint32_t ordered) { return table_.state(ordered / 2).watched[ordered % 2]; }
 
-    PairTable table_;
+    PairTable<PairState> table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<std::uint8_t> due_;             ///< per pair: bits 0, 1 look; bits 2, 3 make a new list
-    std::vector<std::uint32_t> active_, stale_; ///< ordered pairs; stale_ are places in active_
+    std::vector<std::uint8_t> what_;                   ///< per pair: bits 0, 1 look; bits 2, 3 make a new list; 4 fast
+    std::vector<Due> due_;                             ///< per ordered pair; of those that are due
+    std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> margins_, stale_margins_; ///< of active_, of stale_
+    std::vector<float> stale_margins_;
     std::vector<kernels::uint> host_counts_, places_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
-    std::uint64_t inside_ = 0, blocks_ = 0, packed_ = 0;
+    std::vector<kernels::Holder> host_holders_;
+    std::uint64_t inside_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;
@@ -58,6 +94,8 @@ private:
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
     Array<kernels::Ray> rays_;
+    HeldRays held_;
+    Array<kernels::Hit> hits_;
 };
 
 } // namespace raycontact

@@ -16,24 +16,25 @@ namespace {
 
 constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followed
 
+} // namespace
+
 // How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full
 // looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
 // Counts, not clocks: equal input, equal result.
-double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state) {
+double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
+                                    double steps) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = 0.015 * size;
     // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
-    if (state.speed > most) return 0.2 * least;
-    double threshold = 4 * state.speed;
+    if (speed > most) return 0.2 * least;
+    double threshold = 4 * speed;
     if (state.threshold >= least) {
         const double looks = cost_of_look + state.look_cost;
-        const double follows = state.steps * (state.directed[0].count + state.directed[1].count);
+        const double follows = steps * (state.kept[0].count + state.kept[1].count);
         threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
     }
     return std::clamp(threshold, least, most);
 }
-
-} // namespace
 
 // Decides for each pair, in double, whether it is looked at in full or followed.
 void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -47,7 +48,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             left -= motion.pair_bound(pairs[i]);
             if (left >= 0) continue;
             PairState& state = table_.state(i);
-            const bool fresh = state.directed[0].expiry < 0;
+            const bool fresh = state.threshold < 0;
 
             const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
             const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pairs[i]));
@@ -62,18 +63,17 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             }
             full_[i] = 1;
             state.reference = now;
-            state.speed = motion.pair_speed(pairs[i]);
-            state.steps = static_cast<double>(step_ - state.looked);
+            const double steps = static_cast<double>(step_ - state.looked);
             state.looked = step_;
-            const double threshold =
-                settings.displacement_threshold ? *settings.displacement_threshold : next_threshold(a, b, state);
+            const double threshold = settings.displacement_threshold
+                                         ? *settings.displacement_threshold
+                                         : next_threshold(a, b, state, motion.pair_speed(pairs[i]), steps);
             state.threshold = threshold;
             left = threshold;
             state.culling = 0;
             if (predictive)
                 state.culling =
                     settings.culling_distance ? *settings.culling_distance : settings.confidence * threshold;
-            for (DirectedState& own : state.directed) own.expiry = threshold;
         }
     });
 
@@ -83,7 +83,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     full_count_ = active_.size();
     for (std::uint32_t i = 0; i < pairs.size(); ++i)
         for (std::uint32_t d = 0; full_[i] == 0 && d < 2; ++d)
-            if (table_.state(i).directed[d].count > 0) active_.push_back(2 * i + d);
+            if (table_.state(i).kept[d].count > 0) active_.push_back(2 * i + d);
 
     host_pairs_.resize(active_.size());
     cullings_.resize(active_.size());
@@ -139,8 +139,8 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     host_firsts_.clear();
     std::uint64_t end = full_rays_;
     for (std::size_t i = full_count_; i < active_.size(); ++i) {
-        const DirectedState& own = directed(active_[i]);
-        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0});
+        const Kept& own = kept(active_[i]);
+        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0, 0});
         host_firsts_.push_back(static_cast<kernels::uint>(end));
         end += own.count;
     }
@@ -191,7 +191,7 @@ void CoherentRays::keep(Device& device) {
     kernels::uint first = 0;
     for (std::size_t i = 0; i < active_.size(); ++i) {
         const kernels::Followed& sum = host_followed_[i];
-        DirectedState& own = directed(active_[i]);
+        Kept& own = kept(active_[i]);
         own.first = first;
         own.count = sum.kept;
         if (i < full_count_) {

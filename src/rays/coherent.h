@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pairs/displacement.h"
 #include "pairs/motion.h"
 #include "pairs/pair_table.h"
 #include "rays/ray_queue.h"
@@ -33,9 +34,23 @@ private:
     void find_rays(Device& device, const ShapeStore::Arrays& arrays);
     void cast(Device& device, const ShapeStore::Arrays& arrays, const Settings& settings);
     void keep(Device& device);
-    DirectedState& directed(std::uint32_t ordered) { return table_.state(ordered / 2).directed[ordered % 2]; }
+    /// The rays that one direction of a pair keeps: a range of candidates_.
+    struct Kept {
+        std::uint32_t first = 0, count = 0;
+    };
+    struct PairState {
+        PairPlace reference;      ///< where the bodies were when the pair was last looked at in full
+        double threshold = -1;    ///< metres, of that look; below 0: there was none
+        double culling = 0;       ///< metres a predictive ray looks ahead
+        double look_cost = 0;     ///< what that look cost, in rays
+        std::uint64_t looked = 0; ///< its step
+        Kept kept[2];
+    };
+    static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
+                                 double steps);
+    Kept& kept(std::uint32_t ordered) { return table_.state(ordered / 2).kept[ordered % 2]; }
 
-    PairTable table_;
+    PairTable<PairState> table_;
     Scan scan_;
     std::vector<std::uint8_t> full_;    ///< per pair
     std::vector<std::uint32_t> active_; ///< ordered pairs

@@ -60,9 +60,9 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
     Array<kernels::Hit> hits;
     three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
-        cast_standard(tracing, Caster::bvh, store.arrays(), certified.pairs(), certified.rays(), hits);
+        certified.cast(tracing, Caster::bvh, store);
         std::vector<kernels::LocalContact> contacts;
-        gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), hits, contacts);
+        gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), certified.hits(), contacts);
         if (!begin) return;
         for (kernels::LocalContact& contact : contacts)
             contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * ((first + 1) / 2));

@@ -41,6 +41,7 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::follow_rays_basic:
         return 4;
     case KernelId::cast_rays_bvh:
+    case KernelId::hold_rays:
     case KernelId::follow_rays_bvh:
         return 128;
     case KernelId::look_at_watches:

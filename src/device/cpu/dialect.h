@@ -19,8 +19,10 @@ struct Range {
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
+#define DEVICE_RARE [[maybe_unused, gnu::noinline]] static // what is seldom asked should not crowd the registers
 #define GLOBAL
 #define RESTRICT __restrict__
+#define PREFETCH(array, index) __builtin_prefetch((array) + (index))
 #define RANGE [[maybe_unused]] Range range,
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4

@@ -6,8 +6,10 @@ typedef unsigned long long ulong;
 #define KERNEL extern "C" __global__
 #define DEVICE static inline __device__
 #define DEVICE_CALL static __noinline__ __device__
+#define DEVICE_RARE DEVICE_CALL
 #define GLOBAL
 #define RESTRICT __restrict__
+#define PREFETCH(array, index)
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
 #define RAYS_AT_ONCE 1

@@ -5,8 +5,10 @@
 #define KERNEL __kernel
 #define DEVICE static inline
 #define DEVICE_CALL DEVICE
+#define DEVICE_RARE DEVICE_CALL
 #define GLOBAL __global
 #define RESTRICT restrict
+#define PREFETCH(array, index)
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = (uint)get_global_id(0); i < (n); i += (uint)get_global_size(0))
 #define RAYS_AT_ONCE 1

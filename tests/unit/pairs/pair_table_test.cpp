@@ -15,9 +15,14 @@ namespace {
 
 using reference::Random;
 
+struct State {
+    double mark = 0;
+    int untouched = 7;
+};
+
 TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     Random random(1);
-    PairTable table;
+    PairTable<State> table;
     std::map<Pair, double> model; // a mark for each open pair
     double mark = 0;
     std::uint64_t most_bytes = 0;
@@ -32,31 +37,28 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
         std::multiset<double> closed, expected;
         for (const auto& [pair, its_mark] : model)
             if (!wanted.contains(pair)) expected.insert(its_mark);
-        table.match(pairs, [&](PairState& state) { closed.insert(state.speed); });
+        table.match(pairs, [&](State& state) { closed.insert(state.mark); });
         ASSERT_EQ(closed, expected);
         std::map<Pair, double> next;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-            PairState& state = table.state(i);
+            State& state = table.state(i);
             if (const auto found = model.find(pairs[i]); found != model.end()) {
-                ASSERT_EQ(state.speed, found->second);
+                ASSERT_EQ(state.mark, found->second);
                 ASSERT_EQ(table.slack(i), found->second);
             } else {
-                ASSERT_EQ(state.speed, 0.0);
-                ASSERT_LT(state.directed[0].expiry, 0.0) << "a new pair begins afresh";
-                ASSERT_LT(state.directed[1].expiry, 0.0);
-                ASSERT_EQ(state.directed[0].capacity, 0u);
+                ASSERT_EQ(state.mark, 0.0);
+                ASSERT_EQ(state.untouched, 7) << "a new pair begins afresh";
                 ASSERT_LT(table.slack(i), 0.0);
-                state.speed = table.slack(i) = ++mark;
-                state.directed[0].expiry = state.directed[1].expiry = 1;
-                state.directed[0].capacity = 7;
+                state.mark = table.slack(i) = ++mark;
+                state.untouched = 1;
             }
-            next[pairs[i]] = state.speed;
+            next[pairs[i]] = state.mark;
         }
         model.swap(next);
         if (pairs.empty()) {
             EXPECT_EQ(table.bytes(), 0u);
         }
-        EXPECT_LE(table.bytes(), 1024 * pairs.size());
+        EXPECT_LE(table.bytes(), 64 * pairs.size());
         most_bytes = std::max(most_bytes, table.bytes());
     }
     EXPECT_GT(most_bytes, 0u);
@@ -64,9 +66,9 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     EXPECT_EQ(table.bytes(), 0u);
     bool closed = false;
     const std::vector<Pair> one{{0, 1}};
-    table.match(one, [&](PairState&) { closed = true; });
+    table.match(one, [&](State&) { closed = true; });
     EXPECT_FALSE(closed) << "what was cleared is not open any more";
-    EXPECT_EQ(table.state(0).speed, 0.0);
+    EXPECT_EQ(table.state(0).mark, 0.0);
 }
 
 TEST(RangePool, RangesNeverOverlapAndAreUsedAgain) {

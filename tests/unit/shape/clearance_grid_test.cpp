@@ -27,6 +27,9 @@ struct Lookup {
 Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
     kernels::OrderedPair pair{};
     pair.rotation[0] = pair.rotation[4] = pair.rotation[8] = 1;
+    // Endless bounds: no vertex is safe by being outside them.
+    std::fill(pair.bounds, pair.bounds + 3, -UNBOUNDED);
+    std::fill(pair.bounds + 3, pair.bounds + 6, UNBOUNDED);
     kernels::VertexBlock block{};
     for (std::size_t k = 0; k < VERTEX_LANES; ++k) {
         block.position[0][k] = points[k].x;
@@ -34,11 +37,11 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
         block.position[2][k] = points[k].z;
     }
     Lookup found{};
-    const auto near = kernels::prototype::watch_lanes(&pair, &block, &target.header, target.clearances.data());
+    const auto near = kernels::prototype::safe_lanes(&pair, &block, &target.header, target.clearances.data());
     std::copy(near.safe, near.safe + VERTEX_LANES, found.distance);
     // A vertex that is not certainly outside loses its ray's reach; one with an endless ray is never safe.
     std::fill(block.exit, block.exit + VERTEX_LANES, std::numeric_limits<float>::infinity());
-    const auto endless = kernels::prototype::watch_lanes(&pair, &block, &target.header, target.clearances.data());
+    const auto endless = kernels::prototype::safe_lanes(&pair, &block, &target.header, target.clearances.data());
     for (std::size_t k = 0; k < VERTEX_LANES; ++k) found.outside[k] = endless.safe[k] >= 0;
     return found;
 }

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays that need not be cast again (docs/certified.md): around a ray, up to a little behind what it met, lies a tube
+// that no other triangle enters. Until a point of the ray has moved by its radius, that one triangle alone decides.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
+
+#define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
+#define WORTH_HOLDING 0.02f // of the radius sought
+#define LIMIT_TOLERANCES 4.0f
+
+typedef struct {
+    float origin[3];
+    float along[3], u[3], v[3]; // unit vectors, square to each other
+    float length;
+    float box[6]; // around the tube: lower x y z, upper x y z
+} Tube;
+
+// The triangle nearest to the tube's axis, and how far the axis is from every other.
+typedef struct {
+    float least, second;
+    uint slot; // TRIANGLE_LANES * block + lane
+} Neighbours;
+
+DEVICE Tube tube_of(const SourceRay* ray, float length, float radius) {
+    Tube tube;
+    const float* d = ray->direction;
+    // Rotations are rigid to 1e-4 only: not quite of unit length, and distances count in lengths of it.
+    const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+    for (int i = 0; i < 3; ++i) {
+        tube.origin[i] = ray->position[i];
+        tube.along[i] = d[i] / size;
+    }
+    tube.length = length * size;
+    const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
+    const int least = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
+    const int next = least == 2 ? 0 : least + 1, last = next == 2 ? 0 : next + 1;
+    const float side = 1.0f / root_of(tube.along[next] * tube.along[next] + tube.along[last] * tube.along[last]);
+    tube.u[least] = 0.0f;
+    tube.u[next] = -(tube.along[last] * side);
+    tube.u[last] = tube.along[next] * side;
+    for (int i = 0; i < 3; ++i) {
+        const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+        tube.v[i] = tube.along[j] * tube.u[k] - tube.along[k] * tube.u[j];
+        const float end = tube.origin[i] + tube.length * tube.along[i];
+        tube.box[i] = (tube.origin[i] < end ? tube.origin[i] : end) - radius;
+        tube.box[3 + i] = (tube.origin[i] > end ? tube.origin[i] : end) + radius;
+    }
+    return tube;
+}
+
+DEVICE uint children_near(const Tube* tube, GLOBAL const Node* RESTRICT node) {
+    int near[NODE_LANES];
+    FOR_LANES(k, NODE_LANES) {
+        const uint x = (node->bounds[0][k] <= tube->box[3]) & (node->bounds[3][k] >= tube->box[0]);
+        const uint y = (node->bounds[1][k] <= tube->box[4]) & (node->bounds[4][k] >= tube->box[1]);
+        const uint z = (node->bounds[2][k] <= tube->box[5]) & (node->bounds[5][k] >= tube->box[2]);
+        near[k] = -(int)(x & y & z);
+    }
+    return pack_sixteen(near);
+}
+
+// No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
+// seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
+DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index) {
+    float apart[TRIANGLE_LANES];
+    int nearer[TRIANGLE_LANES];
+    const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
+    const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
+    const float px = tube->u[0], py = tube->u[1], pz = tube->u[2];
+    const float qx = tube->v[0], qy = tube->v[1], qz = tube->v[2];
+    const float length = tube->length, bound = found->second;
+    FOR_LANES(k, TRIANGLE_LANES) {
+        const float ax = block->corner[0][k] - ox, ay = block->corner[1][k] - oy, az = block->corner[2][k] - oz;
+        const float bx = block->corner[3][k] - ox, by = block->corner[4][k] - oy, bz = block->corner[5][k] - oz;
+        const float cx = block->corner[6][k] - ox, cy = block->corner[7][k] - oy, cz = block->corner[8][k] - oz;
+        const float as = (dx * ax + dy * ay) + dz * az, bs = (dx * bx + dy * by) + dz * bz;
+        const float cs = (dx * cx + dy * cy) + dz * cz;
+        const float au = (px * ax + py * ay) + pz * az, av = (qx * ax + qy * ay) + qz * az;
+        const float bu = (px * bx + py * by) + pz * bz, bv = (qx * bx + qy * by) + qz * bz;
+        const float cu = (px * cx + py * cy) + pz * cz, cv = (qx * cx + qy * cy) + qz * cz;
+        const float first_ab = as < bs ? as : bs, last_ab = as > bs ? as : bs;
+        const float first = first_ab < cs ? first_ab : cs, last = last_ab > cs ? last_ab : cs;
+        const float beyond = first - length, behind = -last;
+        float best = beyond > behind ? beyond : behind;
+        // Edge a b: its normal (nu, nv), the edge's own offset and the third corner's.
+        float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
+        float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        float edge = (nu * au + nv * av) * scale, third = (nu * cu + nv * cv) * scale;
+        float low = edge < third ? edge : third, high = edge > third ? edge : third;
+        float gap = low > -high ? low : -high;
+        best = gap > best ? gap : best;
+        nu = cv - bv;
+        nv = bu - cu;
+        n2 = nu * nu + nv * nv;
+        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        edge = (nu * bu + nv * bv) * scale;
+        third = (nu * au + nv * av) * scale;
+        low = edge < third ? edge : third;
+        high = edge > third ? edge : third;
+        gap = low > -high ? low : -high;
+        best = gap > best ? gap : best;
+        nu = av - cv;
+        nv = cu - au;
+        n2 = nu * nu + nv * nv;
+        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        edge = (nu * cu + nv * cv) * scale;
+        third = (nu * bu + nv * bv) * scale;
+        low = edge < third ? edge : third;
+        high = edge > third ? edge : third;
+        gap = low > -high ? low : -high;
+        best = gap > best ? gap : best;
+        // The plane's normal, in the frame of the axis.
+        const float pu = (bv - av) * (cs - as) - (bs - as) * (cv - av);
+        const float pv = (bs - as) * (cu - au) - (bu - au) * (cs - as);
+        const float ps = (bu - au) * (cv - av) - (bv - av) * (cu - au);
+        n2 = (pu * pu + pv * pv) + ps * ps;
+        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        const float ah = (pu * au + pv * av) + ps * as, bh = (pu * bu + pv * bv) + ps * bs;
+        const float ch = (pu * cu + pv * cv) + ps * cs, end = ps * length;
+        const float low_ab = ah < bh ? ah : bh, high_ab = ah > bh ? ah : bh;
+        low = low_ab < ch ? low_ab : ch;
+        high = high_ab > ch ? high_ab : ch;
+        const float above = low - (end > 0.0f ? end : 0.0f), below = (end < 0.0f ? end : 0.0f) - high;
+        gap = (above > below ? above : below) * scale;
+        best = gap > best ? gap : best;
+        apart[k] = best;
+        nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
+    }
+    for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
+        const uint lane = lowest_bit(left);
+        if (apart[lane] < found->least) {
+            found->second = found->least;
+            found->least = apart[lane];
+            found->slot = TRIANGLE_LANES * index + lane;
+        } else if (apart[lane] < found->second) {
+            found->second = apart[lane];
+        }
+    }
+}
+
+// Of all triangles within `radius` of the tube's axis.
+DEVICE_CALL Neighbours search_tube(const Tube* tube, float radius, GLOBAL const ShapeHeader* RESTRICT shape,
+                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    Neighbours found;
+    found.least = radius;
+    found.second = radius;
+    found.slot = NONE;
+    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
+    ulong trail = 0u;
+    uint at = 0u;
+    uint children = children_near(tube, tree);
+    for (;;) {
+        while (children != 0u) {
+            const uint lane = lowest_bit(children);
+            const uint child = tree[at].child[lane];
+            children &= children - 1u;
+            if ((child & LEAF) != 0u) {
+                const uint index = child & ~LEAF;
+                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index);
+            } else {
+                trail = (trail << NODE_LANES) | (ulong)children;
+                at = child;
+                children = children_near(tube, tree + at);
+            }
+        }
+        if (at == 0u) return found;
+        at = tree[at].parent;
+        children = (uint)(trail & 0xffffu);
+        trail >>= NODE_LANES;
+    }
+}
+
+// The place of a ray among those that its pair held, which ascend by slot; their number if it is not there.
+DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot) {
+    uint low = 0u, high = count;
+    while (low < high) {
+        const uint middle = (low + high) / 2u;
+        if (held[middle].slot < slot)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low < count && held[low].slot == slot ? low : count;
+}
+
+// How far a point of the ray, up to its limit, has moved at most: as far as either end.
+DEVICE float moved_by(const Held* held, const SourceRay* ray) {
+    float start = 0.0f, end = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float shift = ray->position[i] - held->position[i];
+        const float far = shift + held->limit * (ray->direction[i] - held->direction[i]);
+        start += shift * shift;
+        end += far * far;
+    }
+    return root_of(start > end ? start : end);
+}
+
+// Whether the one triangle still decides, and if so what it says.
+DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, float reach,
+                     GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    if (held->triangle != NONE)
+        hit_lane(closest, frame, blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES,
+                 held->triangle % TRIANGLE_LANES, shape->tolerance, false);
+    const float met = closest->back < closest->front ? closest->back : closest->front;
+    return (uint)(met + LIMIT_TOLERANCES * shape->tolerance <= held->limit) | (uint)(held->limit >= reach);
+}
+
+// What is known of a ray from now on, where it had to be cast.
+DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, const Holder* holder,
+                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
+                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+    Held held;
+    held.safe = 0.0f;
+    held.limit = 0.0f;
+    held.triangle = NONE;
+    for (int i = 0; i < 3; ++i) {
+        held.position[i] = ray->position[i];
+        held.direction[i] = ray->direction[i];
+    }
+    const float met = own->back < own->front ? own->back : own->front;
+    const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
+    if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
+    const Tube tube = tube_of(ray, end, holder->radius);
+    const Neighbours found = search_tube(&tube, holder->radius, shape, nodes, blocks);
+    const float safe = found.second - holder->margin;
+    if (safe > WORTH_HOLDING * holder->radius) {
+        held.safe = safe;
+        held.limit = end;
+        held.triangle = found.slot;
+    } else {
+        held.limit = WAIT_STEPS;
+    }
+    return held;
+}
+
+// The hits of cast_rays_bvh, bit for bit. before, after: rays held in the last step and now; casts: 1 for each ray cast
+// in full.
+KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
+                      GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                      GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
+                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
+                      GLOBAL uint* RESTRICT casts) {
+    FOR_EACH(i, count) {
+        const Holder holder = holders[rays[i].pair];
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        GLOBAL const ShapeHeader* shape = shapes + pair->target;
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        const RayFrame frame = frame_ray(ray.position, ray.direction);
+        const uint at = find_held(before + holder.first, holder.count, rays[i].slot);
+        Held held;
+        held.safe = 0.0f;
+        held.limit = 0.0f;
+        if (at < holder.count) held = before[holder.first + at];
+        Closest own = nothing_hit(ray.reach, shape->tolerance);
+        uint known = 0u;
+        if (held.safe > 0.0f && moved_by(&held, &ray) < held.safe)
+            known = hit_held(&own, &held, &frame, ray.reach, shape, blocks);
+        if (known == 0u) {
+            own = find_closest(CASTER_BVH, 1u, &frame, ray.reach, shape, nodes, blocks);
+            const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
+            if (waits > 0.0f)
+                held.limit = waits;
+            else
+                held = seek_tube(&ray, &own, &holder, shape, nodes, blocks);
+            held.slot = rays[i].slot;
+        }
+        casts[i] = 1u - known;
+        after[i] = held;
+        hits[i] = decide(CASTER_BVH, &ray, &own, shape, nodes, blocks, normals);
+    }
+}
+// NOLINTEND(modernize-use-using)
