@@ -51,6 +51,8 @@ public:
             {"walk", "ray", kept_.walks(), [this] { kept_.walk(); }},
             {"begin_watches", "vertex block", kept_.vertex_blocks(), [this] { kept_.begin_watches(); }},
             {"look", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_watch_rays(); }},
+            {"seek_tubes", "ray", kept_.watch_rays(), [this] { kept_.seek_tubes(); }},
+            {"held", "ray", kept_.watch_rays(), [this] { kept_.decide_held(); }},
             {"contacts", "contact", small_.contacts(), [this] { contacts(); }},
             {"order_pairs", "pair", small_batch_.pairs.size(), [this] { order_pairs(); }},
             {"sweep", "box", boxes_.size(), [this] { sweep(); }},
