@@ -58,7 +58,8 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
     const float away = root_of(off2 + clear * clear);
     const uint outside =
         (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
-    return away - (outside != 0u ? 0.0f : reach);
+    // Rays are stretched with their rotation, which is rigid to 1e-4 for each body.
+    return away - (outside != 0u ? 0.0f : 1.0005f * reach);
 }
 
 DEVICE SafeLanes safe_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,

@@ -23,12 +23,13 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             const Pose& now = bodies[i].centred;
             if (last.known && last.centred == now) {
                 body.shift = {};
-                body.turn = 0;
+                body.turn = body.lost = 0;
                 continue;
             }
             const double shear = shear_bound(now);
             const Pose& before = last.known ? last.centred : now;
             body.shift = now.translation - before.translation;
+            body.lost = 4e-16 * length(body.shift);
             body.turn = turn_bound(before, now, std::max(shear, last.shear));
             body.centre = now.translation;
             body.reach = bodies[i].shape->data().reach;
@@ -39,7 +40,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
 
 double Motion::pair_bound(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-    const double still = length(a.shift - b.shift);
+    const double still = length(a.shift - b.shift) + (a.lost + b.lost);
     if (a.turn == 0 && b.turn == 0) return 1.001 * still;
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
     const double apart = length(a.centre - b.centre);

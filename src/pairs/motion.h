@@ -28,6 +28,7 @@ private:
     struct Body {
         Vec3 centre;
         Vec3 shift;       ///< of the centre, metres
+        double lost = 0;  ///< what rounding may have taken from it
         double turn = 0;  ///< turn_bound
         double reach = 0; ///< of the shape, about its centre
     };

@@ -624,4 +624,86 @@ TEST(certified, beyond_the_range_of_squares) {
     report("very far", counts, 100);
 }
 
+// Away together, so far that the doubles of their positions lose how they lay to each other.
+TEST(certified, far_away_together) {
+    const auto shape = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    Counts counts;
+    for (const double far : {1e12, 1e14, 1e15, 1e16, 1e17, 1e30}) {
+        Settings settings;
+        settings.threads = 1;
+        char what[40];
+        std::snprintf(what, sizeof what, "together %g m away", far);
+        Triplet triplet(settings, 1e-2, what);
+        Pose a, b = small_rotation({0, 0, 1}, 0.785);
+        triplet.each([&](Scene& scene) {
+            scene.add(shape);
+            scene.add(shape);
+        });
+        const std::vector<Pair> pair{{0, 1}};
+        for (int step = 0; step < 12; ++step) {
+            const double x = step / 3 % 2 == 0 ? 0 : far;
+            a.translation = {x, 0, 0};
+            b.translation = {x + 2, 0.8, 0.1};
+            triplet.each([&](Scene& scene) {
+                scene.set_pose(0, a);
+                scene.set_pose(1, b);
+            });
+            triplet.step(counts, pair);
+        }
+        ++counts.episodes;
+    }
+    report("far away together", counts, 10);
+}
+
+// A rotation that stretches by as much as is accepted makes rays reach farther than their vertices' exit distances say.
+TEST(certified, stretched_rays) {
+    const auto small = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    Mesh mesh = grid_box_mesh(32); // [0, 1]^3
+    for (Vec3& v : mesh.vertices) v = 4.8 * (v - Vec3{0.5, 0.5, 0.5});
+    const auto large = Shape::make(mesh);
+    Random random(23);
+    Counts counts;
+    // 1.5e-4 too long along (1, 1, 1), and 5e-5 along an axis.
+    const auto ones = [](Pose pose, double by) {
+        const auto r = pose.rotation;
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+                pose.rotation[3 * i + j] += by * (r[3 * i] + r[3 * i + 1] + r[3 * i + 2]);
+        return pose;
+    };
+    Settings settings;
+    settings.threads = 1;
+    settings.displacement_threshold = 0.1; // no jump is left to the standard method
+    Triplet triplet(settings, 0.2, "stretched rays");
+    triplet.each([&](Scene& scene) {
+        scene.add(small);
+        scene.add(large);
+    });
+    // Takes the diagonal of the small box, along which its corner's ray runs, to an axis of the large one.
+    const double c = 1 / std::sqrt(3.0), s = std::sqrt(2.0) * c;
+    const double h = 1 / std::sqrt(2.0);
+    Pose along;
+    along.rotation = {c, c, c, -h, h, 0, -s / 2, -s / 2, s};
+    constexpr double stretch = 4.99e-5;
+    const Pose b = ones(Pose{}, stretch);
+    triplet.each([&](Scene& scene) { scene.set_pose(1, b); });
+    const std::vector<Pair> pair{{0, 1}};
+    for (int round = 0; round < 10000; ++round) {
+        Pose a = ones(along, stretch);
+        const double deep = std::sqrt(3.0) * (1 + random.uniform(0.5e-4, 2e-4));
+        const Vec3 corner = transform_point({a.rotation, {}}, {-0.5, -0.5, -0.5});
+        const Vec3 seen{2.4 - deep, random.uniform(-1, 1), random.uniform(-1, 1)}; // from the large box, by a transpose
+        const double sum = stretch * (seen.x + seen.y + seen.z);
+        a.translation = seen - Vec3{sum, sum, sum} - corner;
+        Pose away = a;
+        away.translation.x += 40;
+        for (const Pose& pose : {away, a}) {
+            triplet.each([&](Scene& scene) { scene.set_pose(0, pose); });
+            triplet.step(counts, pair);
+        }
+    }
+    ++counts.episodes;
+    report("stretched rays", counts, 1e4);
+}
+
 } // namespace
