@@ -2,9 +2,10 @@
 #include "cli/bench.h"
 
 #include <bench/peers/contest.h>
+#include <bench/peers/contest_output.h>
 #include <bench/peers/growth.h>
+#include <bench/peers/growth_output.h>
 #include <bench/peers/machine.h>
-#include <bench/peers/output.h>
 #include <bench/peers/seeds.h>
 #include <bench/peers/swarm.h>
 #include <bench/peers/sweep_output.h>

@@ -28,23 +28,6 @@ std::string work_fields(const StepStats& s, const WrongRays& w) {
                        w.invented, w.other_triangle, w.total(), w.rays_compared, w.contacts_compared);
 }
 
-void put(Json& object, const StepStats& s, const WrongRays& w) {
-    object["rays"] = s.rays;
-    object["rays_cast"] = s.rays_cast;
-    object["walks"] = s.walks;
-    object["walks_lost"] = s.walks_lost;
-    object["walk_casts"] = s.walk_casts;
-    object["predictions"] = s.predictions;
-    object["pairs_full"] = s.pairs_full;
-    object["pairs_asleep"] = s.pairs_asleep;
-    object["pair_bytes"] = s.pair_bytes;
-    object["contacts"] = s.contacts;
-    object["wrong_rays"] = {
-        {"total", w.total()}, {"missed", w.missed}, {"invented", w.invented}, {"other_triangle", w.other_triangle}};
-    object["rays_compared"] = w.rays_compared;
-    object["contacts_compared"] = w.contacts_compared;
-}
-
 std::string fraction_of(const ThresholdRow& row) {
     if (row.method == Method::standard) return "none";
     return row.fraction ? fmt::format("{:.3g}", *row.fraction) : "auto";
@@ -109,10 +92,7 @@ std::string name_of(const SeedRow& row) {
 std::string table(const Machine& machine, std::span<const WorkNote> works, std::span<const ThresholdRow> rows) {
     std::string text = heading(machine);
     for (const WorkNote& work : works) {
-        text += fmt::format("\n{}: {} steps, {} pair-steps; {}\na pair moves {:.3g} % of its size a step (median; most "
-                            "{:.3g} %)\n",
-                            work.name, work.steps, work.pair_steps, work.source, 100 * work.pace.median,
-                            100 * work.pace.most);
+        text += heading(work);
         text += fmt::format("  {:<12}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n", "", "threshold",
                             "us/step", "full looks", "cast", "walks", "lost", "missed", "invented", "other", "wrong");
         for (const ThresholdRow& r : rows) {
@@ -162,19 +142,12 @@ std::string table(const Machine& machine, std::span<const SeedRow> rows) {
 
 std::string json(const Machine& machine, std::span<const WorkNote> works, std::span<const ThresholdRow> thresholds,
                  std::span<const SeedRow> seeds) {
-    Json out{{"machine", machine_json(machine)}, {"works", Json::array()}, {"thresholds", Json::array()},
-             {"verdicts", Json::array()},        {"seeds", Json::array()}, {"reductions", Json::array()}};
-    for (const WorkNote& w : works)
-        out["works"].push_back({{"work", w.name},
-                                {"source", w.source},
-                                {"steps", w.steps},
-                                {"pair_steps", w.pair_steps},
-                                {"pace_median", w.pace.median},
-                                {"pace_most", w.pace.most}});
+    Json out{{"machine", machine_json(machine)}, {"works", works_json(works)}, {"thresholds", Json::array()},
+             {"verdicts", Json::array()},        {"seeds", Json::array()},     {"reductions", Json::array()}};
     for (const ThresholdRow& r : thresholds) {
         Json row{{"work", r.work},   {"method", to_string(r.method)}, {"threshold", fraction_of(r)},  {"size", r.size},
                  {"steps", r.steps}, {"us_per_step", r.us},           {"wall_us_per_step", r.wall_us}};
-        put(row, r.sums, r.wrong);
+        put_counts(row, r.sums, r.wrong);
         out["thresholds"].push_back(row);
     }
     for (const Verdict& v : verdicts(thresholds))
@@ -197,7 +170,7 @@ std::string json(const Machine& machine, std::span<const WorkNote> works, std::s
                  {"setting", setting_of(r.fixed)},
                  {"cast_lost_walks", r.cast_lost_walks},
                  {"steps", r.steps}};
-        put(row, r.sums, r.wrong);
+        put_counts(row, r.sums, r.wrong);
         out["seeds"].push_back(row);
     }
     for (const Reduction& r : reductions(seeds))

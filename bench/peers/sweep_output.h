@@ -2,7 +2,7 @@
 #pragma once
 
 #include <bench/peers/machine.h>
-#include <bench/peers/output.h>
+#include <bench/peers/notes.h>
 #include <bench/peers/seeds.h>
 #include <bench/peers/thresholds.h>
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <bench/peers/growth_output.h>
+
+#include <bench/peers/chart.h>
+#include <bench/peers/files.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace raycontact::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string csv(const Machine& machine, std::span<const GrowthRow> rows) {
+    std::string text =
+        fmt::format("{},part,size,steps,pairs,rays,contacts,narrow_ms,us_per_pair,method,rays_cast,walks,"
+                    "pace_median\n",
+                    machine_columns);
+    for (const GrowthRow& r : rows)
+        text += fmt::format("{},{},{:g},{},{:.2f},{:.2f},{:.2f},{:.5f},{:.4f},{},{:.2f},{:.2f},{:.6f}\n",
+                            machine_fields(machine), r.part, r.size, r.steps, r.pairs, r.rays, r.contacts, r.narrow_ms,
+                            r.us_per_pair, to_string(r.method), r.rays_cast, r.walks, r.pace);
+    return text;
+}
+
+const char* unit_of(const std::string& part) {
+    if (part == "bodies") return "bodies";
+    if (part == "displacement") return "displacement";
+    return part == "contacts" ? "triangles, contacts alike," : "triangles";
+}
+
+std::string chart(std::span<const GrowthRow> rows) {
+    Panel panels[] = {
+        {"Avalanche", "bodies", "us a pair and step", {}},
+        {"Approaching pairs", "triangles a mesh", "us a pair and step", {}},
+        {"Rolling pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
+        {"Rolling pairs, contacts alike", "displacement a step, part of the size", "us a pair and step", {}}};
+    const std::string parts[] = {"bodies", "triangles", "contacts", "displacement"};
+    for (std::size_t i = 0; i < std::size(parts); ++i) {
+        for (const Method method : {Method::standard, Method::predictive, Method::certified}) {
+            Line& line = panels[i].lines.emplace_back();
+            line.name = to_string(method);
+            for (const GrowthRow& r : rows)
+                if (r.part == parts[i] && r.method == method) line.points.emplace_back(r.size, r.us_per_pair);
+        }
+        Line& contacts = panels[i].lines.emplace_back();
+        contacts.name = "contacts a pair";
+        for (const GrowthRow& r : rows)
+            if (r.part == parts[i] && r.method == Method::standard)
+                contacts.points.emplace_back(r.size, r.contacts / std::max(r.pairs, 1e-9));
+    }
+    return line_chart({std::begin(panels), std::end(panels)});
+}
+
+} // namespace
+
+std::string table(const Machine& machine, std::span<const GrowthRow> rows) {
+    std::string text = heading(machine);
+    text += fmt::format("  {:<13}{:>9} {:<11}{:>10}{:>12}{:>11}{:>11}{:>9}{:>12}{:>10}{:>8}\n", "", "", "", "pairs",
+                        "rays", "cast", "contacts", "walks", "narrow ms", "us/pair", "pace %");
+    for (const GrowthRow& r : rows)
+        text +=
+            fmt::format("  {:<13}{:>9g} {:<11}{:>10.1f}{:>12.1f}{:>11.1f}{:>11.1f}{:>9.1f}{:>12.4f}{:>10.3f}{:>8.2f}\n",
+                        r.part, r.size, to_string(r.method), r.pairs, r.rays, r.rays_cast, r.contacts, r.walks,
+                        r.narrow_ms, r.us_per_pair, 100 * r.pace);
+    for (const Slope& s : slopes(rows))
+        text += fmt::format("us a pair grows as {} to the power of {:.2f} with {} ({:g} to {:g})\n", unit_of(s.part),
+                            s.power, to_string(s.method), s.from, s.to);
+    return text;
+}
+
+std::string json(const Machine& machine, std::span<const GrowthRow> rows) {
+    Json out{{"machine", machine_json(machine)}, {"rows", Json::array()}};
+    for (const GrowthRow& r : rows)
+        out["rows"].push_back({{"part", r.part},
+                               {"size", r.size},
+                               {"method", to_string(r.method)},
+                               {"steps", r.steps},
+                               {"pairs", r.pairs},
+                               {"rays", r.rays},
+                               {"contacts", r.contacts},
+                               {"narrow_ms", r.narrow_ms},
+                               {"us_per_pair", r.us_per_pair},
+                               {"rays_cast", r.rays_cast},
+                               {"walks", r.walks},
+                               {"pace_median", r.pace}});
+    out["slopes"] = Json::array();
+    for (const Slope& s : slopes(rows))
+        out["slopes"].push_back(
+            {{"part", s.part}, {"method", to_string(s.method)}, {"power", s.power}, {"from", s.from}, {"to", s.to}});
+    return out.dump() + "\n";
+}
+
+std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
+                                    std::span<const GrowthRow> rows) {
+    return write_both(folder, machine, "growth", csv(machine, rows), chart(rows));
+}
+
+} // namespace raycontact::bench
