@@ -3,7 +3,7 @@
 // once the pair has moved as far as its nearest vertex was from touching.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
-#define REFRESH_TOLERANCES 2048.0f // a five-hundredth of the box diagonal
+#define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 #define AWAKE (-1.0f)              // of Watch.wake: to be looked at in every step
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.

@@ -3,6 +3,7 @@
 
 #include <raycontact/scene.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,8 +11,9 @@
 namespace raycontact {
 
 /// The pairs that were open in the last step, each with its state; others have none. Slots are reused, so memory is
-/// proportional to the most pairs ever open at once. State is what a method keeps for a pair.
-template <class State>
+/// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot, kept apart, what it
+/// reads of every pair in every step.
+template <class State, class Hot>
 class PairTable {
 public:
     /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
@@ -33,14 +35,23 @@ public:
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_[i]]; }
-    /// How far that pair may move, by a cheap bound, before the exact one is asked; below 0 for a new pair. Kept apart:
-    /// of most pairs nothing else is read in a step.
-    double& slack(std::size_t i) { return slacks_[slots_[i]]; }
+    Hot& hot(std::size_t i) { return hot_[slots_[i]]; }
 
-    /// A state that will be asked for soon.
-    void prefetch(std::size_t i) const {
-        const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
-        for (std::size_t at = 0; at < sizeof(State); at += 64) __builtin_prefetch(bytes + at);
+    /// ask(i) for each pair of [begin, end) of which asleep(i, hot) is false. By handfuls, so that the states of some
+    /// are on their way while others are asked: between two steps a solver has used the caches.
+    template <class Asleep, class Ask>
+    void sift(std::uint32_t begin, std::uint32_t end, Asleep&& asleep, Ask&& ask) {
+        constexpr std::uint32_t handful = 32;
+        std::uint32_t awake[handful];
+        for (std::uint32_t first = begin; first < end; first += handful) {
+            std::uint32_t count = 0;
+            for (std::uint32_t i = first; i < std::min(first + handful, end); ++i) {
+                if (asleep(i, hot(i))) continue;
+                awake[count++] = i;
+                prefetch(i);
+            }
+            for (std::uint32_t k = 0; k < count; ++k) ask(awake[k]);
+        }
     }
 
     /// Forgets every pair.
@@ -49,15 +60,20 @@ public:
         slots_.clear();
         free_.clear();
         states_.clear();
-        slacks_.clear();
+        hot_.clear();
     }
 
     std::uint64_t bytes() const {
         return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t))
-               + (states_.size() - free_.size()) * (sizeof(State) + sizeof(double));
+               + (states_.size() - free_.size()) * (sizeof(State) + sizeof(Hot));
     }
 
 private:
+    void prefetch(std::size_t i) const {
+        const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
+        for (std::size_t at = 0; at < sizeof(State); at += 64) __builtin_prefetch(bytes + at);
+    }
+
     template <class Closed>
     void close(std::size_t old, Closed& closed) {
         closed(states_[slots_[old]]);
@@ -67,20 +83,20 @@ private:
     std::uint32_t take_slot() {
         if (free_.empty()) {
             states_.emplace_back();
-            slacks_.push_back(-1);
+            hot_.emplace_back();
             return static_cast<std::uint32_t>(states_.size() - 1);
         }
         const std::uint32_t slot = free_.back();
         free_.pop_back();
         states_[slot] = State{};
-        slacks_[slot] = -1;
+        hot_[slot] = Hot{};
         return slot;
     }
 
     std::vector<Pair> open_;
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<State> states_;
-    std::vector<double> slacks_;
+    std::vector<Hot> hot_;
 };
 
 } // namespace raycontact

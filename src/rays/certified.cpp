@@ -92,7 +92,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
     }
     what_[i] = what;
-    table_.slack(i) = slack;
+    table_.hot(i).metres = slack;
     if (what == 0) return;
 
     const bool list = (what & (3 * list_0)) != 0;
@@ -126,20 +126,12 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
     what_.resize(pairs.size());
     due_.resize(2 * pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        // By handfuls: what the rest of them will read is on its way while the next are asked.
-        std::uint32_t awake[32];
-        for (std::uint32_t first = begin; first < end; first += 32) {
-            std::uint32_t count = 0;
-            for (std::uint32_t i = first; i < std::min(first + 32, end); ++i) {
-                what_[i] = 0;
-                double& left = table_.slack(i);
-                left -= motion.pair_bound(pairs[i]);
-                if (left > 0) continue;
-                awake[count++] = i;
-                table_.prefetch(i);
-            }
-            for (std::uint32_t k = 0; k < count; ++k) wake_pair(awake[k], bodies, pairs[awake[k]], motion, threshold);
-        }
+        const auto asleep = [&](std::uint32_t i, Slack& slack) {
+            what_[i] = 0;
+            slack.metres -= motion.pair_bound(pairs[i]);
+            return slack.metres > 0;
+        };
+        table_.sift(begin, end, asleep, [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold); });
     });
 
     active_.clear();
@@ -150,7 +142,7 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
         if (what_[i] == 0) continue;
         if (what_[i] == is_fast) {
             close(table_.state(i));
-            table_.slack(i) = -1;
+            table_.hot(i).metres = -1;
             fast_.insert(fast_.end(), {2 * i, 2 * i + 1});
             continue;
         }
@@ -238,7 +230,7 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
         blocks_ += host_looks_[s].blocks;
     }
     for (const std::uint32_t ordered : active_) {
-        double& slack = table_.slack(ordered / 2); // of the other direction, if it need not be looked at
+        double& slack = table_.hot(ordered / 2).metres; // of the other direction, if it need not be looked at
         slack = std::min(slack, watched(ordered).wake - double(due_[ordered].now));
     }
 }

@@ -71,7 +71,11 @@ private:
     void close(PairState& state);
     Watched& watched(std::uint32_t ordered) { return table_.state(ordered / 2).watched[ordered % 2]; }
 
-    PairTable<PairState> table_;
+    struct Slack {
+        double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
+    };
+
+    PairTable<PairState, Slack> table_;
     RangePool pool_;
     Scan scan_;
     std::vector<std::uint8_t> what_;                   ///< per pair: bits 0, 1 look; bits 2, 3 make a new list; 4 fast

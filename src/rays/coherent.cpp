@@ -22,7 +22,7 @@ constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followe
 // looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
 // Counts, not clocks: equal input, equal result.
 double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                    double steps) {
+                                    double follows) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = 0.015 * size;
     // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
@@ -30,51 +30,49 @@ double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, co
     double threshold = 4 * speed;
     if (state.threshold >= least) {
         const double looks = cost_of_look + state.look_cost;
-        const double follows = steps * (state.kept[0].count + state.kept[1].count);
         threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
     }
     return std::clamp(threshold, least, most);
 }
 
-// Decides for each pair, in double, whether it is looked at in full or followed.
+// Decides for one pair, in double, whether it is looked at in full or followed.
+void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair,
+                             const Motion& motion, const Settings& settings) {
+    PairState& state = table_.state(i);
+    auto& [left, kept] = table_.hot(i);
+    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
+    if (state.threshold >= 0) { // it was looked at before
+        const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
+        // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number.
+        if (moved[0] <= state.threshold && moved[1] <= state.threshold) {
+            left = state.threshold - std::max(moved[0], moved[1]);
+            return;
+        }
+    }
+    full_[i] = 1;
+    state.reference = now;
+    const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
+    state.looked = step_;
+    state.threshold = left = settings.displacement_threshold
+                                 ? *settings.displacement_threshold
+                                 : next_threshold(a, b, state, motion.pair_speed(pair), follows);
+    state.culling = 0;
+    if (settings.method == Method::predictive)
+        state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
+}
+
 void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                            const Motion& motion, const Settings& settings) {
     const bool predictive = settings.method == Method::predictive;
     full_.resize(pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
+        const auto asleep = [&](std::uint32_t i, Hot& hot) {
             full_[i] = 0;
-            double& left = table_.slack(i);
-            left -= motion.pair_bound(pairs[i]);
-            if (left >= 0) continue;
-            PairState& state = table_.state(i);
-            const bool fresh = state.threshold < 0;
-
-            const PlacedBody &a = bodies[pairs[i].first], &b = bodies[pairs[i].second];
-            const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pairs[i]));
-            if (!fresh) {
-                const auto moved =
-                    displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
-                // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number.
-                if (moved[0] <= state.threshold && moved[1] <= state.threshold) {
-                    left = state.threshold - std::max(moved[0], moved[1]);
-                    continue;
-                }
-            }
-            full_[i] = 1;
-            state.reference = now;
-            const double steps = static_cast<double>(step_ - state.looked);
-            state.looked = step_;
-            const double threshold = settings.displacement_threshold
-                                         ? *settings.displacement_threshold
-                                         : next_threshold(a, b, state, motion.pair_speed(pairs[i]), steps);
-            state.threshold = threshold;
-            left = threshold;
-            state.culling = 0;
-            if (predictive)
-                state.culling =
-                    settings.culling_distance ? *settings.culling_distance : settings.confidence * threshold;
-        }
+            hot.slack -= motion.pair_bound(pairs[i]);
+            return hot.slack >= 0;
+        };
+        table_.sift(begin, end, asleep, [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, settings); });
     });
 
     active_.clear();
@@ -83,7 +81,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     full_count_ = active_.size();
     for (std::uint32_t i = 0; i < pairs.size(); ++i)
         for (std::uint32_t d = 0; full_[i] == 0 && d < 2; ++d)
-            if (table_.state(i).kept[d].count > 0) active_.push_back(2 * i + d);
+            if (table_.hot(i).kept[d].count > 0) active_.push_back(2 * i + d);
 
     host_pairs_.resize(active_.size());
     cullings_.resize(active_.size());

@@ -29,6 +29,8 @@ public:
     void count(StepStats& stats) const;
 
 private:
+    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
+                   const Settings& settings);
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  const Motion& motion, const Settings& settings);
     void find_rays(Device& device, const ShapeStore::Arrays& arrays);
@@ -44,13 +46,16 @@ private:
         double culling = 0;       ///< metres a predictive ray looks ahead
         double look_cost = 0;     ///< what that look cost, in rays
         std::uint64_t looked = 0; ///< its step
+    };
+    struct Hot {
+        double slack = -1; ///< metres that the pair may move, by a cheap bound, before the exact one is asked
         Kept kept[2];
     };
     static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                 double steps);
-    Kept& kept(std::uint32_t ordered) { return table_.state(ordered / 2).kept[ordered % 2]; }
+                                 double follows);
+    Kept& kept(std::uint32_t ordered) { return table_.hot(ordered / 2).kept[ordered % 2]; }
 
-    PairTable<PairState> table_;
+    PairTable<PairState, Hot> table_;
     Scan scan_;
     std::vector<std::uint8_t> full_;    ///< per pair
     std::vector<std::uint32_t> active_; ///< ordered pairs

@@ -46,7 +46,13 @@ public:
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
         // Balls follow the surface, so cells may be as long as its edges; memory stays like that of the triangles.
         const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 6e2, 15e4);
-        const double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
+        double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
+        const auto cells = [&] {
+            double product = 1;
+            for (const double length : extent) product *= std::ceil(length / side) + 2 * pad;
+            return product;
+        };
+        while (cells() > 8 * wanted + 8000) side *= 1.1; // a flat mesh has hardly a volume to be divided
         scale_ = static_cast<float>(1 / side);
         for (int axis = 0; axis < 3; ++axis) {
             low_[axis] = static_cast<float>(double(low[axis]) - pad * side);

@@ -15,6 +15,10 @@ namespace {
 
 using reference::Random;
 
+struct Hot {
+    double left = -1;
+};
+
 struct State {
     double mark = 0;
     int untouched = 7;
@@ -22,7 +26,7 @@ struct State {
 
 TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     Random random(1);
-    PairTable<State> table;
+    PairTable<State, Hot> table;
     std::map<Pair, double> model; // a mark for each open pair
     double mark = 0;
     std::uint64_t most_bytes = 0;
@@ -44,12 +48,12 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
             State& state = table.state(i);
             if (const auto found = model.find(pairs[i]); found != model.end()) {
                 ASSERT_EQ(state.mark, found->second);
-                ASSERT_EQ(table.slack(i), found->second);
+                ASSERT_EQ(table.hot(i).left, found->second);
             } else {
                 ASSERT_EQ(state.mark, 0.0);
                 ASSERT_EQ(state.untouched, 7) << "a new pair begins afresh";
-                ASSERT_LT(table.slack(i), 0.0);
-                state.mark = table.slack(i) = ++mark;
+                ASSERT_LT(table.hot(i).left, 0.0);
+                state.mark = table.hot(i).left = ++mark;
                 state.untouched = 1;
             }
             next[pairs[i]] = state.mark;
