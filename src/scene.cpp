@@ -156,7 +156,8 @@ std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     state_->pairs.assign(pairs.begin(), pairs.end());
     for (Pair& pair : state_->pairs)
         if (pair.first > pair.second) std::swap(pair.first, pair.second);
-    std::sort(state_->pairs.begin(), state_->pairs.end());
+    if (!std::is_sorted(state_->pairs.begin(), state_->pairs.end()))
+        std::sort(state_->pairs.begin(), state_->pairs.end());
     state_->pairs.erase(std::unique(state_->pairs.begin(), state_->pairs.end()), state_->pairs.end());
     state_->place_bodies();
     state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);

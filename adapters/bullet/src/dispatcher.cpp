@@ -63,10 +63,13 @@ struct CollisionDispatcher::State {
         : dispatcher(d), manifolds(m), scene(settings), objects(scene), queries(settings, objects.shapes()),
           create(queries) {}
 
-    bool take(btBroadphasePair& pair, const btDispatcherInfo& info);
-    PairState& pair_state(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
+    bool is_ours(btBroadphasePair& pair);
+    void fetch_ahead(std::size_t i) const;
+    void take(btBroadphasePair& pair, const btDispatcherInfo& info);
+    PairAlgorithm* make_algorithm(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    void sort_batch();
     void hand_out();
 
     CollisionDispatcher& dispatcher;
@@ -77,8 +80,10 @@ struct CollisionDispatcher::State {
     QueryCreate create;
     DispatcherStats stats;
     std::uint64_t dispatch = 0;
-    std::vector<PairState*> work; ///< this dispatch's pairs, in the broad phase's order
+    std::vector<btBroadphasePair*> ours; ///< of this dispatch
+    std::vector<PairState*> work;        ///< this dispatch's pairs, in the broad phase's order
     std::vector<BatchEntry> batch;
+    std::vector<std::pair<Pair, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs;
     std::vector<PlaneContact> below;
 };
@@ -105,6 +110,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     State& s = *state_;
     ++s.dispatch;
     s.stats = {};
+    s.ours.clear();
     s.work.clear();
     s.batch.clear();
     s.objects.shapes().sweep();
@@ -114,7 +120,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         const btDispatcherInfo& info;
         Visit(State& s_, const btDispatcherInfo& i) : state(s_), info(i) {}
         bool processOverlap(btBroadphasePair& pair) override {
-            if (!state.take(pair, info)) {
+            if (!state.is_ours(pair)) {
                 ++state.stats.other_pairs;
                 state.dispatcher.getNearCallback()(pair, state.dispatcher, info);
             }
@@ -122,9 +128,12 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         }
     } visit(s, info);
     cache->processAllOverlappingPairs(&visit, dispatcher, info);
+    for (std::size_t i = 0; i < s.ours.size(); ++i) {
+        s.fetch_ahead(i);
+        s.take(*s.ours[i], info);
+    }
 
-    s.pairs.clear();
-    for (const BatchEntry& e : s.batch) s.pairs.push_back(e.pair);
+    s.sort_batch();
     s.stats.pairs = s.work.size();
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
@@ -132,7 +141,8 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     for (PairState* state : s.work) state->patches.update(state->candidates, s.manifolds, s.stats);
 }
 
-bool CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcherInfo& info) {
+// Remembers the pair if it is.
+bool CollisionDispatcher::State::is_ours(btBroadphasePair& pair) {
     const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
     const btCollisionShape& shape_a = *a->getCollisionShape();
@@ -140,29 +150,51 @@ bool CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     if (!for_us(shape_a, shape_b)) {
         const bool mesh = Objects::holds(shape_a, Kind::mesh) || Objects::holds(shape_b, Kind::mesh);
         if (mesh && unsupported(shape_a, shape_b)) ++stats.unsupported;
-        if (pair.m_algorithm && dynamic_cast<PairAlgorithm*>(pair.m_algorithm)) { // its shape was replaced
+        if (PairAlgorithm::of(pair.m_algorithm)) { // its shape was replaced
             pair.m_algorithm->~btCollisionAlgorithm();
             dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
             pair.m_algorithm = nullptr;
         }
         return false;
     }
-    // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
-    if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return true;
-    // A record made here has no pair yet; PairState, made next, holds it.
-    const Object& record_a = objects.refresh(*a, dispatch);
-    const Object& record_b = objects.refresh(*b, dispatch);
-    PairState& state = pair_state(pair, *a, *b);
-    state.check_versions(record_a.version, record_b.version);
-    state.candidates.clear();
-    work.push_back(&state);
-    gather(state, record_a, record_b, info);
+    ours.push_back(&pair);
     return true;
 }
 
-PairState& CollisionDispatcher::State::pair_state(btBroadphasePair& pair, const btCollisionObject& a,
-                                                  const btCollisionObject& b) {
-    if (auto* ours = dynamic_cast<PairAlgorithm*>(pair.m_algorithm)) return ours->state();
+// What is kept of a pair lies anywhere, and the solver has used the caches since: sent for some pairs ahead.
+void CollisionDispatcher::State::fetch_ahead(std::size_t i) const {
+    constexpr std::size_t algorithms = 12, states = 6;
+    if (i + algorithms < ours.size()) __builtin_prefetch(ours[i + algorithms]->m_algorithm);
+    if (i + states >= ours.size()) return;
+    if (PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm)) {
+        const char* bytes = reinterpret_cast<const char*>(&coming->state());
+        for (std::size_t at = 0; at < sizeof(PairState); at += 64) __builtin_prefetch(bytes + at);
+    }
+}
+
+void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcherInfo& info) {
+    const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+    const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
+    if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return;
+    PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
+    if (!algorithm) {
+        // A record made here has no pair yet; PairState, made next, holds it.
+        objects.refresh(*a, dispatch);
+        objects.refresh(*b, dispatch);
+        algorithm = make_algorithm(pair, *a, *b);
+    }
+    PairState& state = algorithm->state();
+    objects.refresh(*a, state.record0, dispatch);
+    objects.refresh(*b, state.record1, dispatch);
+    state.check_versions(state.record0.version, state.record1.version);
+    state.candidates.clear();
+    work.push_back(&state);
+    gather(state, state.record0, state.record1, info);
+}
+
+PairAlgorithm* CollisionDispatcher::State::make_algorithm(btBroadphasePair& pair, const btCollisionObject& a,
+                                                          const btCollisionObject& b) {
     if (pair.m_algorithm) {
         pair.m_algorithm->~btCollisionAlgorithm();
         dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
@@ -172,7 +204,7 @@ PairState& CollisionDispatcher::State::pair_state(btBroadphasePair& pair, const 
     auto* made =
         new (dispatcher.allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info, std::move(state));
     pair.m_algorithm = made;
-    return made->state();
+    return made;
 }
 
 void CollisionDispatcher::State::gather(PairState& state, const Object& a, const Object& b,
@@ -226,15 +258,22 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
     }
 }
 
+// Contacts come sorted by pair: sort the batch the same way, by small keys, and hand_out() walks both once.
+void CollisionDispatcher::State::sort_batch() {
+    order.clear();
+    for (std::size_t i = 0; i < batch.size(); ++i) order.emplace_back(batch[i].pair, static_cast<std::uint32_t>(i));
+    std::sort(order.begin(), order.end());
+    pairs.clear();
+    for (const auto& [pair, index] : order) pairs.push_back(pair);
+}
+
 void CollisionDispatcher::State::hand_out() {
-    // Contacts come sorted by pair: sort the batch the same way and walk both once.
-    std::stable_sort(batch.begin(), batch.end(),
-                     [](const BatchEntry& x, const BatchEntry& y) { return x.pair < y.pair; });
-    auto entry = batch.begin();
+    std::size_t at = 0;
     for (const Contact& c : scene.contacts()) {
         const Pair pair{c.body_a, c.body_b};
-        while (entry != batch.end() && entry->pair < pair) ++entry;
-        if (entry == batch.end() || entry->pair != pair) continue;
+        while (at < order.size() && order[at].first < pair) ++at;
+        if (at == order.size() || order[at].first != pair) continue;
+        const BatchEntry* entry = &batch[order[at].second];
         Candidate candidate;
         const int source = c.vertex_body == VertexBody::a ? 0 : 1;
         candidate.key = {entry->child0, entry->child1, entry->swapped ? 1 - source : source,

@@ -60,8 +60,7 @@ Object* Objects::find(const btCollisionObject& object) {
     return i == records_.end() ? nullptr : &i->second;
 }
 
-Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
-    Object& record = records_[&object];
+Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     std::vector<Flat> flat;
     flatten(*object.getCollisionShape(), btTransform::getIdentity(), flat);

@@ -41,9 +41,18 @@ public:
 
     /// The object's record, made when new, its leaves rebuilt when its shape has changed, its poses handed to the
     /// scene once per `dispatch`.
-    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch);
+    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch) {
+        return refresh(object, records_[&object], dispatch);
+    }
+    /// The same where the record is known.
+    Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
     Object* find(const btCollisionObject& object);
-    void acquire(const btCollisionObject& object) { ++records_.at(&object).uses; }
+    /// The record stays, and where it is, until it is released.
+    Object& acquire(const btCollisionObject& object) {
+        Object& record = records_.at(&object);
+        ++record.uses;
+        return record;
+    }
     void release(const btCollisionObject* object);
     void pin(const btCollisionObject& object, bool pinned);
 

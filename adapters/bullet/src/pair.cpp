@@ -11,10 +11,8 @@ namespace raycontact::bullet {
 
 PairState::PairState(btCollisionDispatcher& dispatcher, Objects& objects, const btCollisionObject* a,
                      const btCollisionObject* b)
-    : object0(a), object1(b), patches(dispatcher, a, b), dispatcher_(dispatcher), objects_(objects) {
-    objects_.acquire(*object0);
-    objects_.acquire(*object1);
-}
+    : object0(a), object1(b), record0(objects.acquire(*a)), record1(objects.acquire(*b)), patches(dispatcher, a, b),
+      dispatcher_(dispatcher), objects_(objects) {}
 
 PairState::~PairState() {
     for (const ChildPair& child : children_) drop_child(child);

@@ -8,6 +8,7 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <memory>
+#include <typeinfo>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -35,6 +36,7 @@ public:
 
     const btCollisionObject* object0;
     const btCollisionObject* object1;
+    Object &record0, &record1;
     std::vector<Candidate> candidates; ///< of this step
     Patches patches;
 
@@ -55,6 +57,11 @@ public:
         : btCollisionAlgorithm(info), state_(std::move(state)) {}
 
     PairState& state() { return *state_; }
+    /// Ours among Bullet's; asked for every pair in every step, so not by dynamic_cast, which takes longer.
+    static PairAlgorithm* of(btCollisionAlgorithm* algorithm) {
+        return algorithm && typeid(*algorithm) == typeid(PairAlgorithm) ? static_cast<PairAlgorithm*>(algorithm)
+                                                                        : nullptr;
+    }
 
     /// The dispatcher works in a batch; nothing is left to do for one pair.
     void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
