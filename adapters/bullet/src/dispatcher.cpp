@@ -138,7 +138,12 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
     s.hand_out();
-    for (PairState* state : s.work) state->patches.update(state->candidates, s.manifolds, s.stats);
+    for (std::size_t i = 0; i < s.work.size(); ++i) {
+        if (i + 8 < s.work.size()) __builtin_prefetch(s.work[i + 8]);
+        if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();
+        if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
+        s.work[i]->patches.update(s.work[i]->candidates, s.manifolds, s.stats);
+    }
 }
 
 // Remembers the pair if it is.
