@@ -241,6 +241,10 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                       GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
                       GLOBAL uint* RESTRICT casts) {
     FOR_EACH(i, count) {
+        if (i + 8u < count) {
+            PREFETCH(pairs, rays[i + 8u].pair);
+            PREFETCH(holders, rays[i + 8u].pair);
+        }
         const Holder holder = holders[rays[i].pair];
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
