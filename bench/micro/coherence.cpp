@@ -29,7 +29,6 @@ std::vector<T> copy_of(Device& device, const Array<T>& array) {
 Coherence::Coherence(Executor& executor, std::string_view instruction_set, const Batch& batch)
     : device_(cpu::open(executor, instruction_set)), store_(*device_) {
     store_.add(batch.shape);
-    const auto& shapes = store_.arrays();
     const auto ahead = static_cast<float>(look_ahead * batch.shape->data().diagonal);
     const auto margin = [&](std::size_t i) {
         return static_cast<float>(rounding_margin(batch.bodies[i], batch.bodies[i ^ 1]));
@@ -53,11 +52,9 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
 
     pair_clusters_.resize(*device_, wide.size());
     small_.resize(*device_, wide.size());
-    launch<KernelId::count_clusters>(*device_, wide.size(), wide_, shapes.headers, shapes.clusters, pair_clusters_,
-                                     small_);
+    count_near_clusters();
     clusters_.resize(*device_, scan_.run(*device_, pair_clusters_, cluster_firsts_));
-    launch<KernelId::write_clusters>(*device_, wide.size(), wide_, shapes.headers, shapes.clusters, small_,
-                                     cluster_firsts_, clusters_);
+    write_near_clusters();
     const std::vector<kernels::Cluster> clusters = copy_of(*device_, clusters_);
     watch_clusters_.write(*device_, clusters);
 
@@ -123,11 +120,22 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     if (walks() == 0 || watch_rays() == 0) throw std::logic_error("the batch " + batch.name + " has nothing to follow");
 }
 
+void Coherence::count_near_clusters() {
+    const auto& shapes = store_.arrays();
+    launch<KernelId::count_near_clusters>(*device_, wide_.size(), wide_, reaches_, shapes.headers, shapes.clusters,
+                                          shapes.clearances, pair_clusters_, small_);
+}
+
+void Coherence::write_near_clusters() {
+    const auto& shapes = store_.arrays();
+    launch<KernelId::write_near_clusters>(*device_, wide_.size(), wide_, reaches_, shapes.headers, shapes.clusters,
+                                          shapes.clearances, small_, cluster_firsts_, clusters_);
+}
+
 void Coherence::count_near_rays() {
     const auto& shapes = store_.arrays();
     launch<KernelId::count_near_rays>(*device_, clusters_.size(), wide_, reaches_, margins_, shapes.headers,
-                                      shapes.clusters, shapes.vertex_blocks, shapes.clearances, clusters_,
-                                      block_inside_, block_rays_);
+                                      shapes.vertex_blocks, shapes.clearances, clusters_, block_inside_, block_rays_);
 }
 
 void Coherence::write_near_rays() {

@@ -21,6 +21,8 @@ public:
     Coherence(Executor& executor, std::string_view instruction_set, const Batch& batch);
 
     // One kernel each.
+    void count_near_clusters();
+    void write_near_clusters();
     void count_near_rays();
     void write_near_rays();
     void cast_near_rays(Caster caster); ///< no walk: in full or ahead alone; of basic_rays() rays with `basic`
@@ -35,6 +37,7 @@ public:
     void find_near_rays();
     void find_watch_rays();
 
+    std::size_t pairs() const { return wide_.size(); }
     std::size_t vertex_blocks() const { return clusters_.size(); }
     std::size_t near_rays() const { return rays_.size(); }
     std::size_t basic_rays() const;

@@ -97,6 +97,12 @@ void add_coherence(rb::Coherence& on, const rb::Batch& batch, std::string_view i
     // Positions and exits of a block, and a word of the clearance grid for each vertex.
     const double block_look = pair + header + 5 * sizeof(float) * VERTEX_LANES;
     const double ray = sizeof(rk::Ray) + 4 + pair + header + 7 * sizeof(float) + sizeof(rk::Hit) + 2 * 4;
+    const double pairs = static_cast<double>(on.pairs());
+    const double cluster_blocks = sizeof(rk::ClusterBlock) * blocks / pairs / VERTEX_LANES;
+    add(name("count_near_clusters"), {"pair and direction", pairs, pair + 2 * header + cluster_blocks + 4 + 8 + 4},
+        [&] { on.count_near_clusters(); });
+    add(name("write_near_clusters"), {"vertex block", blocks, sizeof(rk::Cluster) + pairs / blocks * (header + 12)},
+        [&] { on.write_near_clusters(); });
     add(name("count_near_rays"), {"vertex block", blocks, block_look + 2 * sizeof(rk::Cluster) + 2 * 4},
         [&] { on.count_near_rays(); });
     add(name("write_near_rays"), {"ray", near, sizeof(rk::Ray) + 4 + blocks / near * (sizeof(rk::Cluster) + 4)},

@@ -62,8 +62,8 @@ void Pipeline::write_rays() {
 
 void Pipeline::cast_bvh() {
     const auto& shapes = store_.arrays();
-    launch<KernelId::cast_rays_bvh>(*device_, rays_.size(), 0u, pairs_, shapes.headers, shapes.vertex_blocks, shapes.nodes,
-                                    shapes.triangle_blocks, shapes.face_normals, rays_, hits_);
+    launch<KernelId::cast_rays_bvh>(*device_, rays_.size(), 0u, pairs_, shapes.headers, shapes.vertex_blocks,
+                                    shapes.nodes, shapes.triangle_blocks, shapes.face_normals, rays_, hits_);
 }
 
 void Pipeline::cast_basic() {

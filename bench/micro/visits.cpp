@@ -23,6 +23,10 @@ DEVICE float product_error(float a, float b, float p) {
 #define lowest_bit(bits) (++seen.children, lowest_bit(bits))
 #include "kernels/traverse.h"
 
+#include "kernels/clearance.h"
+
+#include "kernels/find_clusters.h"
+
 #include "kernels/find_vertices.h"
 #undef lowest_bit
 #undef hit_block

@@ -1,74 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which vertices of the source lie inside the target's bounds? Clusters of sixteen blocks first, then blocks of
-// sixteen vertices, then one dense queue of rays (the paper's padded grid, Fig. 6, would waste lanes).
-// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
-
-// The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
-typedef struct {
-    float rotation[9], size[9]; // size: magnitudes of the rotation
-    float offset[3];            // source origin relative to the middle of the bounds, target frame
-    float half_size[3];
-    float source_centre[3], source_half_size[3]; // the same box in the source's frame, axis-aligned there
-} PairBounds;
-
-DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
-    PairBounds b;
-    for (int i = 0; i < 9; ++i) {
-        b.rotation[i] = pair->rotation[i];
-        b.size[i] = magnitude_of(b.rotation[i]);
-    }
-    for (int i = 0; i < 3; ++i) {
-        const float middle = 0.5f * pair->bounds[i] + 0.5f * pair->bounds[3 + i];
-        const float half_size = 0.5f * pair->bounds[3 + i] - 0.5f * pair->bounds[i];
-        b.offset[i] = pair->translation[i] - middle;
-        b.half_size[i] =
-            half_size + 1.0e-6f * ((half_size + magnitude_of(middle)) + magnitude_of(pair->translation[i]));
-    }
-    float farthest = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        b.source_centre[i] =
-            -((b.rotation[i] * b.offset[0] + b.rotation[3 + i] * b.offset[1]) + b.rotation[6 + i] * b.offset[2]);
-        const float half_size =
-            (b.size[i] * b.half_size[0] + b.size[3 + i] * b.half_size[1]) + b.size[6 + i] * b.half_size[2];
-        b.source_half_size[i] = half_size + 1.0e-6f * (half_size + magnitude_of(b.source_centre[i]));
-        const float far = magnitude_of(b.source_centre[i]) + half_size;
-        farthest = far > farthest ? far : farthest;
-    }
-    // Poses are rigid to 1e-4 only, and the transpose is as far from the inverse: millimetres on a large slab.
-    for (int i = 0; i < 3; ++i) {
-        float shear = 0.0f;
-        for (int j = 0; j < 3; ++j) {
-            const float product = (b.rotation[i] * b.rotation[j] + b.rotation[3 + i] * b.rotation[3 + j])
-                                  + b.rotation[6 + i] * b.rotation[6 + j];
-            shear += magnitude_of(product - (i == j ? 1.0f : 0.0f));
-        }
-        b.source_half_size[i] += 1.01f * shear * farthest;
-    }
-    return b;
-}
-
-// Child boxes that may reach into the bounds: no face of either box separates them.
-DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RESTRICT block) {
-    int hit[VERTEX_LANES];
-    FOR_LANES(k, VERTEX_LANES) {
-        const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
-        const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
-        const float x = ((b->rotation[0] * cx + b->rotation[1] * cy) + b->rotation[2] * cz) + b->offset[0];
-        const float y = ((b->rotation[3] * cx + b->rotation[4] * cy) + b->rotation[5] * cz) + b->offset[1];
-        const float z = ((b->rotation[6] * cx + b->rotation[7] * cy) + b->rotation[8] * cz) + b->offset[2];
-        const float ex = ((b->size[0] * hx + b->size[1] * hy) + b->size[2] * hz) + b->half_size[0];
-        const float ey = ((b->size[3] * hx + b->size[4] * hy) + b->size[5] * hz) + b->half_size[1];
-        const float ez = ((b->size[6] * hx + b->size[7] * hy) + b->size[8] * hz) + b->half_size[2];
-        const float x_size = magnitude_of(x), y_size = magnitude_of(y), z_size = magnitude_of(z);
-        const float away_x = magnitude_of(cx - b->source_centre[0]), away_y = magnitude_of(cy - b->source_centre[1]);
-        const float away_z = magnitude_of(cz - b->source_centre[2]);
-        const uint in_target = (x_size <= ex) & (y_size <= ey) & (z_size <= ez);
-        const uint in_source = (away_x <= hx + b->source_half_size[0]) & (away_y <= hy + b->source_half_size[1])
-                               & (away_z <= hz + b->source_half_size[2]);
-        hit[k] = -(int)(in_target & in_source);
-    }
-    return pack_sixteen(hit);
-}
+// Which vertices of the source lie inside the target's bounds? Blocks of sixteen of them become one dense queue of rays
+// (the paper's padded grid, Fig. 6, would waste lanes).
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 typedef struct {
     float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES]; // target frame
@@ -119,98 +52,6 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     return pack_sixteen(outside);
 }
 
-// Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
-#define SMALL_BLOCKS 64u
-
-DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
-    Cluster cluster;
-    cluster.pair = pair;
-    cluster.vertex_block = vertex_block;
-    cluster.lanes = 0u;
-    return cluster;
-}
-
-// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
-// from `first` on when asked to.
-DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shape,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool write, uint first,
-                           GLOBAL Cluster* RESTRICT found) {
-    const PairBounds bounds = bounds_of(pairs + p);
-    uint count = 0u;
-    const uint top = shape->cluster_levels - 1u;
-    for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
-        uint level = top, at = root;
-        ulong trail = 0u;
-        uint lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[level] + at);
-        for (;;) {
-            if (lanes == 0u) {
-                if (level == top) break;
-                ++level;
-                at /= VERTEX_LANES;
-                lanes = (uint)(trail & 0xffffu);
-                trail >>= VERTEX_LANES;
-                continue;
-            }
-            const uint child = VERTEX_LANES * at + lowest_bit(lanes);
-            lanes &= lanes - 1u;
-            if (level == 0u) {
-                if (write) found[first + count] = cluster_at(p, shape->vertex_block_first + child);
-                ++count;
-            } else {
-                trail = (trail << VERTEX_LANES) | (ulong)lanes;
-                --level;
-                at = child;
-                lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[level] + at);
-            }
-        }
-    }
-    return count;
-}
-
-KERNEL void count_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
-                           GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
-    FOR_EACH(p, count) {
-        GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-        if (shape->vertex_block_count <= SMALL_BLOCKS) {
-            const PairBounds bounds = bounds_of(pairs + p);
-            ulong blocks = 0u;
-            uint number = 0u;
-            for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-                const uint lanes = overlapping_lanes(&bounds, clusters + shape->cluster_first[0] + i);
-                blocks |= (ulong)lanes << (VERTEX_LANES * i);
-                number += bit_count(lanes);
-            }
-            small[p] = blocks;
-            counts[p] = number;
-        } else {
-            counts[p] = reach_clusters(p, pairs, shape, clusters, false, 0u, (GLOBAL Cluster*)0);
-        }
-    }
-}
-
-KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
-                           GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL Cluster* RESTRICT found) {
-    FOR_EACH(p, count) {
-        GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-        if (shape->vertex_block_count <= SMALL_BLOCKS) {
-            uint at = firsts[p];
-            for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-                uint lanes = (uint)(small[p] >> (VERTEX_LANES * i)) & 0xffffu;
-                while (lanes != 0u) {
-                    found[at] = cluster_at(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
-                    ++at;
-                    lanes &= lanes - 1u;
-                }
-            }
-        } else {
-            reach_clusters(p, pairs, shape, clusters, true, firsts[p], found);
-        }
-    }
-}
-
 // inside: vertices in the bounds, one ray of the rule each. counts: those whose ray must be cast to know.
 KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair* RESTRICT pairs,
                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
@@ -246,4 +87,4 @@ KERNEL void write_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters
         }
     }
 }
-// NOLINTEND(modernize-use-using,modernize-use-nullptr)
+// NOLINTEND(modernize-use-using)

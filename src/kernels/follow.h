@@ -183,19 +183,13 @@ DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, u
 // upper half of Cluster.lanes tells those whose own ray must be cast.
 KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT wide,
                             GLOBAL const float* RESTRICT reach, GLOBAL const float* RESTRICT margins,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
-                            GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
-                            GLOBAL Cluster* RESTRICT clusters, GLOBAL uint* RESTRICT inside,
-                            GLOBAL uint* RESTRICT counts) {
+                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
+                            GLOBAL const uint* RESTRICT clearances, GLOBAL Cluster* RESTRICT clusters,
+                            GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = wide + clusters[i].pair;
         GLOBAL const ShapeHeader* target = shapes + pair->target;
         const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
-        clusters[i].lanes = 0u;
-        inside[i] = 0u;
-        counts[i] = 0u;
-        if (safe_block(pair, shapes + pair->source, boxes, clusters[i].vertex_block, target, clearances) > near)
-            continue;
         GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
         const SafeLanes found = safe_lanes(pair, block, target, clearances);
         const InsideLanes held = inside_lanes(pair, block);

@@ -5,9 +5,12 @@
 
 #include "kernels/traverse.h"
 
+#include "kernels/clearance.h"
+
+#include "kernels/find_clusters.h"
+
 #include "kernels/find_vertices.h"
 
-#include "kernels/clearance.h"
 #include "kernels/watch.h"
 
 #include "kernels/cast_rays.h"

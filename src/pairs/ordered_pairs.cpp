@@ -41,6 +41,13 @@ kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& targ
     return pair;
 }
 
+void widen(kernels::OrderedPair& pair, float by) {
+    for (int k = 0; k < 3; ++k) {
+        pair.bounds[k] -= by;
+        pair.bounds[3 + k] += by;
+    }
+}
+
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered) {
     if (pairs.size() >= std::numeric_limits<std::uint32_t>::max() / 2)

@@ -24,6 +24,9 @@ kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& targ
 /// The same where the relative pose is known already: with the bits that relative_pose() gives.
 kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative);
 
+/// The bounds grown by some metres on every side.
+void widen(kernels::OrderedPair& pair, float by);
+
 /// Each pair twice, a into b and b into a, in the order of `pairs`.
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered);

@@ -155,29 +155,25 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
     }
 }
 
-// The blocks of each stale pair that reach into its bounds widened by what the list is to last.
+// The blocks of each stale pair that reach into its bounds widened by what the list is to last, and could be in contact
+// before it ends.
 void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
     wide_pairs_.resize(stale_.size());
     stale_margins_.resize(stale_.size());
+    horizons_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         wide_pairs_[i] = host_pairs_[stale_[i]];
         const std::uint32_t ordered = active_[stale_[i]];
         stale_margins_[i] = due_[ordered].margin;
-        const float wide = static_cast<float>(watched(ordered).expiry) + stale_margins_[i];
-        for (int k = 0; k < 3; ++k) {
-            wide_pairs_[i].bounds[k] -= wide;
-            wide_pairs_[i].bounds[3 + k] += wide;
-        }
+        horizons_[i] = static_cast<float>(watched(ordered).expiry) + stale_margins_[i];
+        widen(wide_pairs_[i], horizons_[i]);
     }
     device_wide_.write(device, wide_pairs_);
-    counts_.resize(device, stale_.size());
-    small_.resize(device, stale_.size());
-    launch<KernelId::count_clusters>(device, stale_.size(), device_wide_, arrays.headers, arrays.clusters, counts_,
-                                     small_);
-    clusters_.resize(device, scan_.run(device, counts_, firsts_));
+    device_horizons_.write(device, horizons_);
+    finder_.find_near(device, arrays, device_wide_, device_horizons_);
     host_counts_.resize(stale_.size());
-    counts_.read(device, host_counts_);
+    finder_.counts().read(device, host_counts_);
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
@@ -189,14 +185,13 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
         own.capacity = range.capacity;
         own.count = host_counts_[i];
     }
-    if (clusters_.size() == 0) return;
+    if (finder_.blocks().size() == 0) return;
     watches_.extend(device, pool_.end());
     device_places_.write(device, places_);
-    launch<KernelId::write_clusters>(device, stale_.size(), device_wide_, arrays.headers, arrays.clusters, small_,
-                                     firsts_, clusters_);
     device_margins_.write(device, stale_margins_);
-    launch<KernelId::begin_watches>(device, clusters_.size(), device_wide_, arrays.headers, arrays.clusters,
-                                    arrays.clearances, device_margins_, clusters_, firsts_, device_places_, watches_);
+    launch<KernelId::begin_watches>(device, finder_.blocks().size(), device_wide_, arrays.headers, arrays.clusters,
+                                    arrays.clearances, device_margins_, finder_.blocks(), finder_.firsts(),
+                                    device_places_, watches_);
 }
 
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {

@@ -5,8 +5,8 @@
 #include "pairs/motion.h"
 #include "pairs/pair_table.h"
 #include "pairs/range_pool.h"
+#include "rays/block_finder.h"
 #include "rays/held.h"
-#include "rays/ray_queue.h"
 
 #include <optional>
 
@@ -82,7 +82,7 @@ private:
     std::vector<Due> due_;                             ///< per ordered pair; of those that are due
     std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> stale_margins_;
+    std::vector<float> stale_margins_, horizons_; ///< of stale_
     std::vector<kernels::uint> host_counts_, places_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
@@ -91,9 +91,8 @@ private:
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;
-    Array<float> device_margins_;
-    Array<kernels::ulong> small_;
-    Array<kernels::Cluster> clusters_;
+    Array<float> device_margins_, device_horizons_;
+    BlockFinder finder_;
     Array<kernels::Watch> watches_;
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;

@@ -100,10 +100,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             const double extension =
                 predictive && settings.distance_extension ? *settings.distance_extension : double(cullings_[i]);
             wide_pairs_[i] = host_pairs_[i];
-            for (int k = 0; k < 3; ++k) {
-                wide_pairs_[i].bounds[k] -= static_cast<float>(extension);
-                wide_pairs_[i].bounds[3 + k] += static_cast<float>(extension);
-            }
+            widen(wide_pairs_[i], static_cast<float>(extension));
             margins_[i] = static_cast<float>(rounding_margin(source, target));
             reaches_[i] = cullings_[i] + margins_[i];
         }
@@ -117,19 +114,14 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    counts_.resize(device, full_count_);
-    small_.resize(device, full_count_);
-    launch<KernelId::count_clusters>(device, full_count_, device_wide_, arrays.headers, arrays.clusters, counts_,
-                                     small_);
-    clusters_.resize(device, scan_.run(device, counts_, firsts_));
-    launch<KernelId::write_clusters>(device, clusters_.size() > 0 ? full_count_ : 0, device_wide_, arrays.headers,
-                                     arrays.clusters, small_, firsts_, clusters_);
-    counts_.resize(device, clusters_.size());
-    inside_.resize(device, clusters_.size());
-    launch<KernelId::count_near_rays>(device, clusters_.size(), device_wide_, device_reaches_, device_margins_,
-                                      arrays.headers, arrays.clusters, arrays.vertex_blocks, arrays.clearances,
-                                      clusters_, inside_, counts_);
-    sums_.vertices = VERTEX_LANES * clusters_.size();
+    finder_.find_near(device, arrays, device_wide_, device_reaches_);
+    Array<kernels::Cluster>& blocks = finder_.blocks();
+    counts_.resize(device, blocks.size());
+    inside_.resize(device, blocks.size());
+    launch<KernelId::count_near_rays>(device, blocks.size(), device_wide_, device_reaches_, device_margins_,
+                                      arrays.headers, arrays.vertex_blocks, arrays.clearances, blocks, inside_,
+                                      counts_);
+    sums_.vertices = VERTEX_LANES * blocks.size();
     sums_.rays = scan_.run(device, inside_, firsts_);
     full_rays_ = scan_.run(device, counts_, firsts_);
 
@@ -147,8 +139,7 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     sums_.rays += end - full_rays_;
     rays_.resize(device, end);
     starts_.resize(device, end);
-    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? clusters_.size() : 0, clusters_, firsts_, rays_,
-                                      starts_);
+    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, firsts_, rays_, starts_);
     segments_.write(device, host_segments_);
     segment_firsts_.write(device, host_firsts_);
     launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_, rays_,

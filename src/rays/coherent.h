@@ -4,7 +4,7 @@
 #include "pairs/displacement.h"
 #include "pairs/motion.h"
 #include "pairs/pair_table.h"
-#include "rays/ray_queue.h"
+#include "rays/block_finder.h"
 
 #include <raycontact/settings.h>
 
@@ -72,8 +72,7 @@ private:
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<float> device_cullings_, device_reaches_, device_margins_;
     Array<kernels::uint> counts_, inside_, firsts_, segment_firsts_, ranges_, starts_, nexts_, hows_;
-    Array<kernels::ulong> small_;
-    Array<kernels::Cluster> clusters_;
+    BlockFinder finder_;
     Array<kernels::Segment> segments_;
     Array<kernels::Candidate> candidates_;
     Array<kernels::Ray> rays_;

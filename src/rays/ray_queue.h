@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/scan.h"
+#include "rays/block_finder.h"
 #include "shape/shape_store.h"
 
 namespace raycontact {
@@ -16,14 +17,13 @@ public:
 
     const Array<kernels::Ray>& rays() const { return rays_; }
     std::uint64_t vertices_inside() const { return vertices_inside_; }
-    std::uint64_t vertices_tested() const { return VERTEX_LANES * clusters_.size(); }
+    std::uint64_t vertices_tested() const { return VERTEX_LANES * finder_.blocks().size(); }
 
 private:
+    BlockFinder finder_;
     Scan scan_;
     Array<kernels::uint> counts_, inside_, firsts_;
-    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
     std::uint64_t vertices_inside_ = 0;
-    Array<kernels::Cluster> clusters_;
     Array<kernels::Ray> rays_;
 };
 

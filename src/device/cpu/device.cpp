@@ -48,6 +48,8 @@ kernels::uint grain_of(KernelId kernel) {
         return 16;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
+    case KernelId::count_near_clusters:
+    case KernelId::write_near_clusters:
     case KernelId::count_rays:
     case KernelId::count_near_rays:
     case KernelId::write_watch_rays:
