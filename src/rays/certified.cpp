@@ -68,11 +68,6 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
     PairState& state = table_.state(i);
     const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
     const double size = size_of(*body[0], *body[1]), speed = motion.pair_speed(pair);
-    if (!threshold && speed > fastest * size) {
-        what_[i] = is_fast;
-        state.speed = speed;
-        return;
-    }
     const bool fresh = state.watched[0].expiry < 0;
     const PairPlace now = place_pair(body[0]->centred, body[1]->centred, motion.pair_shear(pair));
     std::array<double, 2> moved{0, 0};
@@ -92,7 +87,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
     }
     what_[i] = what;
-    table_.hot(i).metres = slack;
+    table_.hot(i) = {slack, true};
     if (what == 0) return;
 
     const bool list = (what & (3 * list_0)) != 0;
@@ -129,7 +124,11 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
         const auto asleep = [&](std::uint32_t i, Slack& slack) {
             what_[i] = 0;
             slack.metres -= motion.pair_bound(pairs[i]);
-            return slack.metres > 0;
+            if (slack.metres > 0) return true;
+            const double size = size_of(bodies[pairs[i].first], bodies[pairs[i].second]);
+            if (threshold || !(motion.pair_speed(pairs[i]) > fastest * size)) return false;
+            what_[i] = is_fast;
+            return true;
         };
         table_.sift(begin, end, asleep, [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold); });
     });
@@ -141,8 +140,8 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
         if (what_[i] == 0) continue;
         if (what_[i] == is_fast) {
-            close(table_.state(i));
-            table_.hot(i).metres = -1;
+            if (table_.hot(i).lists) close(table_.state(i));
+            table_.hot(i) = {};
             fast_.insert(fast_.end(), {2 * i, 2 * i + 1});
             continue;
         }

@@ -73,6 +73,7 @@ private:
 
     struct Slack {
         double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
+        bool lists = false; ///< there is something to be given back
     };
 
     PairTable<PairState, Slack> table_;
