@@ -58,6 +58,15 @@ DEVICE uint children_near(const Tube* tube, GLOBAL const Node* RESTRICT node) {
     return pack_sixteen(near);
 }
 
+// How far the origin is from a triangle of the plane along the normal of its edge from a to b; c is the third corner.
+DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv) {
+    const float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
+    const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+    const float edge = (nu * au + nv * av) * scale, third = (nu * cu + nv * cv) * scale;
+    const float low = edge < third ? edge : third, high = edge > third ? edge : third;
+    return low > -high ? low : -high;
+}
+
 // No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
 // seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
 DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index) {
@@ -81,46 +90,23 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
         const float first = first_ab < cs ? first_ab : cs, last = last_ab > cs ? last_ab : cs;
         const float beyond = first - length, behind = -last;
         float best = beyond > behind ? beyond : behind;
-        // Edge a b: its normal (nu, nv), the edge's own offset and the third corner's.
-        float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
-        float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
-        float edge = (nu * au + nv * av) * scale, third = (nu * cu + nv * cv) * scale;
-        float low = edge < third ? edge : third, high = edge > third ? edge : third;
-        float gap = low > -high ? low : -high;
-        best = gap > best ? gap : best;
-        nu = cv - bv;
-        nv = bu - cu;
-        n2 = nu * nu + nv * nv;
-        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
-        edge = (nu * bu + nv * bv) * scale;
-        third = (nu * au + nv * av) * scale;
-        low = edge < third ? edge : third;
-        high = edge > third ? edge : third;
-        gap = low > -high ? low : -high;
-        best = gap > best ? gap : best;
-        nu = av - cv;
-        nv = cu - au;
-        n2 = nu * nu + nv * nv;
-        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
-        edge = (nu * cu + nv * cv) * scale;
-        third = (nu * bu + nv * bv) * scale;
-        low = edge < third ? edge : third;
-        high = edge > third ? edge : third;
-        gap = low > -high ? low : -high;
-        best = gap > best ? gap : best;
+        const float gap_ab = edge_gap(au, av, bu, bv, cu, cv), gap_bc = edge_gap(bu, bv, cu, cv, au, av);
+        const float gap_ca = edge_gap(cu, cv, au, av, bu, bv);
+        best = gap_ab > best ? gap_ab : best;
+        best = gap_bc > best ? gap_bc : best;
+        best = gap_ca > best ? gap_ca : best;
         // The plane's normal, in the frame of the axis.
         const float pu = (bv - av) * (cs - as) - (bs - as) * (cv - av);
         const float pv = (bs - as) * (cu - au) - (bu - au) * (cs - as);
         const float ps = (bu - au) * (cv - av) - (bv - av) * (cu - au);
-        n2 = (pu * pu + pv * pv) + ps * ps;
-        scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        const float n2 = (pu * pu + pv * pv) + ps * ps;
+        const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
         const float ah = (pu * au + pv * av) + ps * as, bh = (pu * bu + pv * bv) + ps * bs;
         const float ch = (pu * cu + pv * cv) + ps * cs, end = ps * length;
         const float low_ab = ah < bh ? ah : bh, high_ab = ah > bh ? ah : bh;
-        low = low_ab < ch ? low_ab : ch;
-        high = high_ab > ch ? high_ab : ch;
+        const float low = low_ab < ch ? low_ab : ch, high = high_ab > ch ? high_ab : ch;
         const float above = low - (end > 0.0f ? end : 0.0f), below = (end < 0.0f ? end : 0.0f) - high;
-        gap = (above > below ? above : below) * scale;
+        const float gap = (above > below ? above : below) * scale;
         best = gap > best ? gap : best;
         apart[k] = best;
         nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
