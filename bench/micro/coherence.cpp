@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/micro/coherence.h"
 
+#include "bench/micro/copy.h"
 #include "device/cpu/device.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
@@ -17,13 +18,6 @@ constexpr double look_ahead = 0.02;      // of the box diagonal; what `predictiv
 constexpr kernels::uint iterations = 16; // Settings::max_iterations
 constexpr kernels::uint segment_size = 64;
 
-template <typename T>
-std::vector<T> copy_of(Device& device, const Array<T>& array) {
-    std::vector<T> host(array.size());
-    array.read(device, host);
-    return host;
-}
-
 } // namespace
 
 Coherence::Coherence(Executor& executor, std::string_view instruction_set, const Batch& batch)
@@ -36,10 +30,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     std::vector<kernels::OrderedPair> wide = batch.ordered;
     std::vector<float> margins, reaches;
     for (std::size_t i = 0; i < wide.size(); ++i) { // two ordered pairs for each pair, two bodies for each pair
-        for (int k = 0; k < 3; ++k) {
-            wide[i].bounds[k] -= ahead;
-            wide[i].bounds[3 + k] += ahead;
-        }
+        widen(wide[i], ahead);
         margins.push_back(margin(i));
         reaches.push_back(ahead + margins.back());
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/micro/pipeline.h"
 
+#include "bench/micro/copy.h"
+
 #include "device/cpu/device.h"
 
 #include <algorithm>
@@ -119,17 +121,6 @@ void Pipeline::find_contacts() {
     contacts_.resize(*device_, scan_.run(*device_, ray_contacts_, contact_firsts_));
     write_contacts();
 }
-
-namespace {
-
-template <typename T>
-std::vector<T> copy_of(Device& device, const Array<T>& array) {
-    std::vector<T> host(array.size());
-    array.read(device, host);
-    return host;
-}
-
-} // namespace
 
 std::vector<kernels::Ray> Pipeline::host_rays() {
     return copy_of(*device_, rays_);
