@@ -243,6 +243,18 @@ KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT seg
     }
 }
 
+DEVICE Outcome follow_one(const uint caster, const Ray ray, uint start, uint max_iterations, const uint predictive,
+                          const uint cast_lost, GLOBAL const OrderedPair* RESTRICT pairs,
+                          GLOBAL const float* RESTRICT cullings, GLOBAL const ShapeHeader* RESTRICT shapes,
+                          GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
+                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+                          GLOBAL const Packed3* RESTRICT normals) {
+    GLOBAL const OrderedPair* pair = pairs + ray.pair;
+    const SourceRay source = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+    return follow_ray(caster, source, is_inside(pair->bounds, source.position), start, max_iterations, predictive,
+                      cast_lost, cullings[ray.pair], shapes + pair->target, nodes, blocks, faces, normals);
+}
+
 // hows and nexts: see Outcome.
 KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
                             GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
@@ -252,11 +264,8 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
                             GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
                             GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        const Outcome end =
-            follow_ray(CASTER_BVH, ray, is_inside(pair->bounds, ray.position), starts[i], max_iterations, predictive,
-                       cast_lost, cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        const Outcome end = follow_one(CASTER_BVH, rays[i], starts[i], max_iterations, predictive, cast_lost, pairs,
+                                       cullings, shapes, vertices, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;
         hows[i] = end.how;
@@ -271,11 +280,8 @@ KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predic
                               GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        const Outcome end =
-            follow_ray(CASTER_BASIC, ray, is_inside(pair->bounds, ray.position), starts[i], max_iterations, predictive,
-                       cast_lost, cullings[rays[i].pair], shapes + pair->target, nodes, blocks, faces, normals);
+        const Outcome end = follow_one(CASTER_BASIC, rays[i], starts[i], max_iterations, predictive, cast_lost, pairs,
+                                       cullings, shapes, vertices, nodes, blocks, faces, normals);
         hits[i] = end.hit;
         nexts[i] = end.next;
         hows[i] = end.how;
