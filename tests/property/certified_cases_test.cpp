@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certified method where its proof is nearest to its end: one vertex at one face, matrices that are hardly
+// rotations, numbers as large as they come, shapes that move in the store.
+#include "property/crowds.h"
+#include "property/shapes.h"
+#include "property/triplet.h"
+#include "reference/meshes.h"
+#include "reference/vector.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <string>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+// One vertex straight at one face, where nothing is left over: the body flies or swings, or the face does, slowly or
+// fast, as far as the vertex just goes in, and back. Distances to boxes are exact, so that a clock slow by a hundredth
+// would be caught.
+void strike(Random& random, Counts& counts, std::uint64_t number) {
+    constexpr double scales[] = {1e-3, 1, 100};
+    const std::size_t scale_index = random.below(std::size(scales));
+    const double scale = scales[scale_index];
+    static std::vector<std::shared_ptr<const Shape>> targets[std::size(scales)], sources[std::size(scales)];
+    if (targets[scale_index].empty()) {
+        const auto scaled = [&](Mesh mesh) {
+            for (Vec3& v : mesh.vertices) v = scale * v;
+            return Shape::make(mesh);
+        };
+        for (const Mesh& mesh : {box_mesh({21, 21, 1}), box_mesh({0.5, 0.3, 0.4}), box_mesh({3, 0.1, 0.1})})
+            targets[scale_index].push_back(scaled(mesh));
+        for (const Mesh& mesh : {tetrahedron_mesh(), box_mesh({2, 0.02, 0.02}), bumpy_octahedron_mesh(4), bowl_mesh(4),
+                                 box_mesh({21, 21, 1})})
+            sources[scale_index].push_back(scaled(mesh));
+    }
+    const auto& target = targets[scale_index][random.below(3)];
+    const auto& source = sources[scale_index][random.below(5)];
+
+    // Touching: the source's lowest vertex on the target's upper face, z up in the target's frame.
+    Pose touching = random.rotation();
+    Vec3 lowest;
+    for (const Vec3& v : source->vertices()) {
+        const Vec3 p = rotate(touching, v);
+        if (p.z < lowest.z || lowest == Vec3{}) lowest = p;
+    }
+    const Vec3 high = target->box_max();
+    const double x = random.uniform(-0.95, 0.95);
+    const double y = random.uniform(-0.95, 0.95);
+    const Vec3 goal{x * high.x, y * high.y, high.z};
+    touching.translation = goal - lowest;
+    const Vec3 centre = touching.translation + rotate(touching, source->centre());
+
+    // What turns about its own centre, and how: so that the vertex, or the face below it, comes straight on.
+    const bool of_target = random.below(2) == 0;
+    const bool swing = random.below(2) == 0;
+    const Vec3 arm = of_target ? goal : goal - centre;
+    const Vec3 axis = unit(cross({0, 0, 1}, arm));
+    const double reach = swing ? std::max(1e-6 * scale, length(cross(axis, arm))) : 1;
+    const double way = std::pow(10.0, random.uniform(-4, -0.5)) * scale;
+    const Pose world = random.rotation();
+    const auto poses_at = [&](double height) { // of the vertex above the face; below 0: inside
+        Pose a;
+        Pose b = touching;
+        Pose& moving = of_target ? a : b;
+        const double sign = of_target ? -1 : 1;
+        if (swing) {
+            const Pose turn = small_rotation(axis, -sign * height / reach);
+            const Vec3 about = of_target ? Vec3{} : centre;
+            moving = composed(turn, moving);
+            moving.translation = about + rotate(turn, (of_target ? a.translation : touching.translation) - about);
+            if (of_target) moving.translation = {};
+        } else {
+            moving.translation.z += sign * height;
+        }
+        return std::pair(composed(world, a), composed(world, b));
+    };
+
+    Settings settings;
+    settings.threads = 1;
+    Triplet triplet(settings, thresholds[random.below(std::size(thresholds))], "strike " + std::to_string(number));
+    const bool first = random.below(2) == 0;
+    BodyId of_face = 0, of_vertex = 0;
+    triplet.each([&](Scene& scene) {
+        of_face = first ? scene.add(target) : 0;
+        of_vertex = scene.add(source);
+        if (!first) of_face = scene.add(target);
+    });
+    const std::vector<Pair> pair{{of_face, of_vertex}};
+    const int steps = 10 + static_cast<int>(random.below(120));
+    // Some have come a long way: what they keep counts from far off.
+    const int before = random.below(3) == 0 ? 20 : 0;
+    const bool shear = random.below(4) == 0;
+    for (int step = -before; step < 2 * steps; ++step) {
+        const double to = std::fabs(1 - static_cast<double>(step) / steps); // 1 -> 0 -> 1
+        const double height =
+            step < 0 ? (step % 2 ? 1 : 1000) * scale * (swing ? 1e-3 : 1) : way * (1.03 * to - 0.03 * random.uniform());
+        auto poses = poses_at(height);
+        if (shear) poses = {sheared(poses.first, random), sheared(poses.second, random)};
+        triplet.each([&](Scene& scene) {
+            scene.set_pose(of_face, poses.first);
+            scene.set_pose(of_vertex, poses.second);
+        });
+        triplet.step(counts, pair);
+    }
+    ++counts.episodes;
+}
+
+TEST(certified, a_vertex_straight_at_a_face) {
+    const auto strikes = static_cast<std::uint64_t>(std::max(300.0, 2e-5 * decisions_wanted()));
+    Counts counts;
+    for (std::uint64_t i = 0; i < strikes; ++i) {
+        Random random(first_seed() + 400000 + i);
+        strike(random, counts, i);
+    }
+    report("strikes", counts, 10.0 * static_cast<double>(strikes));
+}
+
+// Bodies that lie flat near the slab's corners, a millimetre deep: there a matrix that is no rotation is off by as
+// much.
+TEST(certified, flat_bodies_on_a_sheared_slab) {
+    Counts counts;
+    const auto slab = Shape::make(box_mesh({21, 21, 1}));
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Mesh& mesh : {grid_box_mesh(12), l_prism_mesh(), frame_mesh()}) shapes.push_back(Shape::make(mesh));
+    for (std::uint64_t i = 0; i < 30; ++i) {
+        Random random(first_seed() + 700000 + i);
+        Triplet triplet(some_settings(random), 1e-3, "flat bodies " + std::to_string(i));
+        triplet.each([&](Scene& scene) { scene.add(slab); });
+        std::vector<Pose> homes{Pose{}};
+        for (std::uint32_t b = 0; b < 12; ++b) {
+            const auto& shape = shapes[b % shapes.size()];
+            triplet.each([&](Scene& scene) { scene.add(shape); });
+            Pose home;
+            const double x = random.uniform(15, 20);
+            const double y = random.uniform(15, 20);
+            home.translation = {b & 1 ? x : -x, b & 2 ? y : -y, 1 - random.uniform(0, 0.002)};
+            homes.push_back(home);
+        }
+        for (int step = 0; step < 40; ++step) {
+            for (BodyId b = 0; b < homes.size(); ++b) {
+                Pose pose = homes[b];
+                pose.translation = pose.translation + 1e-3 * random.in_ball();
+                if (b > 0 || i % 2) pose = sheared(pose, random);
+                triplet.each([&](Scene& scene) { scene.set_pose(b, pose); });
+            }
+            triplet.step(counts);
+        }
+        ++counts.episodes;
+    }
+    report("flat on sheared slab", counts, 1e3);
+}
+
+// Shapes that go take others to new places in the store while pairs of those are asleep.
+TEST(certified, packed_shapes) {
+    Counts counts;
+    for (std::uint64_t i = 0; i < 20; ++i) {
+        Random random(first_seed() + 600000 + i);
+        Triplet triplet(some_settings(random), 1e-2, "packed shapes " + std::to_string(i));
+        std::vector<BodyId> ballast(4);
+        const auto add = [&](const std::shared_ptr<const Shape>& shape, const Pose& pose) {
+            BodyId id = 0;
+            triplet.each([&](Scene& scene) { id = scene.add(shape, pose); });
+            return id;
+        };
+        Pose away;
+        away.translation = {1000, 0, 0};
+        for (std::size_t k = 0; k < ballast.size(); ++k)
+            ballast[k] = add(Shape::make(model_mesh(k % 2 ? "gear" : "knot")), away);
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (const Mesh& mesh : {bumpy_octahedron_mesh(5), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()})
+            for (int k = 0; k < 2; ++k) shapes.push_back(Shape::make(mesh));
+        const std::vector<Pose> homes = touching_poses(shapes, 0.3, random);
+        std::vector<std::pair<BodyId, Mover>> bodies;
+        for (std::size_t k = 0; k < shapes.size(); ++k)
+            bodies.emplace_back(add(shapes[k], homes[k]), Mover(Course::drift, homes[k], 1, random));
+        for (int step = 0; step < 60; ++step) {
+            for (auto& [id, mover] : bodies) {
+                const BodyId body = id;
+                const Pose pose = mover.next(random);
+                triplet.each([&](Scene& scene) { scene.set_pose(body, pose); });
+            }
+            if (step % 10 == 9 && !ballast.empty()) {
+                triplet.each([&](Scene& scene) { scene.remove(ballast.back()); });
+                ballast.pop_back();
+            }
+            triplet.step(counts);
+        }
+        ++counts.episodes;
+    }
+    report("packed shapes", counts, 1e4);
+}
+
+// As far apart as finite numbers go, and back.
+TEST(certified, beyond_the_range_of_squares) {
+    const auto shape = Shape::make(bumpy_octahedron_mesh(5));
+    Counts counts;
+    for (const double far : {1e30, 1e100, 1e200, 1.7e308})
+        for (const bool begin_far : {false, true}) {
+            Settings settings;
+            settings.threads = 1;
+            char what[40];
+            std::snprintf(what, sizeof what, "%g m apart", far);
+            Triplet triplet(settings, 1e-2, what);
+            triplet.each([&](Scene& scene) {
+                scene.add(shape);
+                scene.add(shape);
+            });
+            const std::vector<Pair> pair{{0, 1}};
+            for (int step = 0; step < 12; ++step) {
+                const bool away = (step / 3 % 2 == 0) == begin_far;
+                Pose a, b;
+                a.translation = {away ? -far : 0.0, 0, 0};
+                b.translation = {away ? far : 0.9, away ? far : 0.0, 0};
+                triplet.each([&](Scene& scene) {
+                    scene.set_pose(0, a);
+                    scene.set_pose(1, b);
+                });
+                triplet.step(counts, pair);
+            }
+            ++counts.episodes;
+        }
+    report("very far", counts, 100);
+}
+
+// Away together, so far that the doubles of their positions lose how they lay to each other.
+TEST(certified, far_away_together) {
+    const auto shape = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    Counts counts;
+    for (const double far : {1e12, 1e14, 1e15, 1e16, 1e17, 1e30}) {
+        Settings settings;
+        settings.threads = 1;
+        char what[40];
+        std::snprintf(what, sizeof what, "together %g m away", far);
+        Triplet triplet(settings, 1e-2, what);
+        Pose a, b = small_rotation({0, 0, 1}, 0.785);
+        triplet.each([&](Scene& scene) {
+            scene.add(shape);
+            scene.add(shape);
+        });
+        const std::vector<Pair> pair{{0, 1}};
+        for (int step = 0; step < 12; ++step) {
+            const double x = step / 3 % 2 == 0 ? 0 : far;
+            a.translation = {x, 0, 0};
+            b.translation = {x + 2, 0.8, 0.1};
+            triplet.each([&](Scene& scene) {
+                scene.set_pose(0, a);
+                scene.set_pose(1, b);
+            });
+            triplet.step(counts, pair);
+        }
+        ++counts.episodes;
+    }
+    report("far away together", counts, 10);
+}
+
+// A rotation that stretches by as much as is accepted makes rays reach farther than their vertices' exit distances say.
+TEST(certified, stretched_rays) {
+    const auto small = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    Mesh mesh = grid_box_mesh(32); // [0, 1]^3
+    for (Vec3& v : mesh.vertices) v = 4.8 * (v - Vec3{0.5, 0.5, 0.5});
+    const auto large = Shape::make(mesh);
+    Random random(23);
+    Counts counts;
+    // 1.5e-4 too long along (1, 1, 1), and 5e-5 along an axis.
+    const auto ones = [](Pose pose, double by) {
+        const auto r = pose.rotation;
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+                pose.rotation[3 * i + j] += by * (r[3 * i] + r[3 * i + 1] + r[3 * i + 2]);
+        return pose;
+    };
+    Settings settings;
+    settings.threads = 1;
+    settings.displacement_threshold = 0.1; // no jump is left to the standard method
+    Triplet triplet(settings, 0.2, "stretched rays");
+    triplet.each([&](Scene& scene) {
+        scene.add(small);
+        scene.add(large);
+    });
+    // Takes the diagonal of the small box, along which its corner's ray runs, to an axis of the large one.
+    const double c = 1 / std::sqrt(3.0), s = std::sqrt(2.0) * c;
+    const double h = 1 / std::sqrt(2.0);
+    Pose along;
+    along.rotation = {c, c, c, -h, h, 0, -s / 2, -s / 2, s};
+    constexpr double stretch = 4.99e-5;
+    const Pose b = ones(Pose{}, stretch);
+    triplet.each([&](Scene& scene) { scene.set_pose(1, b); });
+    const std::vector<Pair> pair{{0, 1}};
+    for (int round = 0; round < 10000; ++round) {
+        Pose a = ones(along, stretch);
+        const double deep = std::sqrt(3.0) * (1 + random.uniform(0.5e-4, 2e-4));
+        const Vec3 corner = transform_point({a.rotation, {}}, {-0.5, -0.5, -0.5});
+        const Vec3 seen{2.4 - deep, random.uniform(-1, 1), random.uniform(-1, 1)}; // from the large box, by a transpose
+        const double sum = stretch * (seen.x + seen.y + seen.z);
+        a.translation = seen - Vec3{sum, sum, sum} - corner;
+        Pose away = a;
+        away.translation.x += 40;
+        for (const Pose& pose : {away, a}) {
+            triplet.each([&](Scene& scene) { scene.set_pose(0, pose); });
+            triplet.step(counts, pair);
+        }
+    }
+    ++counts.episodes;
+    report("stretched rays", counts, 1e4);
+}
+
+} // namespace
