@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/bench.h"
 
+#include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
 #include <bench/peers/contest_output.h>
 #include <bench/peers/growth.h>

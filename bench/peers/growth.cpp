@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/growth.h>
 
+#include <bench/peers/approaching.h>
 #include <bench/peers/clock.h>
 #include <bench/peers/rolling.h>
 #include <bench/peers/work.h>

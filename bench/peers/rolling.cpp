@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/rolling.h>
 
-#include <bench/peers/turns.h>
+#include <bench/peers/encounter.h>
 #include <scenes/models/trigonometry.h>
 
 #include <algorithm>
@@ -11,48 +11,33 @@ namespace raycontact::bench {
 
 namespace {
 
-constexpr double cell = 4; // metres between pairs; meshes are 1 m, so no pair sees another
-
-struct Roll {
-    Vec3 home;
-    std::array<double, 3> way, spin_a, spin_b;
-    Quaternion a, b;
-
-    Pose pose(bool second, double distance, double turns) const {
-        const auto& spin = second ? spin_b : spin_a;
-        const scenes::SineCosine half = scenes::sine_cosine(turns / 2);
-        const Quaternion q =
-            times({half.cosine, half.sine * spin[0], half.sine * spin[1], half.sine * spin[2]}, second ? b : a);
-        const double at = second ? distance : 0;
-        const Vec3 where{home.x + at * way[0], home.y + at * way[1], home.z + at * way[2]};
-        return pose_from_quaternion(where, q[0], q[1], q[2], q[3]);
-    }
-};
+/// One of the two bodies, turned by so many radians.
+Pose rolled(const Encounter& meeting, bool second, double distance, double turns) {
+    const scenes::SineCosine half = scenes::sine_cosine(turns / 2);
+    return meeting.pose(second, distance, half.sine, half.cosine);
+}
 
 /// The largest distance of each pair, within `width` of where it was, at which it has so many contacts.
-void find_distances(Scene& scene, std::span<const Pair> pairs, const std::vector<Roll>& rolls, double turns,
+void find_distances(Scene& scene, std::span<const Pair> pairs, const std::vector<Encounter>& rolls, double turns,
                     std::uint32_t contacts, double width, std::vector<double>& distances) {
     std::vector<double> near(distances), far(distances);
     for (double& d : near) d = std::fmax(0, d - width);
     for (double& d : far) d += width;
-    std::vector<std::uint32_t> counts(rolls.size());
+    std::vector<std::uint32_t> counts;
     for (int halving = 0; halving < 14; ++halving) {
-        for (BodyId i = 0; i < rolls.size(); ++i) {
-            distances[i] = (near[i] + far[i]) / 2;
-            scene.set_pose(2 * i, rolls[i].pose(false, distances[i], turns));
-            scene.set_pose(2 * i + 1, rolls[i].pose(true, distances[i], turns));
-            counts[i] = 0;
-        }
+        for (std::size_t i = 0; i < rolls.size(); ++i) distances[i] = (near[i] + far[i]) / 2;
+        place_encounters(scene, rolls.size(),
+                         [&](BodyId i, bool second) { return rolled(rolls[i], second, distances[i], turns); });
+        counts.assign(rolls.size(), 0);
         for (const Contact& contact : scene.step(pairs)) ++counts[contact.body_a / 2];
         for (std::size_t i = 0; i < rolls.size(); ++i) (counts[i] >= contacts ? near : far)[i] = distances[i];
     }
     distances = near;
 }
 
-void roll(Work& work, const std::vector<Roll>& rolls, double turns, const RollingOptions& options) {
+void roll(Work& work, const std::vector<Encounter>& rolls, double turns, const RollingOptions& options) {
     const auto scene = make_scene(work, one_thread(Method::standard));
-    std::vector<Pair> pairs;
-    for (BodyId i = 0; i < rolls.size(); ++i) pairs.emplace_back(2 * i, 2 * i + 1);
+    const std::vector<Pair> pairs = encounter_pairs(rolls.size());
     const double radius = work.shapes[0]->radius();
     std::vector<double> distances(rolls.size(), radius);
     find_distances(*scene, pairs, rolls, 0, options.contacts, radius, distances);
@@ -63,8 +48,8 @@ void roll(Work& work, const std::vector<Roll>& rolls, double turns, const Rollin
             find_distances(*scene, pairs, rolls, k * turns, options.contacts, 0.02 + 7 * turns * radius, distances);
         WorkStep& step = work.steps.emplace_back();
         for (std::size_t i = 0; i < rolls.size(); ++i) {
-            step.poses.push_back(rolls[i].pose(false, distances[i], k * turns));
-            step.poses.push_back(rolls[i].pose(true, distances[i], k * turns));
+            step.poses.push_back(rolled(rolls[i], false, distances[i], k * turns));
+            step.poses.push_back(rolled(rolls[i], true, distances[i], k * turns));
         }
         step.pairs = pairs;
     }
@@ -74,23 +59,8 @@ void roll(Work& work, const std::vector<Roll>& rolls, double turns, const Rollin
 
 Work rolling_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
                    const RollingOptions& options) {
-    Work work;
-    work.name = std::move(name);
-    work.source = std::move(source);
-    work.shapes = {shape};
-    work.body_shape.assign(std::size_t{2} * options.pairs, 0);
-    scenes::Random random(1);
-    std::vector<Roll> rolls(options.pairs);
-    for (std::uint32_t i = 0; i < options.pairs; ++i) {
-        Roll& one = rolls[i];
-        const std::uint32_t row = i / 4 % 4, layer = i / 16;
-        one.home = {cell * (i % 4), cell * row, cell * layer};
-        one.way = random_direction(random);
-        one.spin_a = random_direction(random);
-        one.spin_b = random_direction(random);
-        one.a = random_rotation(random);
-        one.b = random_rotation(random);
-    }
+    Work work = encounter_work(std::move(name), shape, std::move(source), options.pairs);
+    const std::vector<Encounter> rolls = encounters(options.pairs);
     // A quarter of a turn moves a surface about one size; then as it came out.
     double turns = options.displacement / 8;
     roll(work, rolls, turns, options);

@@ -22,60 +22,9 @@ namespace raycontact::bench {
 
 namespace {
 
-constexpr double cell = 4; // metres between pairs; meshes are 1 m, so no pair sees another
-
 double size_of(const Shape& shape) {
     const Vec3 low = shape.box_min(), high = shape.box_max();
     return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-}
-
-/// One pair's path: along `way` from far to near, each body turning about an axis of its own.
-struct Path {
-    Vec3 home;
-    std::array<double, 3> way, spin_a, spin_b;
-    Quaternion a, b;
-    double touch = 0; ///< metres between the centres
-
-    /// `turn` of a body is tan(angle / 2) along its axis; 0 at the pose that `touch` was found for.
-    Pose pose(bool second, double distance, double turn) const {
-        const auto& spin = second ? spin_b : spin_a;
-        const Quaternion turned = times({1, turn * spin[0], turn * spin[1], turn * spin[2]}, second ? b : a);
-        const double at = second ? distance : 0;
-        const Vec3 where{home.x + at * way[0], home.y + at * way[1], home.z + at * way[2]};
-        return pose_from_quaternion(where, turned[0], turned[1], turned[2], turned[3]);
-    }
-};
-
-/// Largest distance at which each pair has a contact: from afar in steps of 2 cm, then halved eight times.
-void find_touch(Work& work, std::vector<Path>& paths) {
-    const auto scene = make_scene(work, one_thread(Method::standard));
-    std::vector<Pair> pairs;
-    for (BodyId i = 0; i < paths.size(); ++i) pairs.emplace_back(2 * i, 2 * i + 1);
-    const auto touching = [&](const std::vector<double>& distances) {
-        for (BodyId i = 0; i < paths.size(); ++i) {
-            scene->set_pose(2 * i, paths[i].pose(false, distances[i], 0));
-            scene->set_pose(2 * i + 1, paths[i].pose(true, distances[i], 0));
-        }
-        std::vector<bool> touches(paths.size());
-        for (const Contact& contact : scene->step(pairs)) touches[contact.body_a / 2] = true;
-        return touches;
-    };
-    const double far = 2 * work.shapes[0]->radius(), stride = 0.02;
-    std::vector<double> distances(paths.size(), far);
-    for (double distance = far; distance > 0; distance -= stride) {
-        const std::vector<bool> touches = touching(distances);
-        for (std::size_t i = 0; i < paths.size(); ++i)
-            if (!touches[i]) distances[i] = distance;
-    }
-    std::vector<double> apart(distances);
-    for (double& d : apart) d += stride;
-    for (int halving = 0; halving < 8; ++halving) {
-        std::vector<double> middle(paths.size());
-        for (std::size_t i = 0; i < paths.size(); ++i) middle[i] = (apart[i] + distances[i]) / 2;
-        const std::vector<bool> touches = touching(middle);
-        for (std::size_t i = 0; i < paths.size(); ++i) (touches[i] ? distances : apart)[i] = middle[i];
-    }
-    for (std::size_t i = 0; i < paths.size(); ++i) paths[i].touch = distances[i];
 }
 
 } // namespace
@@ -147,42 +96,6 @@ double body_size(const Work& work) {
         if (moves || work.steps.size() == 1) size = std::min(size, size_of(work.shape(body)));
     }
     return std::isfinite(size) ? size : size_of(*work.shapes.front());
-}
-
-Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
-                       const ApproachOptions& options) {
-    Work work;
-    work.name = std::move(name);
-    work.source = std::move(source);
-    work.shapes = {shape};
-    work.body_shape.assign(std::size_t{2} * options.pairs, 0);
-    scenes::Random random(1);
-    std::vector<Path> paths(options.pairs);
-    for (std::uint32_t i = 0; i < options.pairs; ++i) {
-        Path& path = paths[i];
-        const std::uint32_t column = i % 4, row = i / 4 % 4, layer = i / 16;
-        path.home = {cell * column, cell * row, cell * layer};
-        path.way = random_direction(random);
-        path.spin_a = random_direction(random);
-        path.spin_b = random_direction(random);
-        path.a = random_rotation(random);
-        path.b = random_rotation(random);
-    }
-    find_touch(work, paths);
-    // Six tenths of the time to come together, the rest to turn in each other; about 12 degrees each way a body.
-    for (std::uint32_t k = 0; k < options.steps; ++k) {
-        const double time = (k + 0.5) / options.steps;
-        const double in = std::fmin(1, time / 0.6);
-        WorkStep& step = work.steps.emplace_back();
-        for (const Path& path : paths) {
-            const double distance = path.touch + options.clearance - (options.clearance + options.depth) * in;
-            const double turn = 0.2 * (time - 0.6);
-            step.poses.push_back(path.pose(false, distance, turn));
-            step.poses.push_back(path.pose(true, distance, turn));
-        }
-    }
-    find_pairs(work);
-    return work;
 }
 
 std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source) {

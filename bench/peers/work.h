@@ -40,17 +40,6 @@ Pace pace(const Work& work);
 /// Of the smallest shape that moves, metres.
 double body_size(const Work& work);
 
-struct ApproachOptions {
-    std::uint32_t pairs = 32, steps = 100;
-    double clearance = 0.10; ///< metres between the first pose and the one where they touch; meshes are 1 m
-    double depth = 0.06;     ///< metres pushed in beyond that
-};
-
-/// Pairs of one mesh that start apart, come together, overlap and turn slowly all the while; each pair alone in its
-/// cell of a grid. No libm in the poses: the same bits from every compiler.
-Work approaching_pairs(std::string name, const std::shared_ptr<const Shape>& shape, std::string source,
-                       const ApproachOptions& options);
-
 /// The reduced bunny of that many triangles where it can be made, else a closed bumpy sphere; says which in `source`.
 std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source);
 

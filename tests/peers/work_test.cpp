@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The question that everyone is asked: is it the same each time, and does it hold what it promises?
+#include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
 #include <bench/peers/growth.h>
 #include <bench/peers/reference.h>
