@@ -19,15 +19,16 @@ using Pair = std::pair<BodyId, BodyId>;
 
 /// What the last step did.
 struct StepStats {
-    std::uint64_t pairs = 0;     ///< unordered pairs in the narrow phase
-    std::uint64_t vertices = 0;  ///< vertices tested against bounds, after whole clusters were ruled out
+    std::uint64_t pairs = 0;    ///< unordered pairs in the narrow phase
+    std::uint64_t vertices = 0; ///< vertices tested against bounds, after whole clusters were ruled out
     /// Rays of the rule, vertices inside the other body's bounds. Another method than `standard` counts those among the
     /// vertices it looked at, `predictive` in bounds that it widened, and the rays it followed.
     std::uint64_t rays = 0;
-    std::uint64_t rays_cast = 0; ///< traced through the mesh, along the ray or ahead of it; the rest is known to end nowhere
+    std::uint64_t rays_cast =
+        0; ///< traced through the mesh, along the ray or ahead of it; the rest is known to end nowhere
     std::uint64_t side_tests =
         0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
-    std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: new ones, and those that moved far enough
+    std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: new, fast or far moved ones
     std::uint64_t pairs_asleep = 0; ///< ordered pairs of which nothing was looked at
     std::uint64_t walks = 0;        ///< rays followed from last step's triangle (iterative, predictive)
     std::uint64_t walks_lost = 0;   ///< of these, how many ended nowhere
@@ -37,10 +38,10 @@ struct StepStats {
     std::uint64_t contacts = 0;
     std::uint64_t contacts_new = 0;  ///< whose key the step before did not have
     std::uint64_t contacts_lost = 0; ///< of the step before, whose key this one does not have
-    double ray_length = 0; ///< sum of the contacts' ray lengths, metres (paper section 5.2)
-    double depth_max = 0;  ///< metres
-    double broad_ms = 0;   ///< our broad phase; 0 when pairs were given
-    double narrow_ms = 0;  ///< everything after the broad phase
+    double ray_length = 0;           ///< sum of the contacts' ray lengths, metres (paper section 5.2)
+    double depth_max = 0;            ///< metres
+    double broad_ms = 0;             ///< our broad phase; 0 when pairs were given
+    double narrow_ms = 0;            ///< everything after the broad phase
 };
 
 /// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.
