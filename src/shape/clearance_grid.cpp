@@ -45,7 +45,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) extent[axis] = double(high[axis]) - double(low[axis]);
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
         // Balls follow the surface, so cells may be as long as its edges; memory stays like that of the triangles.
-        const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 6e2, 15e4);
+        const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 6e2, 4e6);
         double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
         const auto cells = [&] {
             double product = 1;
@@ -60,7 +60,8 @@ public:
         }
     }
 
-    // Of every middle, in cells.
+    // Of the middles, in cells: exactly near the surface, where there are few, and farther off for every second, then
+    // every fourth along each axis. The others keep what follows from the one before them, which is no more.
     void measure(const ShapeData& shape) {
         std::vector<Vec3> points;
         points.reserve(shape.points.size());
@@ -69,15 +70,14 @@ public:
         std::iota(every.begin(), every.end(), 0u);
         const TriangleBvh tree(points, shape.mesh.triangles, std::move(every));
         distance_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
-        for (int z = 0; z < size_[2]; ++z)
-            for (int y = 0; y < size_[1]; ++y) {
-                double before = 1e6; // a neighbour's distance bounds this one's
-                for (int x = 0; x < size_[0]; ++x) {
-                    const double bound = before + 1.001;
-                    before = std::sqrt(tree.nearest({x + 0.5, y + 0.5, z + 0.5}, bound * bound));
-                    distance_[index(x, y, z)] = before;
-                }
+        for (int z = 0; z < size_[2]; z += 4)
+            for (int y = 0; y < size_[1]; y += 4) {
+                double last = 1e6;
+                for (int x = 0; x < size_[0]; x += 4)
+                    distance_[index(x, y, z)] = last = nearest(tree, x, y, z, last + 4);
             }
+        measure_between(tree, 2, 8);
+        measure_between(tree, 1, 4); // less than 8 by more than a diagonal: what bounds a search was measured itself
     }
 
     // Two neighbouring middles whose empty balls meet lie on the same side. From the box's faces inwards.
@@ -168,6 +168,24 @@ public:
     }
 
 private:
+    // Of a middle whose distance is known to be no more than `bound`.
+    static double nearest(const TriangleBvh& tree, int x, int y, int z, double bound) {
+        return std::sqrt(tree.nearest({x + 0.5, y + 0.5, z + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
+    }
+
+    // The middles that a stride twice as long has left out; those that may be nearer than `near` exactly.
+    void measure_between(const TriangleBvh& tree, int stride, double near) {
+        const auto before = [&](int at) { return at - at % (2 * stride); };
+        for (int z = 0; z < size_[2]; z += stride)
+            for (int y = 0; y < size_[1]; y += stride)
+                for (int x = 0; x < size_[0]; x += stride) {
+                    const int bx = before(x), by = before(y), bz = before(z);
+                    const double known = distance_[index(bx, by, bz)];
+                    const double off = length({double(x - bx), double(y - by), double(z - bz)});
+                    if (off == 0) continue;
+                    distance_[index(x, y, z)] = known - off > near ? known - off : nearest(tree, x, y, z, known + off);
+                }
+    }
     std::size_t index(int x, int y, int z) const {
         return (static_cast<std::size_t>(z) * size_[1] + static_cast<std::size_t>(y)) * size_[0]
                + static_cast<std::size_t>(x);
