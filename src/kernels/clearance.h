@@ -62,20 +62,16 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
     return away - (outside != 0u ? 0.0f : 1.0005f * reach);
 }
 
-DEVICE SafeLanes safe_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
-                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
+DEVICE SafeLanes safe_lanes(const InsideLanes* at, GLOBAL const OrderedPair* RESTRICT pair,
+                            GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
+                            GLOBAL const uint* RESTRICT clearances) {
     SafeLanes found;
-    float r[9], t[3], b[6];
-    for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
-    for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
+    float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
-        const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
-        const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
-        const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
-        const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
+        const float x = at->x[k], y = at->y[k], z = at->z[k];
         const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
         // As long as a vertex needs to reach the bounds, it casts nothing.
         const float gap_x = b[0] - x > x - b[3] ? b[0] - x : x - b[3];
@@ -83,7 +79,7 @@ DEVICE SafeLanes safe_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL cons
         const float gap_z = b[2] - z > z - b[5] ? b[2] - z : z - b[5];
         const float gap_xy = gap_x > gap_y ? gap_x : gap_y, gap = gap_xy > gap_z ? gap_xy : gap_z;
         const float safe = clear > gap ? clear : gap;
-        found.safe[k] = vx == vx ? safe : UNBOUNDED; // empty lanes hold NaN
+        found.safe[k] = block->vertex[k] != NONE ? safe : UNBOUNDED;
     }
     return found;
 }

@@ -3,32 +3,6 @@
 // (the paper's padded grid, Fig. 6, would waste lanes).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
-    float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES]; // target frame
-    int inside[VERTEX_LANES];                                // -1 or 0
-} InsideLanes;
-
-// Vertices inside the bounds, exactly as the ray will see them.
-DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block) {
-    InsideLanes found;
-    float r[9], t[3], b[6];
-    for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
-    for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
-    for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    FOR_LANES(k, VERTEX_LANES) {
-        const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
-        const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
-        const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
-        const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
-        const uint inside = (x >= b[0]) & (x <= b[3]) & (y >= b[1]) & (y <= b[4]) & (z >= b[2]) & (z <= b[5]);
-        found.inside[k] = -(int)inside;
-        found.x[k] = x;
-        found.y[k] = y;
-        found.z[k] = z;
-    }
-    return found;
-}
-
 // Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
 // outside.
 DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,

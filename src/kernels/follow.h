@@ -191,8 +191,8 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         GLOBAL const ShapeHeader* target = shapes + pair->target;
         const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
         GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
-        const SafeLanes found = safe_lanes(pair, block, target, clearances);
         const InsideLanes held = inside_lanes(pair, block);
+        const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
             close[k] = -(int)!(found.safe[k] > near);

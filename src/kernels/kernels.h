@@ -5,6 +5,8 @@
 
 #include "kernels/traverse.h"
 
+#include "kernels/vertex_lanes.h"
+
 #include "kernels/clearance.h"
 
 #include "kernels/find_clusters.h"

@@ -50,8 +50,15 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             float own = watches[i].wake;
             uint lanes = watches[i].lanes;
+            watches[i].cast = 0u;
+            if (own > segment.now && lanes == 0u) {
+                if (own < look.wake) look.wake = own;
+                continue;
+            }
+            GLOBAL const VertexBlock* RESTRICT block = vertices + watches[i].vertex_block;
+            const InsideLanes held = inside_lanes(pair, block);
             if (own <= segment.now) {
-                SafeLanes found = safe_lanes(pair, vertices + watches[i].vertex_block, target, clearances);
+                SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
                 int unsafe[VERTEX_LANES];
                 FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
                 lanes = pack_sixteen(unsafe);
@@ -66,16 +73,14 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                 own = least > 0.0f ? segment.from + least : AWAKE;
                 watches[i].wake = own;
             }
-            uint cast = 0u;
             if (lanes != 0u) {
-                const InsideLanes found = inside_lanes(pair, vertices + watches[i].vertex_block);
-                cast = lanes & pack_sixteen(found.inside);
+                uint cast = lanes & pack_sixteen(held.inside);
                 look.inside += bit_count(cast);
-                if (cast != 0u && target->grid_size[0] != 0u) cast &= ~outside_lanes(&found, target, outside_cells);
+                if (cast != 0u && target->grid_size[0] != 0u) cast &= ~outside_lanes(&held, target, outside_cells);
                 ray_count += bit_count(cast);
+                watches[i].cast = cast;
                 own = AWAKE;
             }
-            watches[i].cast = cast;
             if (own < look.wake) look.wake = own;
         }
         look.rays = ray_count;

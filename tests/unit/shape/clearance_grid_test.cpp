@@ -35,13 +35,18 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
         block.position[0][k] = points[k].x;
         block.position[1][k] = points[k].y;
         block.position[2][k] = points[k].z;
+        block.vertex[k] = std::isnan(points[k].x) ? NONE : static_cast<kernels::uint>(k);
     }
     Lookup found{};
-    const auto near = kernels::prototype::safe_lanes(&pair, &block, &target.header, target.clearances.data());
+    const auto seen = kernels::prototype::inside_lanes(&pair, &block);
+    const auto safe = [&] {
+        return kernels::prototype::safe_lanes(&seen, &pair, &block, &target.header, target.clearances.data());
+    };
+    const auto near = safe();
     std::copy(near.safe, near.safe + VERTEX_LANES, found.distance);
     // A vertex that is not certainly outside loses its ray's reach; one with an endless ray is never safe.
     std::fill(block.exit, block.exit + VERTEX_LANES, std::numeric_limits<float>::infinity());
-    const auto endless = kernels::prototype::safe_lanes(&pair, &block, &target.header, target.clearances.data());
+    const auto endless = safe();
     for (std::size_t k = 0; k < VERTEX_LANES; ++k) found.outside[k] = endless.safe[k] >= 0;
     return found;
 }
