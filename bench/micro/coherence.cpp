@@ -43,6 +43,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
 
     pair_clusters_.resize(*device_, wide.size());
     small_.resize(*device_, wide.size());
+    clears_.resize(*device_, wide_.size());
     count_near_clusters();
     clusters_.resize(*device_, scan_.run(*device_, pair_clusters_, cluster_firsts_));
     write_near_clusters();
@@ -114,7 +115,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
 void Coherence::count_near_clusters() {
     const auto& shapes = store_.arrays();
     launch<KernelId::count_near_clusters>(*device_, wide_.size(), wide_, reaches_, shapes.headers, shapes.clusters,
-                                          shapes.clearances, pair_clusters_, small_);
+                                          shapes.clearances, pair_clusters_, clears_, small_);
 }
 
 void Coherence::write_near_clusters() {

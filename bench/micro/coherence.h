@@ -58,7 +58,7 @@ private:
     ShapeStore store_;
     Scan scan_;
     Array<kernels::OrderedPair> pairs_, wide_, moved_;
-    Array<float> cullings_, reaches_, margins_;
+    Array<float> cullings_, reaches_, margins_, clears_;
     Array<kernels::uint> pair_clusters_, cluster_firsts_, block_inside_, block_rays_, ray_firsts_;
     Array<kernels::ulong> small_;
     Array<kernels::Cluster> clusters_, watch_clusters_;

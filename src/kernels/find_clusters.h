@@ -69,35 +69,42 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
     return pack_sixteen(hit);
 }
 
-// Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block().
+// Of `lanes`, the child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block().
+// clear: lowered to how far the others are safe.
 DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block,
-                       GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                       float horizon) {
+                       GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances, float horizon,
+                       uint lanes, float* clear) {
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     float r[9], t[3];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     int near[VERTEX_LANES];
+    float safe[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
         const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
         const float x = ((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0];
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
-        const float safe =
+        const float own =
             safe_distance(grid, balls, x, y, z, UNBOUNDED) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-        near[k] = -(int)(uint)(safe <= horizon);
+        near[k] = -(int)(uint)(own <= horizon);
+        safe[k] = cx == cx ? own : UNBOUNDED; // empty lanes hold NaN
     }
-    return pack_sixteen(near);
+    const uint reached = lanes & pack_sixteen(near);
+    FOR_LANES(k, VERTEX_LANES) safe[k] = ((reached >> k) & 1u) != 0u ? UNBOUNDED : safe[k];
+    const float least = least_of_sixteen(safe);
+    *clear = least < *clear ? least : *clear;
+    return reached;
 }
 
-// near: leave out boxes that `horizon` and the target's clearance grid say are no matter.
+// near: leave out boxes that `horizon` and the target's clearance grid say are no matter, and tell how far they are.
 DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool near,
                           GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT clearances, float horizon) {
+                          GLOBAL const uint* RESTRICT clearances, float horizon, float* clear) {
     const uint lanes = overlapping_lanes(bounds, block);
-    return near && lanes != 0u ? lanes & near_lanes(pair, block, target, clearances, horizon) : lanes;
+    return near ? near_lanes(pair, block, target, clearances, horizon, lanes, clear) : lanes;
 }
 
 // Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
@@ -116,7 +123,7 @@ DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
                            GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, const bool write, uint first, GLOBAL Cluster* RESTRICT found) {
+                           float horizon, float* clear, const bool write, uint first, GLOBAL Cluster* RESTRICT found) {
     const PairBounds bounds = bounds_of(pair);
     uint count = 0u;
     const uint top = shape->cluster_levels - 1u;
@@ -124,7 +131,7 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
         uint level = top, at = root;
         ulong trail = 0u;
         uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target, clearances,
-                                   horizon);
+                                   horizon, clear);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -144,28 +151,31 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
                 --level;
                 at = child;
                 lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target,
-                                      clearances, horizon);
+                                      clearances, horizon, clear);
             }
         }
     }
     return count;
 }
 
-// small: of a source of few blocks the answer itself, a bit each.
+// small: of a source of few blocks the answer itself, a bit each. clear: where nothing was found, how far the pair is
+// from a contact at least; of use with `near` alone.
 DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, GLOBAL ulong* RESTRICT small) {
+                          GLOBAL const uint* RESTRICT clearances, float horizon, float* clear,
+                          GLOBAL ulong* RESTRICT small) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
+    *clear = UNBOUNDED;
     if (shape->vertex_block_count > SMALL_BLOCKS)
-        return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, false, 0u,
+        return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, clear, false, 0u,
                               (GLOBAL Cluster*)0);
     const PairBounds bounds = bounds_of(pairs + p);
     ulong blocks = 0u;
     uint number = 0u;
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
         const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, near, pairs + p, target,
-                                         clearances, horizon);
+                                         clearances, horizon, clear);
         blocks |= (ulong)lanes << (VERTEX_LANES * i);
         number += bit_count(lanes);
     }
@@ -180,7 +190,8 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     if (shape->vertex_block_count > SMALL_BLOCKS) {
-        reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, true, first, found);
+        float clear = UNBOUNDED;
+        reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, &clear, true, first, found);
         return;
     }
     uint at = first;
@@ -197,8 +208,10 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 KERNEL void count_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
                            GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
-    FOR_EACH(p, count)
-    counts[p] = count_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small);
+    FOR_EACH(p, count) {
+        float clear;
+        counts[p] = count_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, &clear, small);
+    }
 }
 
 KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
@@ -209,12 +222,18 @@ KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
     write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
 }
 
-// The same without blocks that cannot be in contact before they have moved by horizons[p], metres.
+// The same without blocks that cannot be in contact before they have moved by horizons[p], metres. clears: of a pair
+// without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
 KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                                GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
-    FOR_EACH(p, count) counts[p] = count_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], small);
+                                GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears,
+                                GLOBAL ulong* RESTRICT small) {
+    FOR_EACH(p, count) {
+        float clear;
+        counts[p] = count_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], &clear, small);
+        clears[p] = clear;
+    }
 }
 
 KERNEL void write_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,

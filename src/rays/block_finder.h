@@ -20,10 +20,14 @@ public:
     // By pair: how many, and where they begin.
     const Array<kernels::uint>& counts() const { return counts_; }
     const Array<kernels::uint>& firsts() const { return firsts_; }
+    /// Of find_near(), by pair: where it has no block, how far its vertices can move before one could be in contact,
+    /// metres, rounding not allowed for. May be less, also negative.
+    const Array<float>& clears() const { return clears_; }
 
 private:
     Scan scan_;
     Array<kernels::uint> counts_, firsts_;
+    Array<float> clears_;
     Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
     Array<kernels::Cluster> blocks_;
 };

@@ -103,6 +103,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
         if ((what & (list_0 << d)) != 0) {
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
+            due_[2 * i + d].longest = longest_clock(*body[1 - d]);
         }
         if ((what & ((look_0 | list_0) << d)) == 0) continue;
         Due& due = due_[2 * i + d];
@@ -172,7 +173,9 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     device_horizons_.write(device, horizons_);
     finder_.find_near(device, arrays, device_wide_, device_horizons_);
     host_counts_.resize(stale_.size());
+    host_clears_.resize(stale_.size());
     finder_.counts().read(device, host_counts_);
+    finder_.clears().read(device, host_clears_);
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
@@ -183,6 +186,10 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
         places_[i] = own.first = range.first;
         own.capacity = range.capacity;
         own.count = host_counts_[i];
+        if (own.count == 0) { // nothing to look at for longer than was asked
+            const double clear = 0.99999 * double(host_clears_[i]) - double(stale_margins_[i]);
+            own.expiry = std::max(own.expiry, std::min(clear, due_[active_[stale_[i]]].longest));
+        }
     }
     if (finder_.blocks().size() == 0) return;
     watches_.extend(device, pool_.end());

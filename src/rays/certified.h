@@ -59,6 +59,7 @@ private:
     struct Due {
         kernels::OrderedPair pair;
         float now, from, margin, radius;
+        double longest; ///< metres that a new list may last
     };
 
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -83,7 +84,7 @@ private:
     std::vector<Due> due_;                             ///< per ordered pair; of those that are due
     std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> stale_margins_, horizons_; ///< of stale_
+    std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
     std::vector<kernels::uint> host_counts_, places_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;

@@ -44,9 +44,11 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
     const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
     if (state.threshold >= 0) { // it was looked at before
         const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
-        // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number.
-        if (moved[0] <= state.threshold && moved[1] <= state.threshold) {
-            left = state.threshold - std::max(moved[0], moved[1]);
+        // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number. Not before
+        // there could be anything to be found.
+        const double allowed = std::max(state.threshold, state.clear);
+        if (moved[0] <= allowed && moved[1] <= allowed) {
+            left = allowed - std::max(moved[0], moved[1]);
             return;
         }
     }
@@ -57,7 +59,7 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
     state.threshold = left = settings.displacement_threshold
                                  ? *settings.displacement_threshold
                                  : next_threshold(a, b, state, motion.pair_speed(pair), follows);
-    state.culling = 0;
+    state.clear = state.culling = 0;
     if (settings.method == Method::predictive)
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
 }
@@ -107,6 +109,23 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     });
 }
 
+// Pairs without a block near either surface.
+void CoherentRays::let_sleep(Device& device) {
+    host_counts_.resize(full_count_);
+    host_clears_.resize(full_count_);
+    finder_.counts().read(device, host_counts_);
+    finder_.clears().read(device, host_clears_);
+    for (std::size_t i = 0; i < full_count_; i += 2) {
+        if (host_counts_[i] != 0 || host_counts_[i + 1] != 0) continue;
+        PairState& state = table_.state(active_[i] / 2);
+        for (std::size_t d = 0; d < 2; ++d) {
+            const double clear = 0.99999 * double(host_clears_[i + d]) - double(margins_[i + d]);
+            state.clear = d == 0 ? clear : std::min(state.clear, clear);
+        }
+        table_.hot(active_[i] / 2).slack = std::max(state.threshold, state.clear);
+    }
+}
+
 // Full looks first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
 void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     device_pairs_.write(device, host_pairs_);
@@ -115,6 +134,7 @@ void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
     finder_.find_near(device, arrays, device_wide_, device_reaches_);
+    let_sleep(device);
     Array<kernels::Cluster>& blocks = finder_.blocks();
     counts_.resize(device, blocks.size());
     inside_.resize(device, blocks.size());

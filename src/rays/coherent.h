@@ -34,6 +34,7 @@ private:
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  const Motion& motion, const Settings& settings);
     void find_rays(Device& device, const ShapeStore::Arrays& arrays);
+    void let_sleep(Device& device);
     void cast(Device& device, const ShapeStore::Arrays& arrays, const Settings& settings);
     void keep(Device& device);
     /// The rays that one direction of a pair keeps: a range of candidates_.
@@ -43,6 +44,7 @@ private:
     struct PairState {
         PairPlace reference;      ///< where the bodies were when the pair was last looked at in full
         double threshold = -1;    ///< metres, of that look; below 0: there was none
+        double clear = 0;         ///< metres that it saw the pair to be away from any contact, where it found nothing
         double culling = 0;       ///< metres a predictive ray looks ahead
         double look_cost = 0;     ///< what that look cost, in rays
         std::uint64_t looked = 0; ///< its step
@@ -62,6 +64,8 @@ private:
     std::size_t full_count_ = 0;        ///< of active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> cullings_, reaches_, margins_; ///< of active_, of the full ones, of the full ones
+    std::vector<float> host_clears_;                  ///< of the full ones
+    std::vector<kernels::uint> host_counts_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;

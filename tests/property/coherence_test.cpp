@@ -333,6 +333,57 @@ TEST(coherence, whatever_happens) {
     EXPECT_GT(c.refused, 100u);
 }
 
+// With a threshold of 0 every pair that moves is looked at in full, but for those known to be farther apart than they
+// moved: so nothing may be missed.
+TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
+    std::uint64_t contacts = 0, looks = 0, ordered = 0;
+    constexpr Course ways[] = {Course::approach, Course::drift, Course::approach, Course::mixed, Course::approach};
+    for (std::uint64_t i = 0; i < 70; ++i) {
+        Random random(900 + i);
+        const Kind kind = kinds[i % std::size(kinds)];
+        const auto& stock = crowd_shapes(kind, 1);
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (std::size_t b = 0; b < 10; ++b) shapes.push_back(stock[b % stock.size()]);
+        const std::vector<Pose> homes = touching_poses(shapes, random.uniform(0, 0.3), random);
+        Settings settings;
+        settings.threads = 1;
+        settings.method = Method::standard;
+        Scene standard(settings);
+        settings.method = i % 2 ? Method::predictive : Method::iterative;
+        settings.displacement_threshold = 0;
+        Scene follower(settings);
+        std::vector<Mover> movers;
+        for (std::size_t b = 0; b < shapes.size(); ++b) {
+            standard.add(shapes[b]);
+            follower.add(shapes[b]);
+            movers.emplace_back(ways[i % std::size(ways)], homes[b],
+                                length(shapes[b]->box_max() - shapes[b]->box_min()), random);
+        }
+        for (int step = 0; step < 100; ++step) {
+            for (BodyId body = 0; body < movers.size(); ++body) {
+                const Pose pose = movers[body].next(random);
+                standard.set_pose(body, pose);
+                follower.set_pose(body, pose);
+            }
+            const auto named = [](std::span<const Contact> list) {
+                std::set<std::pair<Key, std::uint32_t>> names;
+                for (const Contact& c : list) names.insert({key(c), c.triangle});
+                return names;
+            };
+            ASSERT_EQ(named(standard.step()), named(follower.step()))
+                << name_of(kind) << ", " << to_string(settings.method) << ", step " << step;
+            contacts += standard.contacts().size();
+            looks += follower.stats().pairs_full;
+            ordered += 2 * follower.stats().pairs;
+        }
+    }
+    std::printf("[ counts   ] %llu contacts; %llu of %llu ordered pairs looked at\n",
+                static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(looks),
+                static_cast<unsigned long long>(ordered));
+    EXPECT_GT(contacts, 10000u);
+    EXPECT_GT(ordered - looks, 10000u);
+}
+
 // Pairs of bodies that touch, `count` of them, far from each other.
 std::vector<Pair> add_couples(Scene& scene, std::uint32_t count) {
     static const auto shape = Shape::make(bumpy_octahedron_mesh(10));
