@@ -165,7 +165,7 @@ TEST(RoundTrip, SettingsOfALaterVersionAreNoDamage) {
             const Reader reader(file.path());
             return std::string("accepted");
         } catch (const InputError& error) {
-            const std::string text = error.what();
+            std::string text = error.what();
             EXPECT_TRUE(text.starts_with(file.path().string() + ": ")) << text;
             EXPECT_EQ(text.find('\n'), std::string::npos) << text;
             return text;
