@@ -62,6 +62,15 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
     return away - (outside != 0u ? 0.0f : 1.0005f * reach);
 }
 
+// How far a point is outside the bounds at least, below 0 inside. As long as it needs to reach them, it casts nothing.
+DEVICE float bounds_gap(const float* b, float x, float y, float z) {
+    const float gap_x = b[0] - x > x - b[3] ? b[0] - x : x - b[3];
+    const float gap_y = b[1] - y > y - b[4] ? b[1] - y : y - b[4];
+    const float gap_z = b[2] - z > z - b[5] ? b[2] - z : z - b[5];
+    const float gap_xy = gap_x > gap_y ? gap_x : gap_y;
+    return gap_xy > gap_z ? gap_xy : gap_z;
+}
+
 DEVICE SafeLanes safe_lanes(const InsideLanes* at, GLOBAL const OrderedPair* RESTRICT pair,
                             GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
                             GLOBAL const uint* RESTRICT clearances) {
@@ -73,11 +82,7 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* at, GLOBAL const OrderedPair* RES
     FOR_LANES(k, VERTEX_LANES) {
         const float x = at->x[k], y = at->y[k], z = at->z[k];
         const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
-        // As long as a vertex needs to reach the bounds, it casts nothing.
-        const float gap_x = b[0] - x > x - b[3] ? b[0] - x : x - b[3];
-        const float gap_y = b[1] - y > y - b[4] ? b[1] - y : y - b[4];
-        const float gap_z = b[2] - z > z - b[5] ? b[2] - z : z - b[5];
-        const float gap_xy = gap_x > gap_y ? gap_x : gap_y, gap = gap_xy > gap_z ? gap_xy : gap_z;
+        const float gap = bounds_gap(b, x, y, z);
         const float safe = clear > gap ? clear : gap;
         found.safe[k] = block->vertex[k] != NONE ? safe : UNBOUNDED;
     }

@@ -69,42 +69,41 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
     return pack_sixteen(hit);
 }
 
-// Of `lanes`, the child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block().
-// clear: lowered to how far the others are safe.
+// Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). As long as a
+// point needs to reach the bounds it cannot. clear: lowered to how far the other boxes are safe.
 DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block,
                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances, float horizon,
-                       uint lanes, float* clear) {
+                       float* clear) {
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
-    float r[9], t[3];
+    float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
+    for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     int near[VERTEX_LANES];
-    float safe[VERTEX_LANES];
+    float beyond[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
         const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
         const float x = ((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0];
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
-        const float own =
-            safe_distance(grid, balls, x, y, z, UNBOUNDED) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-        near[k] = -(int)(uint)(own <= horizon);
-        safe[k] = cx == cx ? own : UNBOUNDED; // empty lanes hold NaN
+        const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
+        const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
+        const uint reached = (uint)(safe <= horizon);
+        near[k] = -(int)reached;
+        beyond[k] = (reached == 0u) & (cx == cx) ? safe : UNBOUNDED; // empty lanes hold NaN
     }
-    const uint reached = lanes & pack_sixteen(near);
-    FOR_LANES(k, VERTEX_LANES) safe[k] = ((reached >> k) & 1u) != 0u ? UNBOUNDED : safe[k];
-    const float least = least_of_sixteen(safe);
+    const float least = least_of_sixteen(beyond);
     *clear = least < *clear ? least : *clear;
-    return reached;
+    return pack_sixteen(near);
 }
 
-// near: leave out boxes that `horizon` and the target's clearance grid say are no matter, and tell how far they are.
+// near: those that `horizon` and the target's clearance grid leave, and how far the others are.
 DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool near,
                           GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
                           GLOBAL const uint* RESTRICT clearances, float horizon, float* clear) {
-    const uint lanes = overlapping_lanes(bounds, block);
-    return near ? near_lanes(pair, block, target, clearances, horizon, lanes, clear) : lanes;
+    return near ? near_lanes(pair, block, target, clearances, horizon, clear) : overlapping_lanes(bounds, block);
 }
 
 // Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
