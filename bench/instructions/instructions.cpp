@@ -45,6 +45,7 @@ public:
             {"cast_bvh", "ray", small_.rays(), [this] { small_.cast_bvh(); }},
             {"cast_bvh_large", "ray", large_.rays(), [this] { large_.cast_bvh(); }},
             {"cast_basic", "ray", small_.basic_rays(), [this] { small_.cast_basic(); }},
+            {"near_clusters", "ordered pair", kept_.pairs(), [this] { kept_.count_near_clusters(); }},
             {"near_rays", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_near_rays(); }},
             {"follow_bvh", "ray", kept_.near_rays(), [this] { kept_.cast_near_rays(rc::Caster::bvh); }},
             {"follow_basic", "ray", kept_.basic_rays(), [this] { kept_.cast_near_rays(rc::Caster::basic); }},

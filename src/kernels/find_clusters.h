@@ -92,7 +92,8 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= horizon);
         near[k] = -(int)reached;
-        beyond[k] = (reached == 0u) & (cx == cx) ? safe : UNBOUNDED; // empty lanes hold NaN
+        const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
+        beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
     *clear = least < *clear ? least : *clear;
