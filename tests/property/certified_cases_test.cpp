@@ -196,35 +196,43 @@ TEST(certified, packed_shapes) {
     report("packed shapes", counts, 1e4);
 }
 
+// Two bodies of one shape, twelve steps; place(step) gives their poses.
+template <class Place>
+void play_two(const std::shared_ptr<const Shape>& shape, const char* what, double far, Counts& counts, Place&& place) {
+    Settings settings;
+    settings.threads = 1;
+    char name[40];
+    std::snprintf(name, sizeof name, "%s, %g m", what, far);
+    Triplet triplet(settings, 1e-2, name);
+    triplet.each([&](Scene& scene) {
+        scene.add(shape);
+        scene.add(shape);
+    });
+    const std::vector<Pair> pair{{0, 1}};
+    for (int step = 0; step < 12; ++step) {
+        const std::pair<Pose, Pose> poses = place(step);
+        triplet.each([&](Scene& scene) {
+            scene.set_pose(0, poses.first);
+            scene.set_pose(1, poses.second);
+        });
+        triplet.step(counts, pair);
+    }
+    ++counts.episodes;
+}
+
 // As far apart as finite numbers go, and back.
 TEST(certified, beyond_the_range_of_squares) {
     const auto shape = Shape::make(bumpy_octahedron_mesh(5));
     Counts counts;
     for (const double far : {1e30, 1e100, 1e200, 1.7e308})
-        for (const bool begin_far : {false, true}) {
-            Settings settings;
-            settings.threads = 1;
-            char what[40];
-            std::snprintf(what, sizeof what, "%g m apart", far);
-            Triplet triplet(settings, 1e-2, what);
-            triplet.each([&](Scene& scene) {
-                scene.add(shape);
-                scene.add(shape);
-            });
-            const std::vector<Pair> pair{{0, 1}};
-            for (int step = 0; step < 12; ++step) {
+        for (const bool begin_far : {false, true})
+            play_two(shape, "apart", far, counts, [&](int step) {
                 const bool away = (step / 3 % 2 == 0) == begin_far;
                 Pose a, b;
                 a.translation = {away ? -far : 0.0, 0, 0};
                 b.translation = {away ? far : 0.9, away ? far : 0.0, 0};
-                triplet.each([&](Scene& scene) {
-                    scene.set_pose(0, a);
-                    scene.set_pose(1, b);
-                });
-                triplet.step(counts, pair);
-            }
-            ++counts.episodes;
-        }
+                return std::pair(a, b);
+            });
     report("very far", counts, 100);
 }
 
@@ -232,30 +240,14 @@ TEST(certified, beyond_the_range_of_squares) {
 TEST(certified, far_away_together) {
     const auto shape = Shape::make(box_mesh({0.5, 0.5, 0.5}));
     Counts counts;
-    for (const double far : {1e12, 1e14, 1e15, 1e16, 1e17, 1e30}) {
-        Settings settings;
-        settings.threads = 1;
-        char what[40];
-        std::snprintf(what, sizeof what, "together %g m away", far);
-        Triplet triplet(settings, 1e-2, what);
-        Pose a, b = small_rotation({0, 0, 1}, 0.785);
-        triplet.each([&](Scene& scene) {
-            scene.add(shape);
-            scene.add(shape);
-        });
-        const std::vector<Pair> pair{{0, 1}};
-        for (int step = 0; step < 12; ++step) {
+    for (const double far : {1e12, 1e14, 1e15, 1e16, 1e17, 1e30})
+        play_two(shape, "together", far, counts, [&](int step) {
             const double x = step / 3 % 2 == 0 ? 0 : far;
+            Pose a, b = small_rotation({0, 0, 1}, 0.785);
             a.translation = {x, 0, 0};
             b.translation = {x + 2, 0.8, 0.1};
-            triplet.each([&](Scene& scene) {
-                scene.set_pose(0, a);
-                scene.set_pose(1, b);
-            });
-            triplet.step(counts, pair);
-        }
-        ++counts.episodes;
-    }
+            return std::pair(a, b);
+        });
     report("far away together", counts, 10);
 }
 
