@@ -54,8 +54,9 @@ void Pipeline::write_clusters() {
 void Pipeline::count_rays(bool use_grid) {
     const auto& shapes = store_.arrays();
     launch<KernelId::count_rays>(*device_, clusters_.size(), use_grid ? 1u : 0u, pairs_, shapes.headers,
-                                 shapes.vertex_blocks, shapes.outside_cells, use_grid ? clusters_ : all_clusters_,
-                                 block_inside_, use_grid ? block_rays_ : all_block_rays_);
+                                 shapes.vertex_blocks, shapes.outside_cells, shapes.clearances,
+                                 use_grid ? clusters_ : all_clusters_, block_inside_,
+                                 use_grid ? block_rays_ : all_block_rays_);
 }
 
 void Pipeline::write_rays() {

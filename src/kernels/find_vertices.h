@@ -3,6 +3,8 @@
 // (the paper's padded grid, Fig. 6, would waste lanes).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
+#define CLEARED 0.01f // of a cell: far more than rounding could hide
+
 // Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
 // outside.
 DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
@@ -26,11 +28,25 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     return pack_sixteen(outside);
 }
 
+// Of the rest, those in an empty ball outside: the grid of bits lets through whole cells, about one vertex in two of
+// them for nothing, and the rays of those are the longest.
+DEVICE uint cleared_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
+                          GLOBAL const uint* RESTRICT clearances) {
+    const Clearance grid = clearance_of(target);
+    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    int cleared[VERTEX_LANES];
+    FOR_LANES(k, VERTEX_LANES) {
+        const float safe = safe_distance(grid, balls, found->x[k], found->y[k], found->z[k], UNBOUNDED);
+        cleared[k] = -(int)(safe > CLEARED * grid.cell);
+    }
+    return pack_sixteen(cleared);
+}
+
 // inside: vertices in the bounds, one ray of the rule each. counts: those whose ray must be cast to know.
 KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair* RESTRICT pairs,
                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                       GLOBAL const uint* RESTRICT outside_cells, GLOBAL Cluster* RESTRICT clusters,
-                       GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
+                       GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
+                       GLOBAL Cluster* RESTRICT clusters, GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + clusters[i].pair;
         const InsideLanes found = inside_lanes(pair, vertices + clusters[i].vertex_block);
@@ -39,6 +55,7 @@ KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair
         uint lanes = inside_mask;
         if (lanes != 0u && use_grid != 0u && target->grid_size[0] != 0u)
             lanes &= ~outside_lanes(&found, target, outside_cells);
+        if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~cleared_lanes(&found, target, clearances);
         clusters[i].lanes = lanes;
         inside[i] = bit_count(inside_mask);
         counts[i] = bit_count(lanes);

@@ -10,7 +10,7 @@ void RayQueue::fill(Device& device, const ShapeStore::Arrays& shapes, const Arra
     counts_.resize(device, blocks.size());
     inside_.resize(device, blocks.size());
     launch<KernelId::count_rays>(device, blocks.size(), use_grid ? 1u : 0u, pairs, shapes.headers, shapes.vertex_blocks,
-                                 shapes.outside_cells, blocks, inside_, counts_);
+                                 shapes.outside_cells, shapes.clearances, blocks, inside_, counts_);
     vertices_inside_ = scan_.run(device, inside_, firsts_);
     rays_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_rays>(device, rays_.size() > 0 ? blocks.size() : 0, blocks, firsts_, rays_);
