@@ -23,6 +23,8 @@ DEVICE float product_error(float a, float b, float p) {
 #define lowest_bit(bits) (++seen.children, lowest_bit(bits))
 #include "kernels/traverse.h"
 
+#include "kernels/traverse_group.h"
+
 #include "kernels/vertex_lanes.h"
 
 #include "kernels/clearance.h"

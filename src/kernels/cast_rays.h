@@ -4,7 +4,7 @@
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define SIDE_DIRECTIONS 4
-#define PROBE_TOLERANCES 32768.0f // length of a short ray: a thirty-second of the box diagonal
+#define PROBE_TOLERANCES 65536.0f
 #define CASTER_BASIC 0
 #define CASTER_BVH 1
 
@@ -63,6 +63,37 @@ DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame*
     return traverse(caster, frame, reach, shape, nodes, blocks);
 }
 
+DEVICE GroupRay group_ray(const RayFrame frame, float reach, uint target, GLOBAL const ShapeHeader* RESTRICT shape) {
+    GroupRay ray;
+    const float probe = PROBE_TOLERANCES * shape->tolerance;
+    ray.frame = frame;
+    ray.reach = reach;
+    ray.length = probe < reach ? probe : reach;
+    ray.tolerance = shape->tolerance;
+    ray.target = target;
+    ray.node_first = shape->node_first;
+    ray.block_first = shape->triangle_block_first;
+    return ray;
+}
+
+// find_closest() for several rays, by the BVH.
+DEVICE void find_group(Closest* own, const GroupRay* rays, uint ray_count, uint short_first,
+                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                       GLOBAL const TriangleBlock* RESTRICT blocks) {
+    const bool grouped = RAYS_IN_GROUP > 1 && short_first != 0u;
+    const uint alone = grouped ? traverse_group(own, rays, ray_count, nodes, blocks) : 0u;
+    for (uint r = 0u; r < ray_count; ++r) {
+        GLOBAL const ShapeHeader* shape = shapes + rays[r].target;
+        if (!grouped) {
+            own[r] = find_closest(CASTER_BVH, short_first, &rays[r].frame, rays[r].reach, shape, nodes, blocks);
+            continue;
+        }
+        const uint found = (uint)(own[r].back <= rays[r].length) | (uint)(own[r].front <= rays[r].length);
+        if ((alone >> r & 1u) != 0u || (found == 0u && rays[r].length < rays[r].reach))
+            own[r] = traverse_bvh(&rays[r].frame, rays[r].reach, shape, nodes, blocks);
+    }
+}
+
 // In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
@@ -106,11 +137,20 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
                           GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                           GLOBAL Hit* RESTRICT hits) {
-    FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        GLOBAL const ShapeHeader* shape = shapes + pair->target;
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        hits[i] = cast_ray(CASTER_BVH, short_first, &ray, shape, nodes, blocks, normals);
+    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
+        SourceRay source[RAYS_IN_GROUP];
+        GroupRay group[RAYS_IN_GROUP];
+        Closest own[RAYS_IN_GROUP];
+        for (uint r = 0u; r < few; ++r) {
+            const Ray ray = rays[i + r];
+            GLOBAL const OrderedPair* pair = pairs + ray.pair;
+            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            group[r] = group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target,
+                                 shapes + pair->target);
+        }
+        find_group(own, group, few, short_first, shapes, nodes, blocks);
+        for (uint r = 0u; r < few; ++r)
+            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group[r].target, nodes, blocks, normals);
     }
 }
 
@@ -119,7 +159,7 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                             GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                             GLOBAL Hit* RESTRICT hits) {
-    FOR_EACH_FEW(i, few, count) {
+    FOR_EACH_FEW(i, few, RAYS_AT_ONCE, count) {
         SourceRay source[RAYS_AT_ONCE];
         RayFrame frame[RAYS_AT_ONCE];
         Closest own[RAYS_AT_ONCE];

@@ -53,27 +53,23 @@ DEVICE uint predicted(const Closest* ahead, float culling) {
     return ahead->back <= culling && ahead->back <= ahead->front ? ahead->back_triangle : NONE;
 }
 
-// The ray in full, and where it is no contact what lies ahead. `own`: whether the vertex may be in contact at all.
-DEVICE Outcome cast_both(const uint caster, const SourceRay* ray, uint own, const uint predictive, float culling,
-                         GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                         GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+// By the basic caster, the ray in full, and where it is no contact what lies ahead. `own`: whether the vertex may be in
+// contact at all.
+DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive, float culling,
+                          GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
+                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
     Outcome end;
     end.how = CAST;
-    if (caster == CASTER_BASIC && predictive != 0u) {
+    if (predictive != 0u) {
         const RayFrame frame = frame_ray(ray->position, ray->direction), opposite = opposite_frame(ray);
         Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
         traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, blocks);
-        end.hit = own != 0u ? decide(caster, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
+        end.hit = own != 0u ? decide(CASTER_BASIC, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
         end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
         return end;
     }
-    end.hit = own != 0u ? cast_ray(caster, 1u, ray, shape, nodes, blocks, normals) : no_hit(0u);
+    end.hit = own != 0u ? cast_ray(CASTER_BASIC, 1u, ray, shape, nodes, blocks, normals) : no_hit(0u);
     end.next = end.hit.triangle;
-    if (end.next == NONE && predictive != 0u) {
-        const RayFrame opposite = opposite_frame(ray);
-        const Closest ahead = traverse(caster, &opposite, culling, shape, nodes, blocks);
-        end.next = predicted(&ahead, culling);
-    }
     return end;
 }
 
@@ -160,21 +156,19 @@ DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_i
     return end;
 }
 
-DEVICE Outcome follow_ray(const uint caster, const SourceRay ray, uint inside, uint start, uint max_iterations,
-                          const uint predictive, const uint cast_lost, float culling,
-                          GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+// What a walk says of a ray. CAST: nothing yet, it is to be cast in full.
+DEVICE Outcome follow_ray(const SourceRay* ray, uint inside, uint start, uint max_iterations, const uint predictive,
+                          const uint cast_lost, float culling, GLOBAL const ShapeHeader* RESTRICT shape,
+                          GLOBAL const Face* RESTRICT faces, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals) {
-    uint how = 0u;
+    Outcome end;
+    end.hit = no_hit(0u);
+    end.next = NONE;
+    end.how = CAST;
     if (start < AHEAD_ONLY) {
-        const Outcome end =
-            walk(&ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
-        how = end.how;
-        if ((how & LOST) == 0u || cast_lost == 0u) return end;
+        end = walk(ray, inside, start, max_iterations, predictive, culling, shape, faces, blocks, normals);
+        if ((end.how & LOST) != 0u && cast_lost != 0u) end.how |= CAST;
     }
-    Outcome end =
-        cast_both(caster, &ray, start != AHEAD_ONLY ? inside : 0u, predictive, culling, shape, nodes, blocks, normals);
-    end.how |= how;
     return end;
 }
 
@@ -243,18 +237,6 @@ KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT seg
     }
 }
 
-DEVICE Outcome follow_one(const uint caster, const Ray ray, uint start, uint max_iterations, const uint predictive,
-                          const uint cast_lost, GLOBAL const OrderedPair* RESTRICT pairs,
-                          GLOBAL const float* RESTRICT cullings, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
-                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                          GLOBAL const Packed3* RESTRICT normals) {
-    GLOBAL const OrderedPair* pair = pairs + ray.pair;
-    const SourceRay source = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
-    return follow_ray(caster, source, is_inside(pair->bounds, source.position), start, max_iterations, predictive,
-                      cast_lost, cullings[ray.pair], shapes + pair->target, nodes, blocks, faces, normals);
-}
-
 // hows and nexts: see Outcome.
 KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
                             GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
@@ -263,12 +245,47 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
                             GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
                             GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
                             GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
-    FOR_EACH(i, count) {
-        const Outcome end = follow_one(CASTER_BVH, rays[i], starts[i], max_iterations, predictive, cast_lost, pairs,
-                                       cullings, shapes, vertices, nodes, blocks, faces, normals);
-        hits[i] = end.hit;
-        nexts[i] = end.next;
-        hows[i] = end.how;
+    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
+        SourceRay source[RAYS_IN_GROUP];
+        Outcome ends[RAYS_IN_GROUP];
+        GroupRay group[RAYS_IN_GROUP];
+        Closest met[RAYS_IN_GROUP];
+        uint casting[RAYS_IN_GROUP];
+        uint casts = 0u;
+        for (uint r = 0u; r < few; ++r) {
+            const Ray ray = rays[i + r];
+            GLOBAL const OrderedPair* pair = pairs + ray.pair;
+            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            const uint inside = is_inside(pair->bounds, source[r].position);
+            ends[r] = follow_ray(source + r, inside, starts[i + r], max_iterations, predictive, cast_lost,
+                                 cullings[ray.pair], shapes + pair->target, faces, blocks, normals);
+            if ((ends[r].how & CAST) == 0u || inside == 0u || starts[i + r] == AHEAD_ONLY) continue;
+            group[casts] = group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target,
+                                     shapes + pair->target);
+            casting[casts] = r;
+            casts += 1u;
+        }
+        find_group(met, group, casts, 1u, shapes, nodes, blocks);
+        for (uint c = 0u; c < casts; ++c) {
+            const uint r = casting[c];
+            ends[r].hit = decide(CASTER_BVH, source + r, met + c, shapes + group[c].target, nodes, blocks, normals);
+            ends[r].next = ends[r].hit.triangle;
+        }
+        casts = 0u;
+        for (uint r = 0u; r < few; ++r) {
+            if (predictive == 0u || (ends[r].how & CAST) == 0u || ends[r].next != NONE) continue;
+            const uint target = pairs[rays[i + r].pair].target;
+            group[casts] = group_ray(opposite_frame(source + r), cullings[rays[i + r].pair], target, shapes + target);
+            casting[casts] = r;
+            casts += 1u;
+        }
+        find_group(met, group, casts, 1u, shapes, nodes, blocks);
+        for (uint c = 0u; c < casts; ++c) ends[casting[c]].next = predicted(met + c, group[c].reach);
+        for (uint r = 0u; r < few; ++r) {
+            hits[i + r] = ends[r].hit;
+            nexts[i + r] = ends[r].next;
+            hows[i + r] = ends[r].how;
+        }
     }
 }
 
@@ -280,8 +297,19 @@ KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predic
                               GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
     FOR_EACH(i, count) {
-        const Outcome end = follow_one(CASTER_BASIC, rays[i], starts[i], max_iterations, predictive, cast_lost, pairs,
-                                       cullings, shapes, vertices, nodes, blocks, faces, normals);
+        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
+        GLOBAL const ShapeHeader* shape = shapes + pair->target;
+        const float culling = cullings[rays[i].pair];
+        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        const uint inside = is_inside(pair->bounds, ray.position);
+        Outcome end = follow_ray(&ray, inside, starts[i], max_iterations, predictive, cast_lost, culling, shape, faces,
+                                 blocks, normals);
+        if ((end.how & CAST) != 0u) {
+            const uint how = end.how;
+            end = cast_basic(&ray, starts[i] != AHEAD_ONLY ? inside : 0u, predictive, culling, shape, nodes, blocks,
+                             normals);
+            end.how |= how;
+        }
         hits[i] = end.hit;
         nexts[i] = end.next;
         hows[i] = end.how;

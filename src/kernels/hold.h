@@ -191,7 +191,7 @@ DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, 
 }
 
 // What is known of a ray from now on, where it had to be cast.
-DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, const Holder* holder,
+DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                            GLOBAL const TriangleBlock* RESTRICT blocks) {
     Held held;
@@ -204,7 +204,7 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, const Holde
     }
     const float met = own->back < own->front ? own->back : own->front;
     const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
-    if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
+    if (end >= UNBOUNDED) return held;
     const Tube tube = tube_of(ray, end, holder->radius);
     const Neighbours found = search_tube(&tube, holder->radius, shape, nodes, blocks);
     const float safe = found.second - holder->margin;
@@ -226,37 +226,58 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                       GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                       GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
                       GLOBAL uint* RESTRICT casts) {
-    FOR_EACH(i, count) {
-        if (i + 8u < count) {
-            PREFETCH(pairs, rays[i + 8u].pair);
-            PREFETCH(holders, rays[i + 8u].pair);
+    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
+        SourceRay source[RAYS_IN_GROUP];
+        Held held[RAYS_IN_GROUP];
+        Closest own[RAYS_IN_GROUP], met[RAYS_IN_GROUP];
+        GroupRay group[RAYS_IN_GROUP];
+        uint waiting[RAYS_IN_GROUP];
+        uint count_waiting = 0u;
+        for (uint r = 0u; r < few; ++r) {
+            const Ray ray = rays[i + r];
+            if (i + r + 8u < count) {
+                PREFETCH(pairs, rays[i + r + 8u].pair);
+                PREFETCH(holders, rays[i + r + 8u].pair);
+            }
+            const Holder holder = holders[ray.pair];
+            GLOBAL const OrderedPair* pair = pairs + ray.pair;
+            GLOBAL const ShapeHeader* shape = shapes + pair->target;
+            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            group[count_waiting] =
+                group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target, shape);
+            const uint at = holder.count != 0u ? find_held(before + holder.first, holder.count, ray.slot) : 0u;
+            held[r].safe = 0.0f;
+            held[r].limit = 0.0f;
+            held[r].triangle = NONE;
+            for (int k = 0; k < 3; ++k) held[r].position[k] = held[r].direction[k] = 0.0f;
+            if (at < holder.count) held[r] = before[holder.first + at];
+            own[r] = nothing_hit(source[r].reach, shape->tolerance);
+            uint known = 0u;
+            if (held[r].safe > 0.0f && moved_by(held + r, source + r) < held[r].safe)
+                known = hit_held(own + r, held + r, &group[count_waiting].frame, source[r].reach, shape, blocks);
+            waiting[count_waiting] = r;
+            count_waiting += 1u - known;
+            casts[i + r] = 1u - known;
         }
-        const Holder holder = holders[rays[i].pair];
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        GLOBAL const ShapeHeader* shape = shapes + pair->target;
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
-        const RayFrame frame = frame_ray(ray.position, ray.direction);
-        const uint at = find_held(before + holder.first, holder.count, rays[i].slot);
-        Held held;
-        held.safe = 0.0f;
-        held.limit = 0.0f;
-        if (at < holder.count) held = before[holder.first + at];
-        Closest own = nothing_hit(ray.reach, shape->tolerance);
-        uint known = 0u;
-        if (held.safe > 0.0f && moved_by(&held, &ray) < held.safe)
-            known = hit_held(&own, &held, &frame, ray.reach, shape, blocks);
-        if (known == 0u) {
-            own = find_closest(CASTER_BVH, 1u, &frame, ray.reach, shape, nodes, blocks);
-            const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
+        find_group(met, group, count_waiting, 1u, shapes, nodes, blocks);
+        for (uint w = 0u; w < count_waiting; ++w) {
+            const uint r = waiting[w];
+            own[r] = met[w];
+            const float waits = held[r].safe > 0.0f ? 0.0f : held[r].limit - 1.0f;
             if (waits > 0.0f)
-                held.limit = waits;
+                held[r].limit = waits;
+            else if (holders[rays[i + r].pair].radius > 0.0f)
+                held[r] =
+                    seek_tube(source + r, own + r, holders + rays[i + r].pair, shapes + group[w].target, nodes, blocks);
             else
-                held = seek_tube(&ray, &own, &holder, shape, nodes, blocks);
-            held.slot = rays[i].slot;
+                held[r].safe = held[r].limit = 0.0f;
+            held[r].slot = rays[i + r].slot;
         }
-        casts[i] = 1u - known;
-        after[i] = held;
-        hits[i] = decide(CASTER_BVH, &ray, &own, shape, nodes, blocks, normals);
+        for (uint r = 0u; r < few; ++r) {
+            GLOBAL const ShapeHeader* shape = shapes + pairs[rays[i + r].pair].target;
+            after[i + r] = held[r];
+            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shape, nodes, blocks, normals);
+        }
     }
 }
 // NOLINTEND(modernize-use-using)

@@ -5,6 +5,8 @@
 
 #include "kernels/traverse.h"
 
+#include "kernels/traverse_group.h"
+
 #include "kernels/vertex_lanes.h"
 
 #include "kernels/clearance.h"

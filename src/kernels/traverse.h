@@ -25,7 +25,7 @@ DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, GLOBAL const Triang
 // All rays against the same shape. Lanes let through are set aside without a branch, since a wrong guess would throw
 // away the tests already begun behind it; each ray still takes them in their order.
 DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count,
-                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+                                GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
     for (uint first = 0u; first < shape->triangle_block_count; first += BLOCKS_AHEAD) {
         GLOBAL const TriangleBlock* RESTRICT ahead = blocks + shape->triangle_block_first + first;
         const uint left = shape->triangle_block_count - first;
@@ -53,7 +53,8 @@ DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray
 // A ray and its opposite in one pass (paper section 5.3): the sixteen tests ask where the line passes, whichever way it
 // runs, so the second ray costs no more than its close looks.
 DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
-                                GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+                                     GLOBAL const ShapeHeader* RESTRICT shape,
+                                     GLOBAL const TriangleBlock* RESTRICT blocks) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
         GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + b;
         const uint lanes = hit_block(closest, ray, block, shape->tolerance, false);
@@ -90,7 +91,7 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
 // Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
 DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
-                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+                                 GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
     ulong trail = 0u;

@@ -22,31 +22,33 @@ typedef struct {
     float limit;
 } Closest;
 
-DEVICE float safe_inverse(float d) {
-    const float huge = 1.0e20f;
-    return magnitude_of(d) < 1.0e-20f ? (d < 0.0f ? -huge : huge) : 1.0f / d;
-}
-
+// Nothing here branches: where a ray points is as good as random, and a wrong guess costs more than all of it.
 DEVICE RayFrame frame_ray(const float* p, const float* d) {
     RayFrame ray;
+    const float tiny = 1.0e-20f;
     const float ax = magnitude_of(d[0]), ay = magnitude_of(d[1]), az = magnitude_of(d[2]);
-    const uint z = ax > ay ? (ax > az ? 0u : 2u) : (ay > az ? 1u : 2u);
-    uint x = z == 2u ? 0u : z + 1u;
-    uint y = x == 2u ? 0u : x + 1u;
-    if (d[z] < 0.0f) { // keeps the winding
-        const uint swap = x;
-        x = y;
-        y = swap;
-    }
+    const float larger = ax > ay ? ax : ay;
+    const uint z = larger > az ? (uint)(ax <= ay) : 2u;
+    const uint next = (z + 1u) & (0u - (uint)(z != 2u)), last = 3u - z - next;
+    const uint swap = (next ^ last) & (0u - (uint)(d[z] < 0.0f)); // keeps the winding
+    const uint x = next ^ swap, y = last ^ swap;
     ray.axis[0] = x;
     ray.axis[1] = y;
     ray.axis[2] = z;
+    float safe[4];
+    for (int i = 0; i < 3; ++i) safe[i] = d[i];
+    safe[3] = 1.0f;
+    FOR_LANES(k, 4) {
+        const float least = safe[k] < 0.0f ? -tiny : tiny;
+        safe[k] = 1.0f / (magnitude_of(safe[k]) < tiny ? least : safe[k]);
+    }
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
-        ray.inverse[i] = safe_inverse(d[i]);
-        ray.near_plane[i] = ray.inverse[i] < 0.0f ? 3u + (uint)i : (uint)i;
-        ray.far_plane[i] = ray.inverse[i] < 0.0f ? (uint)i : 3u + (uint)i;
+        ray.inverse[i] = safe[i];
+        const uint down = (uint)(safe[i] < 0.0f);
+        ray.near_plane[i] = (uint)i + 3u * down;
+        ray.far_plane[i] = (uint)i + 3u * (1u - down);
     }
     ray.shear[2] = ray.inverse[z];
     ray.shear[0] = d[x] * ray.inverse[z];

@@ -57,7 +57,8 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             }
             GLOBAL const VertexBlock* RESTRICT block = vertices + watches[i].vertex_block;
             const InsideLanes held = inside_lanes(pair, block);
-            if (own <= segment.now) {
+            const bool ask = own <= segment.now;
+            if (ask) {
                 SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
                 int unsafe[VERTEX_LANES];
                 FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
@@ -76,7 +77,9 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             if (lanes != 0u) {
                 uint cast = lanes & pack_sixteen(held.inside);
                 look.inside += bit_count(cast);
-                if (cast != 0u && target->grid_size[0] != 0u) cast &= ~outside_lanes(&held, target, outside_cells);
+                // Where the balls were asked just now, the bits know no more.
+                if (cast != 0u && !ask && target->grid_size[0] != 0u)
+                    cast &= ~outside_lanes(&held, target, outside_cells);
                 ray_count += bit_count(cast);
                 watches[i].cast = cast;
                 own = AWAKE;

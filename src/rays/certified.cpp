@@ -39,8 +39,7 @@ constexpr double slow = 0.25;
 // How wide a tube is sought around a ray: other triangles are about this near, so that a wider one only takes longer to
 // find.
 double tube_radius(double size, const PlacedBody& target) {
-    const ShapeData& shape = target.shape->data();
-    return std::min(size / 128, shape.diagonal / (4 * std::sqrt(double(target.shape->triangles().size()))));
+    return std::min(size / 128, target.shape->data().grain / 4);
 }
 
 // Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
@@ -248,7 +247,9 @@ void CertifiedRays::find_holders() {
     for (std::size_t s = 0; s < host_segments_.size(); ++s) {
         Watched& own = watched(active_[host_segments_[s].pair]);
         if (own.held_count == 0) own.held_first = ray;
-        own.held_count += host_looks_[s].rays;
+        // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
+        const kernels::Holder& holder = host_holders_[host_segments_[s].pair];
+        if (holder.count > 0 || holder.radius > 0) own.held_count += host_looks_[s].rays;
         ray += host_looks_[s].rays;
     }
 }

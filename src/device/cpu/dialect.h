@@ -26,9 +26,10 @@ struct Range {
 #define RANGE [[maybe_unused]] Range range,
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4
-#define FOR_EACH_FEW(i, few, n)                                                                                        \
+#define RAYS_IN_GROUP 16
+#define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
-         i < i##_end && (few = i##_end - i < RAYS_AT_ONCE ? i##_end - i : RAYS_AT_ONCE) != 0; i += few)
+         i < i##_end && (few = i##_end - i < (most) ? i##_end - i : (most)) != 0; i += few)
 #ifdef __clang__
 #define FOR_LANES(k, n) _Pragma("clang loop vectorize(assume_safety)") for (int k = 0; k < (n); ++k)
 #else

@@ -13,7 +13,8 @@ typedef unsigned long long ulong;
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
 #define RAYS_AT_ONCE 1
-#define FOR_EACH_FEW(i, few, n)                                                                                        \
+#define RAYS_IN_GROUP 1
+#define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u; i < (n); i += gridDim.x * blockDim.x)
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
