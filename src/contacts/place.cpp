@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
+#include "mesh/vector.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Contact place(Direction direction, std::span<const PlacedBody> bodies, const Pai
     contact.vertex_body = from_a ? VertexBody::a : VertexBody::b;
     contact.vertex = shape.mesh.vertex_index[local.vertex];
     contact.triangle = target.shape->triangle_index()[local.triangle];
-    contact.point = transform_point(source.pose, shape.mesh.vertices[local.vertex]);
+    contact.point = rotate(source.pose, shape.mesh.vertices[local.vertex]) + source.pose.translation;
     contact.ray_length = local.distance;
     Vec3 out; // in which the source leaves the target
     if (direction == Direction::reprojected) {
@@ -47,21 +48,26 @@ Contact place(Direction direction, std::span<const PlacedBody> bodies, const Pai
 } // namespace
 
 void place_contacts(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const Pair> pairs, std::span<kernels::LocalContact> local,
+                    std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
                     std::vector<Contact>& contacts) {
-    // The rays of a pair lie together, but in the order of its clusters.
-    const auto by_vertex = [](const kernels::LocalContact& a, const kernels::LocalContact& b) {
-        return a.vertex < b.vertex;
-    };
-    for (auto begin = local.begin(); begin != local.end();) {
-        const auto end = std::find_if(begin, local.end(), [&](const auto& c) { return c.pair != begin->pair; });
-        std::sort(begin, end, by_vertex);
-        begin = end;
-    }
     contacts.resize(local.size());
-    executor.run(static_cast<std::uint32_t>(local.size()), 512, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i)
-            contacts[i] = place(direction, bodies, pairs[local[i].pair / 2], local[i]);
+    const auto begins_pair = [&](std::uint32_t i) {
+        return i == 0 || i == local.size() || local[i].pair != local[i - 1].pair;
+    };
+    // The rays of a pair lie together, but in the order of its clusters. A slice takes the pairs that begin in it.
+    executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        std::vector<std::uint64_t> order; // vertex, place
+        while (!begins_pair(begin)) ++begin;
+        while (begin < end) {
+            const Pair& pair = pairs[local[begin].pair / 2];
+            order.clear();
+            std::uint32_t next = begin;
+            do order.push_back(std::uint64_t{local[next].vertex} << 32 | next);
+            while (!begins_pair(++next));
+            std::sort(order.begin(), order.end());
+            for (const std::uint64_t key : order)
+                contacts[begin++] = place(direction, bodies, pair, local[key & 0xffffffff]);
+        }
     });
 }
 

@@ -9,7 +9,7 @@ namespace raycontact {
 
 /// Contacts of the target's frame to world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points in double.
 void place_contacts(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const Pair> pairs, std::span<kernels::LocalContact> local,
+                    std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
                     std::vector<Contact>& contacts);
 
 } // namespace raycontact
