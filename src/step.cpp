@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step.h"
 
+#include "pairs/rounding.h"
 #include "rays/standard.h"
 
 #include <algorithm>
@@ -47,7 +48,30 @@ void NarrowPhase::cast_whole(std::vector<kernels::LocalContact>& contacts, StepS
     device_pairs_.write(on, ordered_);
     const bool use_grid = settings_.skip_outside && settings_.caster != Caster::basic;
     queue_.fill(on, shapes_.arrays(), device_pairs_, use_grid);
-    cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, use_grid);
+    cast_queue(use_grid, contacts, stats);
+}
+
+void NarrowPhase::cast_near(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                            std::span<const std::uint32_t> which, std::vector<kernels::LocalContact>& contacts,
+                            StepStats& stats) {
+    Device& on = device();
+    order_pairs(executor(), bodies, pairs, which, ordered_);
+    margins_.resize(which.size());
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        const Pair& pair = pairs[which[i] / 2];
+        const bool from_a = which[i] % 2 == 0;
+        margins_[i] = static_cast<float>(
+            rounding_margin(bodies[from_a ? pair.first : pair.second], bodies[from_a ? pair.second : pair.first]));
+    }
+    device_pairs_.write(on, ordered_);
+    device_margins_.write(on, margins_);
+    queue_.fill_near(on, shapes_.arrays(), device_pairs_, device_margins_);
+    cast_queue(true, contacts, stats);
+}
+
+void NarrowPhase::cast_queue(bool near, std::vector<kernels::LocalContact>& contacts, StepStats& stats) {
+    Device& on = device();
+    cast_standard(on, settings_.caster, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, near);
     stats.side_tests += gather_.run(on, shapes_.arrays(), device_pairs_, queue_.rays(), hits_, contacts);
     stats.vertices += queue_.vertices_tested();
     stats.rays += queue_.vertices_inside();
@@ -77,8 +101,7 @@ void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const 
     stats.pair_bytes = certified_.bytes();
     if (certified_.fast().empty()) return;
 
-    order_pairs(executor(), bodies, pairs, certified_.fast(), ordered_);
-    cast_whole(other_, stats);
+    cast_near(bodies, pairs, certified_.fast(), other_, stats);
     rename(other_, certified_.fast());
     const auto kept = local_.insert(local_.end(), other_.begin(), other_.end());
     merge(kept);

@@ -36,6 +36,11 @@ private:
     void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     /// `standard` for ordered_.
     void cast_whole(std::vector<kernels::LocalContact>& contacts, StepStats& stats);
+    /// The same contacts, without looking at blocks that are clear of the other body.
+    void cast_near(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                   std::span<const std::uint32_t> which, std::vector<kernels::LocalContact>& contacts,
+                   StepStats& stats);
+    void cast_queue(bool near, std::vector<kernels::LocalContact>& contacts, StepStats& stats);
     static void rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered);
     void merge(std::vector<kernels::LocalContact>::iterator second);
     void forget();
@@ -44,7 +49,9 @@ private:
     OpenDevice opened_;
     ShapeStore shapes_;
     std::vector<kernels::OrderedPair> ordered_;
+    std::vector<float> margins_; ///< of ordered_
     Array<kernels::OrderedPair> device_pairs_;
+    Array<float> device_margins_;
     RayQueue queue_;
     Motion motion_;
     CertifiedRays certified_;

@@ -22,11 +22,13 @@ constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followe
 // looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
 // Counts, not clocks: equal input, equal result.
 double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                    double follows) {
+                                    double follows, bool predictive) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = 0.015 * size;
-    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
-    if (speed > most) return 0.2 * least;
+    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead. So is a pair
+    // that moves on to other triangles in a few steps, where seeking ahead costs more than it saves.
+    const double grain = std::min(a.shape->data().grain, b.shape->data().grain);
+    if (speed > (predictive ? std::min(most, 0.25 * grain) : most)) return 0.2 * least;
     double threshold = 4 * speed;
     if (state.threshold >= least) {
         const double looks = cost_of_look + state.look_cost;
@@ -56,9 +58,10 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
     state.reference = now;
     const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
     state.looked = step_;
-    state.threshold = left = settings.displacement_threshold
-                                 ? *settings.displacement_threshold
-                                 : next_threshold(a, b, state, motion.pair_speed(pair), follows);
+    state.threshold = left =
+        settings.displacement_threshold
+            ? *settings.displacement_threshold
+            : next_threshold(a, b, state, motion.pair_speed(pair), follows, settings.method == Method::predictive);
     state.clear = state.culling = 0;
     if (settings.method == Method::predictive)
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;

@@ -54,7 +54,7 @@ private:
         Kept kept[2];
     };
     static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                 double follows);
+                                 double follows, bool predictive);
     Kept& kept(std::uint32_t ordered) { return table_.hot(ordered / 2).kept[ordered % 2]; }
 
     PairTable<PairState, Hot> table_;

@@ -6,6 +6,17 @@ namespace raycontact {
 void RayQueue::fill(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
                     bool use_grid) {
     finder_.find(device, shapes, pairs);
+    queue(device, shapes, pairs, use_grid);
+}
+
+void RayQueue::fill_near(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
+                         const Array<float>& margins) {
+    finder_.find_near(device, shapes, pairs, margins);
+    queue(device, shapes, pairs, true);
+}
+
+void RayQueue::queue(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
+                     bool use_grid) {
     Array<kernels::Cluster>& blocks = finder_.blocks();
     counts_.resize(device, blocks.size());
     inside_.resize(device, blocks.size());

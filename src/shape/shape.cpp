@@ -47,6 +47,7 @@ void round_vertices(ShapeData& shape) {
         high = {std::max(high.x, double(p.x)), std::max(high.y, double(p.y)), std::max(high.z, double(p.z))};
     }
     shape.diagonal = length(high - low);
+    shape.grain = shape.diagonal / std::sqrt(double(shape.mesh.triangles.size()));
     shape.low = {static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
     shape.high = {static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
     shape.box_min = shape.centre + low;

@@ -24,6 +24,7 @@ struct ShapeData {
     Point3f low, high;     ///< the same box about centre, exactly that of points
     double diagonal = 0;   ///< of the box, metres
     double radius = 0;
+    double grain = 0;   ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
     double reach = 0;   ///< largest distance of a vertex from centre, metres
     float exit_max = 0; ///< largest finite exit distance, metres
 
@@ -33,8 +34,8 @@ struct ShapeData {
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
-    std::vector<kernels::uint> outside_cells;           ///< a bit for each cell of the grid
-    std::vector<kernels::uint> clearances;              ///< a ball for each cell of the clearance grid
+    std::vector<kernels::uint> outside_cells;   ///< a bit for each cell of the grid
+    std::vector<kernels::uint> clearances;      ///< a ball for each cell of the clearance grid
     kernels::ShapeHeader header{};
 };
 
