@@ -16,11 +16,8 @@ Vec3 rotate(const Pose& pose, const Vec3& v) {
             (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
 }
 
-Contact place(Direction direction, std::span<const PlacedBody> bodies, const Pair& pair,
+Contact place(Direction direction, const PlacedBody& source, const PlacedBody& target, const Pair& pair, bool from_a,
               const kernels::LocalContact& local) {
-    const bool from_a = local.pair % 2 == 0;
-    const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-    const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
     const ShapeData& shape = source.shape->data();
     Contact contact;
     contact.body_a = pair.first;
@@ -62,11 +59,21 @@ void place_contacts(Executor& executor, Direction direction, std::span<const Pla
             const Pair& pair = pairs[local[begin].pair / 2];
             order.clear();
             std::uint32_t next = begin;
-            do order.push_back(std::uint64_t{local[next].vertex} << 32 | next);
-            while (!begins_pair(++next));
+            const bool from_a = local[begin].pair % 2 == 0;
+            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            const PreparedMesh& mesh = source.shape->data().mesh;
+            const std::uint32_t* const triangles = target.shape->triangle_index().data();
+            do {
+                const kernels::LocalContact& contact = local[next];
+                __builtin_prefetch(&mesh.vertices[contact.vertex]); // wanted after the sort
+                __builtin_prefetch(&mesh.vertex_index[contact.vertex]);
+                __builtin_prefetch(triangles + contact.triangle);
+                order.push_back(std::uint64_t{contact.vertex} << 32 | next);
+            } while (!begins_pair(++next));
             std::sort(order.begin(), order.end());
             for (const std::uint64_t key : order)
-                contacts[begin++] = place(direction, bodies, pair, local[key & 0xffffffff]);
+                contacts[begin++] = place(direction, source, target, pair, from_a, local[key & 0xffffffff]);
         }
     });
 }

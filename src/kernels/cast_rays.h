@@ -63,34 +63,25 @@ DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame*
     return traverse(caster, frame, reach, shape, nodes, blocks);
 }
 
-DEVICE GroupRay group_ray(const RayFrame frame, float reach, uint target, GLOBAL const ShapeHeader* RESTRICT shape) {
-    GroupRay ray;
-    const float probe = PROBE_TOLERANCES * shape->tolerance;
-    ray.frame = frame;
-    ray.reach = reach;
-    ray.length = probe < reach ? probe : reach;
-    ray.tolerance = shape->tolerance;
-    ray.target = target;
-    ray.node_first = shape->node_first;
-    ray.block_first = shape->triangle_block_first;
-    return ray;
+DEVICE void add_ray(Group* group, uint r, const SourceRay* ray, float reach, uint target,
+                    GLOBAL const ShapeHeader* RESTRICT shape) {
+    set_ray(group, r, ray->position, ray->direction, reach, PROBE_TOLERANCES * shape->tolerance, target, shape);
 }
 
-// find_closest() for several rays, by the BVH.
-DEVICE void find_group(Closest* own, const GroupRay* rays, uint ray_count, uint short_first,
+// find_closest() for some rays of a framed group, by the BVH.
+DEVICE void find_group(Closest* own, const Group* group, const uint* which, uint ray_count, uint short_first,
                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                        GLOBAL const TriangleBlock* RESTRICT blocks) {
     const bool grouped = RAYS_IN_GROUP > 1 && short_first != 0u;
-    const uint alone = grouped ? traverse_group(own, rays, ray_count, nodes, blocks) : 0u;
-    for (uint r = 0u; r < ray_count; ++r) {
-        GLOBAL const ShapeHeader* shape = shapes + rays[r].target;
-        if (!grouped) {
-            own[r] = find_closest(CASTER_BVH, short_first, &rays[r].frame, rays[r].reach, shape, nodes, blocks);
-            continue;
-        }
-        const uint found = (uint)(own[r].back <= rays[r].length) | (uint)(own[r].front <= rays[r].length);
-        if ((alone >> r & 1u) != 0u || (found == 0u && rays[r].length < rays[r].reach))
-            own[r] = traverse_bvh(&rays[r].frame, rays[r].reach, shape, nodes, blocks);
+    const uint alone = grouped ? traverse_group(own, group, which, ray_count, nodes, blocks) : 0u;
+    for (uint i = 0u; i < ray_count; ++i) {
+        const uint r = which[i];
+        GLOBAL const ShapeHeader* shape = shapes + group->target[r];
+        const float length = group->length[r], reach = group->reach[r];
+        const uint found = grouped ? (uint)(own[r].back <= length) | (uint)(own[r].front <= length) : 0u;
+        if (grouped && ((alone >> r) & 1u) == 0u && (found != 0u || length >= reach)) continue;
+        const RayFrame frame = frame_of(group, r);
+        own[r] = find_closest(CASTER_BVH, grouped ? 0u : short_first, &frame, reach, shape, nodes, blocks);
     }
 }
 
@@ -139,18 +130,20 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
                           GLOBAL Hit* RESTRICT hits) {
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         SourceRay source[RAYS_IN_GROUP];
-        GroupRay group[RAYS_IN_GROUP];
+        Group group;
         Closest own[RAYS_IN_GROUP];
+        uint all[RAYS_IN_GROUP];
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
             source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
-            group[r] = group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target,
-                                 shapes + pair->target);
+            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
+            all[r] = r;
         }
-        find_group(own, group, few, short_first, shapes, nodes, blocks);
+        frame_group(&group, few, false);
+        find_group(own, &group, all, few, short_first, shapes, nodes, blocks);
         for (uint r = 0u; r < few; ++r)
-            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group[r].target, nodes, blocks, normals);
+            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group.target[r], nodes, blocks, normals);
     }
 }
 

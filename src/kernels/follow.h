@@ -248,7 +248,7 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         SourceRay source[RAYS_IN_GROUP];
         Outcome ends[RAYS_IN_GROUP];
-        GroupRay group[RAYS_IN_GROUP];
+        Group group;
         Closest met[RAYS_IN_GROUP];
         uint casting[RAYS_IN_GROUP];
         uint casts = 0u;
@@ -256,31 +256,30 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
             source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
             const uint inside = is_inside(pair->bounds, source[r].position);
             ends[r] = follow_ray(source + r, inside, starts[i + r], max_iterations, predictive, cast_lost,
                                  cullings[ray.pair], shapes + pair->target, faces, blocks, normals);
-            if ((ends[r].how & CAST) == 0u || inside == 0u || starts[i + r] == AHEAD_ONLY) continue;
-            group[casts] = group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target,
-                                     shapes + pair->target);
             casting[casts] = r;
-            casts += 1u;
+            casts += (uint)((ends[r].how & CAST) != 0u) & inside & (uint)(starts[i + r] != AHEAD_ONLY);
         }
-        find_group(met, group, casts, 1u, shapes, nodes, blocks);
+        if (casts != 0u) frame_group(&group, few, false);
+        find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
         for (uint c = 0u; c < casts; ++c) {
             const uint r = casting[c];
-            ends[r].hit = decide(CASTER_BVH, source + r, met + c, shapes + group[c].target, nodes, blocks, normals);
+            ends[r].hit = decide(CASTER_BVH, source + r, met + r, shapes + group.target[r], nodes, blocks, normals);
             ends[r].next = ends[r].hit.triangle;
         }
         casts = 0u;
         for (uint r = 0u; r < few; ++r) {
-            if (predictive == 0u || (ends[r].how & CAST) == 0u || ends[r].next != NONE) continue;
-            const uint target = pairs[rays[i + r].pair].target;
-            group[casts] = group_ray(opposite_frame(source + r), cullings[rays[i + r].pair], target, shapes + target);
+            const float culling = cullings[rays[i + r].pair];
+            add_ray(&group, r, source + r, culling, group.target[r], shapes + group.target[r]);
             casting[casts] = r;
-            casts += 1u;
+            casts += (uint)((ends[r].how & CAST) != 0u) & (uint)(ends[r].next == NONE) & (uint)(predictive != 0u);
         }
-        find_group(met, group, casts, 1u, shapes, nodes, blocks);
-        for (uint c = 0u; c < casts; ++c) ends[casting[c]].next = predicted(met + c, group[c].reach);
+        if (casts != 0u) frame_group(&group, few, true);
+        find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
+        for (uint c = 0u; c < casts; ++c) ends[casting[c]].next = predicted(met + casting[c], group.reach[casting[c]]);
         for (uint r = 0u; r < few; ++r) {
             hits[i + r] = ends[r].hit;
             nexts[i + r] = ends[r].next;

@@ -168,6 +168,26 @@ DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot) {
     return low < count && held[low].slot == slot ? low : count;
 }
 
+DEVICE Held nothing_held(void) {
+    Held held;
+    held.slot = NONE;
+    held.triangle = NONE;
+    held.safe = 0.0f;
+    held.limit = 0.0f;
+    for (int i = 0; i < 3; ++i) held.position[i] = held.direction[i] = 0.0f;
+    return held;
+}
+
+// Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
+DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
+    return holder->count == 0u && holder->radius <= 0.0f;
+}
+
+DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot) {
+    const uint at = find_held(before + holder->first, holder->count, slot);
+    return at < holder->count ? before[holder->first + at] : nothing_held();
+}
+
 // How far a point of the ray, up to its limit, has moved at most: as far as either end.
 DEVICE float moved_by(const Held* held, const SourceRay* ray) {
     float start = 0.0f, end = 0.0f;
@@ -194,17 +214,14 @@ DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, 
 DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                            GLOBAL const TriangleBlock* RESTRICT blocks) {
-    Held held;
-    held.safe = 0.0f;
-    held.limit = 0.0f;
-    held.triangle = NONE;
+    Held held = nothing_held();
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
         held.direction[i] = ray->direction[i];
     }
     const float met = own->back < own->front ? own->back : own->front;
     const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
-    if (end >= UNBOUNDED) return held;
+    if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
     const Tube tube = tube_of(ray, end, holder->radius);
     const Neighbours found = search_tube(&tube, holder->radius, shape, nodes, blocks);
     const float safe = found.second - holder->margin;
@@ -218,8 +235,8 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     return held;
 }
 
-// The hits of cast_rays_bvh, bit for bit. before, after: rays held in the last step and now; casts: 1 for each ray cast
-// in full.
+// The hits of cast_rays_bvh, bit for bit. before, after: rays held in the last step and now, those of idle pairs left
+// as they are; casts: 1 for each ray cast in full.
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
@@ -228,56 +245,55 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                       GLOBAL uint* RESTRICT casts) {
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         SourceRay source[RAYS_IN_GROUP];
-        Held held[RAYS_IN_GROUP];
-        Closest own[RAYS_IN_GROUP], met[RAYS_IN_GROUP];
-        GroupRay group[RAYS_IN_GROUP];
+        Group group;
+        Closest own[RAYS_IN_GROUP];
         uint waiting[RAYS_IN_GROUP];
-        uint count_waiting = 0u;
+        uint waiting_count = 0u;
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             if (i + r + 8u < count) {
                 PREFETCH(pairs, rays[i + r + 8u].pair);
                 PREFETCH(holders, rays[i + r + 8u].pair);
             }
-            const Holder holder = holders[ray.pair];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            GLOBAL const ShapeHeader* shape = shapes + pair->target;
             source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
-            group[count_waiting] =
-                group_ray(frame_ray(source[r].position, source[r].direction), source[r].reach, pair->target, shape);
-            const uint at = holder.count != 0u ? find_held(before + holder.first, holder.count, ray.slot) : 0u;
-            held[r].safe = 0.0f;
-            held[r].limit = 0.0f;
-            held[r].triangle = NONE;
-            for (int k = 0; k < 3; ++k) held[r].position[k] = held[r].direction[k] = 0.0f;
-            if (at < holder.count) held[r] = before[holder.first + at];
-            own[r] = nothing_hit(source[r].reach, shape->tolerance);
-            uint known = 0u;
-            if (held[r].safe > 0.0f && moved_by(held + r, source + r) < held[r].safe)
-                known = hit_held(own + r, held + r, &group[count_waiting].frame, source[r].reach, shape, blocks);
-            waiting[count_waiting] = r;
-            count_waiting += 1u - known;
-            casts[i + r] = 1u - known;
+            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
         }
-        find_group(met, group, count_waiting, 1u, shapes, nodes, blocks);
-        for (uint w = 0u; w < count_waiting; ++w) {
-            const uint r = waiting[w];
-            own[r] = met[w];
-            const float waits = held[r].safe > 0.0f ? 0.0f : held[r].limit - 1.0f;
-            if (waits > 0.0f)
-                held[r].limit = waits;
-            else if (holders[rays[i + r].pair].radius > 0.0f)
-                held[r] =
-                    seek_tube(source + r, own + r, holders + rays[i + r].pair, shapes + group[w].target, nodes, blocks);
-            else
-                held[r].safe = held[r].limit = 0.0f;
-            held[r].slot = rays[i + r].slot;
-        }
+        frame_group(&group, few, false);
         for (uint r = 0u; r < few; ++r) {
-            GLOBAL const ShapeHeader* shape = shapes + pairs[rays[i + r].pair].target;
-            after[i + r] = held[r];
-            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shape, nodes, blocks, normals);
+            GLOBAL const ShapeHeader* shape = shapes + group.target[r];
+            GLOBAL const Holder* holder = holders + rays[i + r].pair;
+            own[r] = nothing_hit(source[r].reach, shape->tolerance);
+            waiting[waiting_count] = r;
+            casts[i + r] = 1u;
+            if (is_idle(holder)) {
+                waiting_count += 1u;
+                continue;
+            }
+            const Held held = held_before(holder, before, rays[i + r].slot);
+            uint known = 0u;
+            if (held.safe > 0.0f && moved_by(&held, source + r) < held.safe) {
+                const RayFrame frame = frame_of(&group, r);
+                known = hit_held(own + r, &held, &frame, source[r].reach, shape, blocks);
+            }
+            after[i + r] = held;
+            casts[i + r] = 1u - known;
+            waiting_count += 1u - known;
         }
+        find_group(own, &group, waiting, waiting_count, 1u, shapes, nodes, blocks);
+        for (uint w = 0u; w < waiting_count; ++w) {
+            const uint r = waiting[w];
+            GLOBAL const Holder* holder = holders + rays[i + r].pair;
+            if (is_idle(holder)) continue;
+            Held held = after[i + r];
+            const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
+            held.limit = waits;
+            if (!(waits > 0.0f)) held = seek_tube(source + r, own + r, holder, shapes + group.target[r], nodes, blocks);
+            held.slot = rays[i + r].slot;
+            after[i + r] = held;
+        }
+        for (uint r = 0u; r < few; ++r)
+            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group.target[r], nodes, blocks, normals);
     }
 }
 // NOLINTEND(modernize-use-using)

@@ -22,10 +22,15 @@ typedef struct {
     float limit;
 } Closest;
 
-// Nothing here branches: where a ray points is as good as random, and a wrong guess costs more than all of it.
+// Huge instead of infinite, with the sign of d.
+DEVICE float safe_inverse(float d) {
+    const float tiny = 1.0e-20f, least = d < 0.0f ? -tiny : tiny;
+    return 1.0f / (magnitude_of(d) < tiny ? least : d);
+}
+
+// Without a branch where it can be: where a ray points is as good as random, and a wrong guess costs more than it all.
 DEVICE RayFrame frame_ray(const float* p, const float* d) {
     RayFrame ray;
-    const float tiny = 1.0e-20f;
     const float ax = magnitude_of(d[0]), ay = magnitude_of(d[1]), az = magnitude_of(d[2]);
     const float larger = ax > ay ? ax : ay;
     const uint z = larger > az ? (uint)(ax <= ay) : 2u;
@@ -35,18 +40,11 @@ DEVICE RayFrame frame_ray(const float* p, const float* d) {
     ray.axis[0] = x;
     ray.axis[1] = y;
     ray.axis[2] = z;
-    float safe[4];
-    for (int i = 0; i < 3; ++i) safe[i] = d[i];
-    safe[3] = 1.0f;
-    FOR_LANES(k, 4) {
-        const float least = safe[k] < 0.0f ? -tiny : tiny;
-        safe[k] = 1.0f / (magnitude_of(safe[k]) < tiny ? least : safe[k]);
-    }
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
-        ray.inverse[i] = safe[i];
-        const uint down = (uint)(safe[i] < 0.0f);
+        ray.inverse[i] = safe_inverse(d[i]);
+        const uint down = (uint)(ray.inverse[i] < 0.0f);
         ray.near_plane[i] = (uint)i + 3u * down;
         ray.far_plane[i] = (uint)i + 3u * (1u - down);
     }

@@ -59,14 +59,18 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             const InsideLanes held = inside_lanes(pair, block);
             const bool ask = own <= segment.now;
             if (ask) {
-                SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
+                const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
                 int unsafe[VERTEX_LANES];
-                FOR_LANES(k, VERTEX_LANES) unsafe[k] = -(int)!(found.safe[k] > segment.margin);
+                float others[VERTEX_LANES];
+                FOR_LANES(k, VERTEX_LANES) {
+                    const uint safe = (uint)(found.safe[k] > segment.margin);
+                    unsafe[k] = (int)safe - 1;
+                    others[k] = safe != 0u ? found.safe[k] : UNBOUNDED;
+                }
                 lanes = pack_sixteen(unsafe);
                 watches[i].lanes = lanes;
                 look.blocks += 1u;
-                for (uint left = lanes; left != 0u; left &= left - 1u) found.safe[lowest_bit(left)] = UNBOUNDED;
-                float least = least_of_sixteen(found.safe) - segment.margin;
+                float least = least_of_sixteen(others) - segment.margin;
                 // Vertices that cast are asked again after a while whether they still must.
                 const float again = REFRESH_TOLERANCES * target->tolerance;
                 if (lanes != 0u && least > again) least = again;
