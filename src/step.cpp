@@ -134,7 +134,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
         forget(); // what a step that failed half-way kept is worth nothing
         throw;
     }
-    place_contacts(executor(), settings_.direction, bodies, pairs, local_, contacts);
+    placer_.run(executor(), settings_.direction, bodies, pairs, local_, contacts);
     changes_.mark(contacts);
 
     stats.pairs = pairs.size();

@@ -58,6 +58,7 @@ private:
     CoherentRays coherent_;
     Array<kernels::Hit> hits_;
     Gather gather_;
+    Placer placer_;
     std::vector<kernels::LocalContact> local_, other_;
     Changes changes_;
 };

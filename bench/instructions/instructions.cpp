@@ -65,8 +65,7 @@ private:
     void contacts() {
         small_.find_contacts();
         local_ = small_.host_contacts();
-        rc::place_contacts(executor_, rc::Direction::reprojected, small_batch_.bodies, small_batch_.pairs, local_,
-                           placed_);
+        placer_.run(executor_, rc::Direction::reprojected, small_batch_.bodies, small_batch_.pairs, local_, placed_);
     }
     void order_pairs() { rc::order_pairs(executor_, small_batch_.bodies, small_batch_.pairs, ordered_); }
     void sweep() {
@@ -80,6 +79,7 @@ private:
     rb::Pipeline small_, large_;
     rb::Coherence kept_;
     std::vector<rk::LocalContact> local_;
+    rc::Placer placer_;
     std::vector<rc::Contact> placed_;
     std::vector<rk::OrderedPair> ordered_;
     std::vector<rc::WorldBox> boxes_ = rb::make_boxes(4096), sorted_;

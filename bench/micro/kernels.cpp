@@ -132,12 +132,10 @@ void add_host(rc::Executor& executor, const rb::Batch& batch, const std::vector<
         [&executor, &batch, ordered = batch.ordered]() mutable {
             rc::order_pairs(executor, batch.bodies, batch.pairs, ordered);
         });
-    // The copy belongs to the work: the contacts are sorted where they lie.
     add("place_contacts/" + batch.name,
-        {"contact", static_cast<double>(contacts.size()), 2 * sizeof(rk::LocalContact) + sizeof(rc::Contact)},
-        [&executor, &batch, contacts, local = contacts, placed = std::vector<rc::Contact>()]() mutable {
-            local = contacts;
-            rc::place_contacts(executor, rc::Direction::reprojected, batch.bodies, batch.pairs, local, placed);
+        {"contact", static_cast<double>(contacts.size()), sizeof(rk::LocalContact) + sizeof(rc::Contact)},
+        [&executor, &batch, contacts, placer = rc::Placer(), placed = std::vector<rc::Contact>()]() mutable {
+            placer.run(executor, rc::Direction::reprojected, batch.bodies, batch.pairs, contacts, placed);
         });
     const double triangles = static_cast<double>(batch.mesh.triangles.size());
     const double vertices = static_cast<double>(batch.mesh.vertices.size());

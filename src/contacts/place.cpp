@@ -44,36 +44,27 @@ Contact place(Direction direction, const PlacedBody& source, const PlacedBody& t
 
 } // namespace
 
-void place_contacts(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
-                    std::vector<Contact>& contacts) {
+void Placer::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
+                 std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
+                 std::vector<Contact>& contacts) {
     contacts.resize(local.size());
+    order_.resize(local.size());
     const auto begins_pair = [&](std::uint32_t i) {
         return i == 0 || i == local.size() || local[i].pair != local[i - 1].pair;
     };
     // The rays of a pair lie together, but in the order of its clusters. A slice takes the pairs that begin in it.
     executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        std::vector<std::uint64_t> order; // vertex, place
         while (!begins_pair(begin)) ++begin;
-        while (begin < end) {
+        for (std::uint32_t next = begin; begin < end; begin = next) {
+            do order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
+            while (!begins_pair(++next));
+            std::sort(order_.begin() + begin, order_.begin() + next);
             const Pair& pair = pairs[local[begin].pair / 2];
-            order.clear();
-            std::uint32_t next = begin;
             const bool from_a = local[begin].pair % 2 == 0;
             const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
             const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
-            const PreparedMesh& mesh = source.shape->data().mesh;
-            const std::uint32_t* const triangles = target.shape->triangle_index().data();
-            do {
-                const kernels::LocalContact& contact = local[next];
-                __builtin_prefetch(&mesh.vertices[contact.vertex]); // wanted after the sort
-                __builtin_prefetch(&mesh.vertex_index[contact.vertex]);
-                __builtin_prefetch(triangles + contact.triangle);
-                order.push_back(std::uint64_t{contact.vertex} << 32 | next);
-            } while (!begins_pair(++next));
-            std::sort(order.begin(), order.end());
-            for (const std::uint64_t key : order)
-                contacts[begin++] = place(direction, source, target, pair, from_a, local[key & 0xffffffff]);
+            for (std::uint32_t i = begin; i < next; ++i)
+                contacts[i] = place(direction, source, target, pair, from_a, local[order_[i] & 0xffffffff]);
         }
     });
 }

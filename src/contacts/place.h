@@ -8,8 +8,14 @@
 namespace raycontact {
 
 /// Contacts of the target's frame to world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points in double.
-void place_contacts(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
-                    std::vector<Contact>& contacts);
+class Placer {
+public:
+    /// local: those of a pair lie together, in the order of the pairs.
+    void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+             std::span<const kernels::LocalContact> local, std::vector<Contact>& contacts);
+
+private:
+    std::vector<std::uint64_t> order_; ///< of the local contacts: vertex, place
+};
 
 } // namespace raycontact

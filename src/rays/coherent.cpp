@@ -14,7 +14,7 @@ namespace raycontact {
 
 namespace {
 
-constexpr double cost_of_look = 12; ///< of a pair without rays, in rays followed
+constexpr double cost_of_look = 6; ///< of a pair without rays, in rays followed
 
 } // namespace
 
