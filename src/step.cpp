@@ -60,8 +60,11 @@ void NarrowPhase::cast_near(std::span<const PlacedBody> bodies, std::span<const 
     for (std::size_t i = 0; i < which.size(); ++i) {
         const Pair& pair = pairs[which[i] / 2];
         const bool from_a = which[i] % 2 == 0;
-        margins_[i] = static_cast<float>(
-            rounding_margin(bodies[from_a ? pair.first : pair.second], bodies[from_a ? pair.second : pair.first]));
+        const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+        const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+        // Of few blocks it is not worth asking which are near.
+        const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+        margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
     }
     device_pairs_.write(on, ordered_);
     device_margins_.write(on, margins_);

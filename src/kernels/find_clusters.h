@@ -227,8 +227,9 @@ KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
     write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
 }
 
-// The same without blocks that cannot be in contact before they have moved by horizons[p], metres. clears: of a pair
-// without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
+// The same without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0, of a source
+// of up to SMALL_BLOCKS: all of them. clears: of a pair without blocks, how far its vertices can move before one could
+// be in contact; may be less, also negative.
 KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
@@ -236,7 +237,10 @@ KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* REST
                                 GLOBAL ulong* RESTRICT small) {
     FOR_EACH(p, count) {
         float clear;
-        counts[p] = count_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], &clear, small);
+        const float horizon = horizons[p];
+        counts[p] = horizon < 0.0f
+                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, small)
+                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, small);
         clears[p] = clear;
     }
 }

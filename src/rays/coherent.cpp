@@ -14,7 +14,8 @@ namespace raycontact {
 
 namespace {
 
-constexpr double cost_of_look = 6; ///< of a pair without rays, in rays followed
+// Of a look at a pair without rays, in rays followed; `predictive` also casts for those.
+constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
 
 } // namespace
 
@@ -31,7 +32,7 @@ double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, co
     if (speed > (predictive ? std::min(most, 0.25 * grain) : most)) return 0.2 * least;
     double threshold = 4 * speed;
     if (state.threshold >= least) {
-        const double looks = cost_of_look + state.look_cost;
+        const double looks = cost_of_look[predictive ? 1 : 0] + state.look_cost;
         threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
     }
     return std::clamp(threshold, least, most);
