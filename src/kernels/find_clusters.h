@@ -82,19 +82,14 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     int near[VERTEX_LANES];
     float beyond[VERTEX_LANES];
-    const float enough = horizon + 8.0f * grid.cell;
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
         const float hx = block->half_size[0][k], hy = block->half_size[1][k], hz = block->half_size[2][k];
         const float x = ((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0];
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
-        const float radius = 1.0005f * root_of((hx * hx + hy * hy) + hz * hz), gap = bounds_gap(b, x, y, z);
-        // Well beyond the bounds they say enough: the others' balls are all over memory.
-        const uint far = (uint)(gap - radius > enough);
-        const float free = safe_distance(grid, balls, far != 0u ? grid.low_x : x, far != 0u ? grid.low_y : y,
-                                         far != 0u ? grid.low_z : z, UNBOUNDED);
-        const float safe = ((free > gap) & (far == 0u) ? free : gap) - radius;
+        const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
+        const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= horizon);
         near[k] = -(int)reached;
         const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
