@@ -133,6 +133,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
         Group group;
         Closest own[RAYS_IN_GROUP];
         uint all[RAYS_IN_GROUP];
+        clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
@@ -140,7 +141,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
             add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
             all[r] = r;
         }
-        frame_group(&group, few, false);
+        frame_group(&group, false);
         find_group(own, &group, all, few, short_first, shapes, nodes, blocks);
         for (uint r = 0u; r < few; ++r)
             hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group.target[r], nodes, blocks, normals);

@@ -252,18 +252,20 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
         Closest met[RAYS_IN_GROUP];
         uint casting[RAYS_IN_GROUP];
         uint casts = 0u;
+        clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
             source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
-            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
             const uint inside = is_inside(pair->bounds, source[r].position);
             ends[r] = follow_ray(source + r, inside, starts[i + r], max_iterations, predictive, cast_lost,
                                  cullings[ray.pair], shapes + pair->target, faces, blocks, normals);
+            if ((ends[r].how & CAST) == 0u || inside == 0u || starts[i + r] == AHEAD_ONLY) continue;
+            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
             casting[casts] = r;
-            casts += (uint)((ends[r].how & CAST) != 0u) & inside & (uint)(starts[i + r] != AHEAD_ONLY);
+            casts += 1u;
         }
-        if (casts != 0u) frame_group(&group, few, false);
+        if (casts != 0u) frame_group(&group, false);
         find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
         for (uint c = 0u; c < casts; ++c) {
             const uint r = casting[c];
@@ -272,12 +274,13 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
         }
         casts = 0u;
         for (uint r = 0u; r < few; ++r) {
-            const float culling = cullings[rays[i + r].pair];
-            add_ray(&group, r, source + r, culling, group.target[r], shapes + group.target[r]);
+            if (predictive == 0u || (ends[r].how & CAST) == 0u || ends[r].next != NONE) continue;
+            const uint pair = rays[i + r].pair, target = pairs[pair].target;
+            add_ray(&group, r, source + r, cullings[pair], target, shapes + target);
             casting[casts] = r;
-            casts += (uint)((ends[r].how & CAST) != 0u) & (uint)(ends[r].next == NONE) & (uint)(predictive != 0u);
+            casts += 1u;
         }
-        if (casts != 0u) frame_group(&group, few, true);
+        if (casts != 0u) frame_group(&group, true);
         find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
         for (uint c = 0u; c < casts; ++c) ends[casting[c]].next = predicted(met + casting[c], group.reach[casting[c]]);
         for (uint r = 0u; r < few; ++r) {

@@ -249,6 +249,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         Closest own[RAYS_IN_GROUP];
         uint waiting[RAYS_IN_GROUP];
         uint waiting_count = 0u;
+        clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             if (i + r + 8u < count) {
@@ -259,7 +260,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
             source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
             add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
         }
-        frame_group(&group, few, false);
+        frame_group(&group, false);
         for (uint r = 0u; r < few; ++r) {
             GLOBAL const ShapeHeader* shape = shapes + group.target[r];
             GLOBAL const Holder* holder = holders + rays[i + r].pair;

@@ -15,6 +15,11 @@ typedef struct {
     uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
 } Group;
 
+// Lanes without a ray are framed with the others.
+DEVICE void clear_group(Group* group) {
+    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
+}
+
 DEVICE void set_ray(Group* group, uint r, const float* position, const float* direction, float reach, float probe,
                     uint target, GLOBAL const ShapeHeader* RESTRICT shape) {
     for (int i = 0; i < 3; ++i) {
@@ -30,9 +35,7 @@ DEVICE void set_ray(Group* group, uint r, const float* position, const float* di
 }
 
 // frame_ray() for every lane. mirrored: of the ray against the given direction, see opposite_frame().
-DEVICE void frame_group(Group* group, uint ray_count, const bool mirrored) {
-    for (uint r = ray_count; r < RAYS_IN_GROUP; ++r)
-        for (int i = 0; i < 3; ++i) group->position[i][r] = group->direction[i][r] = 0.0f;
+DEVICE void frame_group(Group* group, const bool mirrored) {
     const float sign = mirrored ? -1.0f : 1.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
