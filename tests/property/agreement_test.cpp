@@ -150,6 +150,44 @@ TEST(agreement, small_bodies_in_a_large_slab) {
     EXPECT_GE(counts.sum.agreed, 100000u);
 }
 
+// Needles through one point: there each ray meets more leaves than a group of rays has room for.
+Mesh needles_mesh(std::uint32_t count, Random& random) {
+    const Mesh needle = tetrahedron_mesh();
+    Mesh mesh;
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const Pose turn = random.rotation();
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const Vec3& v : needle.vertices)
+            mesh.vertices.push_back(transform_point(turn, {v.x, 0.05 * v.y, 0.05 * v.z}));
+        for (const auto& t : needle.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return mesh;
+}
+
+TEST(agreement, many_leaves_in_one_place) {
+    Random random(20130606);
+    const auto needles = Shape::make(needles_mesh(400, random));
+    Mesh small = bumpy_octahedron_mesh(6);
+    for (Vec3& v : small.vertices) v = 0.1 * v;
+    const auto body = Shape::make(small);
+    std::uint64_t contacts = 0;
+    for (int i = 0; i < 50; ++i) {
+        const Pose pose = random.rotation();
+        Vec3 at = 0.1 * random.in_ball();
+        std::vector<Contact> of[2];
+        for (const Caster caster : {Caster::bvh, Caster::basic}) {
+            Scene scene(with(caster));
+            scene.add(needles);
+            scene.set_pose(scene.add(body), {pose.rotation, at});
+            const auto found = scene.step();
+            of[caster == Caster::basic].assign(found.begin(), found.end());
+        }
+        ASSERT_TRUE(same_bits(of[0], of[1])) << "the casters differ, pose " << i;
+        contacts += of[0].size();
+    }
+    EXPECT_GT(contacts, 1500u);
+}
+
 // The same meshes a thousand times smaller and larger: nothing may hang on a length in metres.
 TEST(agreement, at_other_scales) {
     for (const double scale : {1e-3, 1e3}) {
