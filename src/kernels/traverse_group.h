@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Short rays, several at a time, for a CPU. A ray by itself waits for each test before it knows the next; here a stage
 // is done for all rays before the next one begins, so that hardly a branch hangs on a test that is not finished.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define GROUP_VISITS (4 * RAYS_IN_GROUP + NODE_LANES)
 
@@ -142,3 +143,4 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, const uint* whi
     }
     return full;
 }
+// NOLINTEND(modernize-use-using)
