@@ -168,9 +168,9 @@ DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot) {
     return low < count && held[low].slot == slot ? low : count;
 }
 
-DEVICE Held nothing_held(void) {
+DEVICE Held nothing_held(uint slot) {
     Held held;
-    held.slot = NONE;
+    held.slot = slot;
     held.triangle = NONE;
     held.safe = 0.0f;
     held.limit = 0.0f;
@@ -185,7 +185,7 @@ DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
 
 DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot) {
     const uint at = find_held(before + holder->first, holder->count, slot);
-    return at < holder->count ? before[holder->first + at] : nothing_held();
+    return at < holder->count ? before[holder->first + at] : nothing_held(slot);
 }
 
 // How far a point of the ray, up to its limit, has moved at most: as far as either end.
@@ -214,7 +214,7 @@ DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, 
 DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                            GLOBAL const TriangleBlock* RESTRICT blocks) {
-    Held held = nothing_held();
+    Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
         held.direction[i] = ray->direction[i];
