@@ -54,8 +54,8 @@ std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::Orde
                  const rc::ShapeData& shape, const std::vector<rk::Ray>& rays) {
     std::size_t contacts = 0;
     for (const rk::Ray& ray : rays) {
-        const rk::prototype::SourceRay source = rk::prototype::source_ray(
-            &pairs[ray.pair], &shape.vertex_blocks[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
+        const rk::prototype::SourceRay source =
+            rk::prototype::source_ray(&pairs[ray.pair], shape.vertex_blocks.data(), ray.slot);
         RTCRayHit hit;
         if (scene.cast(source.position, source.direction, source.reach, hit)) ++contacts;
     }

@@ -57,15 +57,17 @@ void NarrowPhase::cast_near(std::span<const PlacedBody> bodies, std::span<const 
     Device& on = device();
     order_pairs(executor(), bodies, pairs, which, ordered_);
     margins_.resize(which.size());
-    for (std::size_t i = 0; i < which.size(); ++i) {
-        const Pair& pair = pairs[which[i] / 2];
-        const bool from_a = which[i] % 2 == 0;
-        const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-        const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
-        // Of few blocks it is not worth asking which are near.
-        const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
-        margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
-    }
+    executor().run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const Pair& pair = pairs[which[i] / 2];
+            const bool from_a = which[i] % 2 == 0;
+            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            // Of few blocks it is not worth asking which are near.
+            const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+            margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
+        }
+    });
     device_pairs_.write(on, ordered_);
     device_margins_.write(on, margins_);
     queue_.fill_near(on, shapes_.arrays(), device_pairs_, device_margins_);

@@ -40,6 +40,7 @@ private:
     void cast_near(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                    std::span<const std::uint32_t> which, std::vector<kernels::LocalContact>& contacts,
                    StepStats& stats);
+    /// The rays of queue_. near: as cast_standard() has it.
     void cast_queue(bool near, std::vector<kernels::LocalContact>& contacts, StepStats& stats);
     static void rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered);
     void merge(std::vector<kernels::LocalContact>::iterator second);

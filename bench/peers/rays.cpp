@@ -110,8 +110,8 @@ public:
         found.rays = rays_.size();
         for (const kernels::Ray& ray : rays_) {
             // The vertex's way into the target's frame is part of the work, as it is of ours.
-            const kernels::prototype::SourceRay source = kernels::prototype::source_ray(
-                &ordered_[ray.pair], &blocks_[ray.slot / VERTEX_LANES], ray.slot % VERTEX_LANES);
+            const kernels::prototype::SourceRay source =
+                kernels::prototype::source_ray(&ordered_[ray.pair], blocks_.data(), ray.slot);
             RTCRayHit hit;
             if (!scenes_[ordered_[ray.pair].target]->cast(source.position, source.direction, source.reach, hit))
                 continue;

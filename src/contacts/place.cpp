@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
-#include "mesh/vector.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ Contact place(Direction direction, const PlacedBody& source, const PlacedBody& t
     contact.vertex_body = from_a ? VertexBody::a : VertexBody::b;
     contact.vertex = shape.mesh.vertex_index[local.vertex];
     contact.triangle = target.shape->triangle_index()[local.triangle];
-    contact.point = rotate(source.pose, shape.mesh.vertices[local.vertex]) + source.pose.translation;
+    contact.point = transform_point(source.pose, shape.mesh.vertices[local.vertex]);
     contact.ray_length = local.distance;
     Vec3 out; // in which the source leaves the target
     if (direction == Direction::reprojected) {

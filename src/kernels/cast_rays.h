@@ -4,7 +4,7 @@
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define SIDE_DIRECTIONS 4
-#define PROBE_TOLERANCES 65536.0f
+#define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
 #define CASTER_BASIC 0
 #define CASTER_BVH 1
 
@@ -21,9 +21,12 @@ typedef struct {
     float reach;
 } SourceRay;
 
-DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
-                            uint lane) {
+// slot: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
+DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT vertices,
+                            uint slot) {
     SourceRay ray;
+    GLOBAL const VertexBlock* RESTRICT block = vertices + slot / VERTEX_LANES;
+    const uint lane = slot % VERTEX_LANES;
     GLOBAL const float* r = pair->rotation;
     const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
     const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];
@@ -137,7 +140,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            source[r] = source_ray(pair, vertices, ray.slot);
             add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
             all[r] = r;
         }
@@ -160,7 +163,7 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            source[r] = source_ray(pair, vertices, ray.slot);
             frame[r] = frame_ray(source[r].position, source[r].direction);
             own[r] = nothing_hit(source[r].reach, shapes[pair->target].tolerance);
         }

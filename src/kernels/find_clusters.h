@@ -222,9 +222,9 @@ KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT 
     write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
 }
 
-// The same without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0, of a source
-// of up to SMALL_BLOCKS: all of them. clears: of a pair without blocks, how far its vertices can move before one could
-// be in contact; may be less, also negative.
+// The same without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0: by the
+// bounds alone. clears: of a pair without blocks, how far its vertices can move before one could be in contact; may be
+// less, also negative.
 KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
@@ -245,7 +245,12 @@ KERNEL void write_near_clusters(RANGE uint count, GLOBAL const OrderedPair* REST
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                                 GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
                                 GLOBAL Cluster* RESTRICT found) {
-    FOR_EACH(p, count)
-    write_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], small[p], firsts[p], found);
+    FOR_EACH(p, count) {
+        const float horizon = horizons[p];
+        if (horizon < 0.0f)
+            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, small[p], firsts[p], found);
+        else
+            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, small[p], firsts[p], found);
+    }
 }
 // NOLINTEND(modernize-use-using,modernize-use-nullptr)

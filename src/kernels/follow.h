@@ -256,7 +256,7 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            source[r] = source_ray(pair, vertices, ray.slot);
             const uint inside = is_inside(pair->bounds, source[r].position);
             ends[r] = follow_ray(source + r, inside, starts[i + r], max_iterations, predictive, cast_lost,
                                  cullings[ray.pair], shapes + pair->target, faces, blocks, normals);
@@ -302,7 +302,7 @@ KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predic
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const float culling = cullings[rays[i].pair];
-        const SourceRay ray = source_ray(pair, vertices + rays[i].slot / VERTEX_LANES, rays[i].slot % VERTEX_LANES);
+        const SourceRay ray = source_ray(pair, vertices, rays[i].slot);
         const uint inside = is_inside(pair->bounds, ray.position);
         Outcome end = follow_ray(&ray, inside, starts[i], max_iterations, predictive, cast_lost, culling, shape, faces,
                                  blocks, normals);

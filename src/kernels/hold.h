@@ -257,7 +257,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                 PREFETCH(holders, rays[i + r + 8u].pair);
             }
             GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices + ray.slot / VERTEX_LANES, ray.slot % VERTEX_LANES);
+            source[r] = source_ray(pair, vertices, ray.slot);
             add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
         }
         frame_group(&group, false);

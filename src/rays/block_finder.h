@@ -11,7 +11,7 @@ class BlockFinder {
 public:
     void find(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs);
     /// Without those that cannot be in contact before they have moved by horizons[p], metres, which hold the rounding
-    /// to be allowed for.
+    /// to be allowed for; below 0: as find().
     void find_near(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
                    const Array<float>& horizons);
 

@@ -47,6 +47,11 @@ double longest_clock(const PlacedBody& target) {
     return 8 * target.shape->data().diagonal;
 }
 
+// As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
+bool is_idle(const kernels::Holder& holder) {
+    return holder.count == 0 && holder.radius <= 0;
+}
+
 } // namespace
 
 void CertifiedRays::clear() {
@@ -248,16 +253,14 @@ void CertifiedRays::find_holders() {
         Watched& own = watched(active_[host_segments_[s].pair]);
         if (own.held_count == 0) own.held_first = ray;
         // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
-        const kernels::Holder& holder = host_holders_[host_segments_[s].pair];
-        if (holder.count > 0 || holder.radius > 0) own.held_count += host_looks_[s].rays;
+        if (!is_idle(host_holders_[host_segments_[s].pair])) own.held_count += host_looks_[s].rays;
         ray += host_looks_[s].rays;
     }
 }
 
 void CertifiedRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
     find_holders();
-    const auto holds = [](const kernels::Holder& holder) { return holder.count > 0 || holder.radius > 0; };
-    if (caster != Caster::basic && std::any_of(host_holders_.begin(), host_holders_.end(), holds)) {
+    if (caster != Caster::basic && !std::all_of(host_holders_.begin(), host_holders_.end(), is_idle)) {
         held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
         cast_ = held_.cast_in_full();
         return;

@@ -14,8 +14,8 @@ public:
     /// use_grid: leave out the rays of vertices that a shape's grid knows to be outside; the contacts are the same.
     void fill(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
               bool use_grid);
-    /// Without the blocks that are clear of the target by more than margins[p], metres of rounding (below 0, of a
-    /// source of up to SMALL_BLOCKS: with all); the contacts are the same again. Vertices of theirs are counted nowhere.
+    /// Without the blocks that are clear of the target by more than margins[p], metres of rounding (below 0:
+    /// with all that reach into the bounds); the contacts are the same again. Vertices of theirs are counted nowhere.
     void fill_near(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
                    const Array<float>& margins);
 
