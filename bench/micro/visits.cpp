@@ -23,6 +23,12 @@ DEVICE float product_error(float a, float b, float p) {
 #define lowest_bit(bits) (++seen.children, lowest_bit(bits))
 #include "kernels/traverse.h"
 
+#include "kernels/source_ray.h"
+
+#include "kernels/ray_group.h"
+
+#include "kernels/near_leaves.h"
+
 #include "kernels/traverse_group.h"
 
 #include "kernels/vertex_lanes.h"

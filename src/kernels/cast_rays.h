@@ -15,29 +15,6 @@ DEVICE float side_direction(uint i, uint axis) {
     return table[3u * i + axis];
 }
 
-typedef struct {
-    float position[3]; // target frame
-    float direction[3];
-    float reach;
-} SourceRay;
-
-// slot: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
-DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT vertices,
-                            uint slot) {
-    SourceRay ray;
-    GLOBAL const VertexBlock* RESTRICT block = vertices + slot / VERTEX_LANES;
-    const uint lane = slot % VERTEX_LANES;
-    GLOBAL const float* r = pair->rotation;
-    const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
-    const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];
-    for (int i = 0; i < 3; ++i) {
-        ray.position[i] = ((r[3 * i] * x + r[3 * i + 1] * y) + r[3 * i + 2] * z) + pair->translation[i];
-        ray.direction[i] = (r[3 * i] * dx + r[3 * i + 1] * dy) + r[3 * i + 2] * dz;
-    }
-    ray.reach = block->exit[lane];
-    return ray;
-}
-
 // -1: a face met from outside comes first, or nothing is hit; 1: one met from inside; 0: within rounding of each other.
 DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
     if (closest->back >= UNBOUNDED || closest->back > reach) return -1;
@@ -53,12 +30,16 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
     return closest;
 }
 
+DEVICE float probe_of(GLOBAL const ShapeHeader* RESTRICT shape) {
+    return PROBE_TOLERANCES * shape->tolerance;
+}
+
 // What the ray meets first. Where a grid has sorted out the vertices far outside, most rays end close by
 // (`short_first`): a short one visits few boxes, and what it finds within its length is the closest of all.
 DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame* frame, float reach,
                             GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                             GLOBAL const TriangleBlock* RESTRICT blocks) {
-    const float probe = PROBE_TOLERANCES * shape->tolerance;
+    const float probe = probe_of(shape);
     if (caster == CASTER_BVH && short_first != 0u && probe < reach) {
         const Closest near = traverse(caster, frame, probe, shape, nodes, blocks);
         if (near.back <= probe || near.front <= probe) return near;
@@ -66,19 +47,17 @@ DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame*
     return traverse(caster, frame, reach, shape, nodes, blocks);
 }
 
-DEVICE void add_ray(Group* group, uint r, const SourceRay* ray, float reach, uint target,
-                    GLOBAL const ShapeHeader* RESTRICT shape) {
-    set_ray(group, r, ray->position, ray->direction, reach, PROBE_TOLERANCES * shape->tolerance, target, shape);
-}
-
-// find_closest() for some rays of a framed group, by the BVH.
-DEVICE void find_group(Closest* own, const Group* group, const uint* which, uint ray_count, uint short_first,
-                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                       GLOBAL const TriangleBlock* RESTRICT blocks) {
-    const bool grouped = RAYS_IN_GROUP > 1 && short_first != 0u;
-    const uint alone = grouped ? traverse_group(own, group, which, ray_count, nodes, blocks) : 0u;
-    for (uint i = 0u; i < ray_count; ++i) {
-        const uint r = which[i];
+// find_closest() for each ray of a framed group, by the BVH.
+DEVICE void find_group(Closest* own, const Group* group, uint short_first, GLOBAL const ShapeHeader* RESTRICT shapes,
+                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+#if RAYS_IN_GROUP > 1
+    const bool grouped = short_first != 0u;
+    const uint alone = grouped ? traverse_group(own, group, nodes, blocks) : 0u;
+#else
+    const bool grouped = false;
+    const uint alone = 0u;
+#endif
+    for (uint r = 0u; r < group->count; ++r) {
         GLOBAL const ShapeHeader* shape = shapes + group->target[r];
         const float length = group->length[r], reach = group->reach[r];
         const uint found = grouped ? (uint)(own[r].back <= length) | (uint)(own[r].front <= length) : 0u;
@@ -132,22 +111,21 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                           GLOBAL Hit* RESTRICT hits) {
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
-        SourceRay source[RAYS_IN_GROUP];
         Group group;
         Closest own[RAYS_IN_GROUP];
-        uint all[RAYS_IN_GROUP];
         clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
-            GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices, ray.slot);
-            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
-            all[r] = r;
+            const uint target = pairs[ray.pair].target;
+            const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
+            add_ray(&group, i + r, &source, source.reach, probe_of(shapes + target), ray.pair, target, shapes + target);
         }
         frame_group(&group, false);
-        find_group(own, &group, all, few, short_first, shapes, nodes, blocks);
-        for (uint r = 0u; r < few; ++r)
-            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group.target[r], nodes, blocks, normals);
+        find_group(own, &group, short_first, shapes, nodes, blocks);
+        for (uint r = 0u; r < few; ++r) {
+            const SourceRay source = ray_of(&group, r);
+            hits[i + r] = decide(CASTER_BVH, &source, own + r, shapes + group.target[r], nodes, blocks, normals);
+        }
     }
 }
 

@@ -237,6 +237,37 @@ KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT seg
     }
 }
 
+// Predictive rays of vertices that are not in contact; nexts: see Outcome.
+DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                             GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL uint* RESTRICT nexts) {
+    Closest met[RAYS_IN_GROUP];
+    frame_group(ahead, true);
+    find_group(met, ahead, 1u, shapes, nodes, blocks);
+    for (uint r = 0u; r < ahead->count; ++r) nexts[ahead->at[r]] = predicted(met + r, ahead->reach[r]);
+    ahead->count = 0u;
+}
+
+// Where such a ray is no contact, what lies ahead is cast next.
+DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GLOBAL const float* RESTRICT cullings,
+                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
+                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts) {
+    Closest met[RAYS_IN_GROUP];
+    frame_group(casting, false);
+    find_group(met, casting, 1u, shapes, nodes, blocks);
+    for (uint r = 0u; r < casting->count; ++r) {
+        const uint at = casting->at[r], pair = casting->pair[r], target = casting->target[r];
+        const SourceRay source = ray_of(casting, r);
+        const Hit hit = decide(CASTER_BVH, &source, met + r, shapes + target, nodes, blocks, normals);
+        hits[at] = hit;
+        nexts[at] = hit.triangle;
+        if (predictive == 0u || hit.triangle != NONE) continue;
+        add_ray(ahead, at, &source, cullings[pair], probe_of(shapes + target), pair, target, shapes + target);
+        if (is_full(ahead)) cast_ahead(ahead, shapes, nodes, blocks, nexts);
+    }
+    casting->count = 0u;
+}
+
 // hows and nexts: see Outcome.
 KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
                             GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
@@ -245,50 +276,35 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
                             GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
                             GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
                             GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
-    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
-        SourceRay source[RAYS_IN_GROUP];
-        Outcome ends[RAYS_IN_GROUP];
-        Group group;
-        Closest met[RAYS_IN_GROUP];
-        uint casting[RAYS_IN_GROUP];
-        uint casts = 0u;
-        clear_group(&group);
-        for (uint r = 0u; r < few; ++r) {
-            const Ray ray = rays[i + r];
-            GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices, ray.slot);
-            const uint inside = is_inside(pair->bounds, source[r].position);
-            ends[r] = follow_ray(source + r, inside, starts[i + r], max_iterations, predictive, cast_lost,
-                                 cullings[ray.pair], shapes + pair->target, faces, blocks, normals);
-            if ((ends[r].how & CAST) == 0u || inside == 0u || starts[i + r] == AHEAD_ONLY) continue;
-            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
-            casting[casts] = r;
-            casts += 1u;
-        }
-        if (casts != 0u) frame_group(&group, false);
-        find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
-        for (uint c = 0u; c < casts; ++c) {
-            const uint r = casting[c];
-            ends[r].hit = decide(CASTER_BVH, source + r, met + r, shapes + group.target[r], nodes, blocks, normals);
-            ends[r].next = ends[r].hit.triangle;
-        }
-        casts = 0u;
-        for (uint r = 0u; r < few; ++r) {
-            if (predictive == 0u || (ends[r].how & CAST) == 0u || ends[r].next != NONE) continue;
-            const uint pair = rays[i + r].pair, target = pairs[pair].target;
-            add_ray(&group, r, source + r, cullings[pair], target, shapes + target);
-            casting[casts] = r;
-            casts += 1u;
-        }
-        if (casts != 0u) frame_group(&group, true);
-        find_group(met, &group, casting, casts, 1u, shapes, nodes, blocks);
-        for (uint c = 0u; c < casts; ++c) ends[casting[c]].next = predicted(met + casting[c], group.reach[casting[c]]);
-        for (uint r = 0u; r < few; ++r) {
-            hits[i + r] = ends[r].hit;
-            nexts[i + r] = ends[r].next;
-            hows[i + r] = ends[r].how;
+    Group casting, ahead;
+    clear_group(&casting);
+    clear_group(&ahead);
+    FOR_EACH(i, count) {
+        const Ray ray = rays[i];
+        const uint target = pairs[ray.pair].target;
+        const float culling = cullings[ray.pair];
+        GLOBAL const ShapeHeader* shape = shapes + target;
+        const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
+        const uint inside = is_inside(pairs[ray.pair].bounds, source.position);
+        const Outcome end = follow_ray(&source, inside, starts[i], max_iterations, predictive, cast_lost, culling,
+                                       shape, faces, blocks, normals);
+        hits[i] = end.hit;
+        nexts[i] = end.next;
+        hows[i] = end.how;
+        if ((end.how & CAST) == 0u) continue;
+        if (inside != 0u && starts[i] != AHEAD_ONLY) {
+            add_ray(&casting, i, &source, source.reach, probe_of(shape), ray.pair, target, shape);
+            if (is_full(&casting))
+                cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
+        } else if (predictive != 0u && end.next == NONE) {
+            add_ray(&ahead, i, &source, culling, probe_of(shape), ray.pair, target, shape);
+            if (is_full(&ahead)) cast_ahead(&ahead, shapes, nodes, blocks, nexts);
         }
     }
+#if RAYS_IN_GROUP > 1
+    cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
+    cast_ahead(&ahead, shapes, nodes, blocks, nexts);
+#endif
 }
 
 KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,

@@ -47,17 +47,6 @@ DEVICE Tube tube_of(const SourceRay* ray, float length, float radius) {
     return tube;
 }
 
-DEVICE uint children_near(const Tube* tube, GLOBAL const Node* RESTRICT node) {
-    int near[NODE_LANES];
-    FOR_LANES(k, NODE_LANES) {
-        const uint x = (node->bounds[0][k] <= tube->box[3]) & (node->bounds[3][k] >= tube->box[0]);
-        const uint y = (node->bounds[1][k] <= tube->box[4]) & (node->bounds[4][k] >= tube->box[1]);
-        const uint z = (node->bounds[2][k] <= tube->box[5]) & (node->bounds[5][k] >= tube->box[2]);
-        near[k] = -(int)(x & y & z);
-    }
-    return pack_sixteen(near);
-}
-
 // How far the origin is from a triangle of the plane along the normal of its edge from a to b; c is the third corner.
 DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv) {
     const float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
@@ -133,7 +122,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, float radius, GLOBAL const 
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
     ulong trail = 0u;
     uint at = 0u;
-    uint children = children_near(tube, tree);
+    uint children = children_in(tube->box, tree);
     for (;;) {
         while (children != 0u) {
             const uint lane = lowest_bit(children);
@@ -145,7 +134,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, float radius, GLOBAL const 
             } else {
                 trail = (trail << NODE_LANES) | (ulong)children;
                 at = child;
-                children = children_near(tube, tree + at);
+                children = children_in(tube->box, tree + at);
             }
         }
         if (at == 0u) return found;
@@ -235,6 +224,33 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     return held;
 }
 
+// Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
+// from now on.
+DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT holders,
+                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
+                               GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits) {
+    Closest own[RAYS_IN_GROUP];
+    frame_group(waiting, false);
+    find_group(own, waiting, 1u, shapes, nodes, blocks);
+    for (uint r = 0u; r < waiting->count; ++r) {
+        const uint at = waiting->at[r];
+        const SourceRay source = ray_of(waiting, r);
+        GLOBAL const ShapeHeader* shape = shapes + waiting->target[r];
+        GLOBAL const Holder* holder = holders + waiting->pair[r];
+        hits[at] = decide(CASTER_BVH, &source, own + r, shape, nodes, blocks, normals);
+        if (is_idle(holder)) continue;
+        Held held = after[at];
+        const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
+        const uint slot = held.slot;
+        held.limit = waits;
+        if (!(waits > 0.0f)) held = seek_tube(&source, own + r, holder, shape, nodes, blocks);
+        held.slot = slot;
+        after[at] = held;
+    }
+    waiting->count = 0u;
+}
+
 // The hits of cast_rays_bvh, bit for bit. before, after: rays held in the last step and now, those of idle pairs left
 // as they are; casts: 1 for each ray cast in full.
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
@@ -243,58 +259,35 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                       GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                       GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
                       GLOBAL uint* RESTRICT casts) {
-    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
-        SourceRay source[RAYS_IN_GROUP];
-        Group group;
-        Closest own[RAYS_IN_GROUP];
-        uint waiting[RAYS_IN_GROUP];
-        uint waiting_count = 0u;
-        clear_group(&group);
-        for (uint r = 0u; r < few; ++r) {
-            const Ray ray = rays[i + r];
-            if (i + r + 8u < count) {
-                PREFETCH(pairs, rays[i + r + 8u].pair);
-                PREFETCH(holders, rays[i + r + 8u].pair);
-            }
-            GLOBAL const OrderedPair* pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices, ray.slot);
-            add_ray(&group, r, source + r, source[r].reach, pair->target, shapes + pair->target);
+    Group waiting;
+    clear_group(&waiting);
+    FOR_EACH(i, count) {
+        const Ray ray = rays[i];
+        if (i + 8u < count) {
+            PREFETCH(pairs, rays[i + 8u].pair);
+            PREFETCH(holders, rays[i + 8u].pair);
         }
-        frame_group(&group, false);
-        for (uint r = 0u; r < few; ++r) {
-            GLOBAL const ShapeHeader* shape = shapes + group.target[r];
-            GLOBAL const Holder* holder = holders + rays[i + r].pair;
-            own[r] = nothing_hit(source[r].reach, shape->tolerance);
-            waiting[waiting_count] = r;
-            casts[i + r] = 1u;
-            if (is_idle(holder)) {
-                waiting_count += 1u;
-                continue;
+        GLOBAL const Holder* holder = holders + ray.pair;
+        const uint target = pairs[ray.pair].target;
+        GLOBAL const ShapeHeader* shape = shapes + target;
+        const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
+        uint known = 0u;
+        if (!is_idle(holder)) {
+            Held held = held_before(holder, before, ray.slot);
+            if (held.safe > 0.0f && moved_by(&held, &source) < held.safe) {
+                const RayFrame frame = frame_ray(source.position, source.direction);
+                Closest own = nothing_hit(source.reach, shape->tolerance);
+                known = hit_held(&own, &held, &frame, source.reach, shape, blocks);
+                if (known != 0u) hits[i] = decide(CASTER_BVH, &source, &own, shape, nodes, blocks, normals);
             }
-            const Held held = held_before(holder, before, rays[i + r].slot);
-            uint known = 0u;
-            if (held.safe > 0.0f && moved_by(&held, source + r) < held.safe) {
-                const RayFrame frame = frame_of(&group, r);
-                known = hit_held(own + r, &held, &frame, source[r].reach, shape, blocks);
-            }
-            after[i + r] = held;
-            casts[i + r] = 1u - known;
-            waiting_count += 1u - known;
+            after[i] = held;
         }
-        find_group(own, &group, waiting, waiting_count, 1u, shapes, nodes, blocks);
-        for (uint w = 0u; w < waiting_count; ++w) {
-            const uint r = waiting[w];
-            GLOBAL const Holder* holder = holders + rays[i + r].pair;
-            if (is_idle(holder)) continue;
-            Held held = after[i + r];
-            const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
-            held.limit = waits;
-            if (!(waits > 0.0f)) held = seek_tube(source + r, own + r, holder, shapes + group.target[r], nodes, blocks);
-            held.slot = rays[i + r].slot;
-            after[i + r] = held;
-        }
-        for (uint r = 0u; r < few; ++r)
-            hits[i + r] = decide(CASTER_BVH, source + r, own + r, shapes + group.target[r], nodes, blocks, normals);
+        casts[i] = 1u - known;
+        if (known == 0u) add_ray(&waiting, i, &source, source.reach, probe_of(shape), ray.pair, target, shape);
+        if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
+#if RAYS_IN_GROUP > 1
+    cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
+#endif
 }
 // NOLINTEND(modernize-use-using)

@@ -5,6 +5,12 @@
 
 #include "kernels/traverse.h"
 
+#include "kernels/source_ray.h"
+
+#include "kernels/ray_group.h"
+
+#include "kernels/near_leaves.h"
+
 #include "kernels/traverse_group.h"
 
 #include "kernels/vertex_lanes.h"

@@ -88,6 +88,18 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
     return pack_sixteen(hit);
 }
 
+// Child boxes that reach into a box: lower x y z, upper x y z.
+DEVICE uint children_in(const float* box, GLOBAL const Node* RESTRICT node) {
+    int within[NODE_LANES];
+    FOR_LANES(k, NODE_LANES) {
+        const uint x = (node->bounds[0][k] <= box[3]) & (node->bounds[3][k] >= box[0]);
+        const uint y = (node->bounds[1][k] <= box[4]) & (node->bounds[4][k] >= box[1]);
+        const uint z = (node->bounds[2][k] <= box[5]) & (node->bounds[5][k] >= box[2]);
+        within[k] = -(int)(x & y & z);
+    }
+    return pack_sixteen(within);
+}
+
 // Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
 DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,

@@ -73,7 +73,40 @@ DEVICE float cross_accurate(float a, float b, float c, float d) {
     return (p - q) + (product_error(a, b, p) - product_error(c, d, q));
 }
 
-// One lane again, with accurate barycentrics, so that the distance found lies in every box that holds the triangle.
+// Edge functions of a triangle as the ray sees it: of no two signs where the ray's line passes through it.
+typedef struct {
+    float u, v, w;
+} Edges;
+
+// Corners relative to the ray's origin, axes as in its frame.
+DEVICE Edges edges_of(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz,
+                      float shear_x, float shear_y) {
+    const float x0 = ax - shear_x * az, y0 = ay - shear_y * az;
+    const float x1 = bx - shear_x * bz, y1 = by - shear_y * bz;
+    const float x2 = cx - shear_x * cz, y2 = cy - shear_y * cz;
+    Edges edges;
+    edges.u = cross_accurate(x2, y1, y2, x1);
+    edges.v = cross_accurate(x0, y2, y0, x2);
+    edges.w = cross_accurate(x1, y0, y1, x0);
+    return edges;
+}
+
+DEVICE float area_of(const Edges edges) {
+    return (edges.u + edges.v) + edges.w;
+}
+
+// With accurate barycentrics, so that the distance found lies in every box that holds the triangle.
+DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float shear_z) {
+    return ((edges.u * az + edges.v * bz + edges.w * cz) / area_of(edges)) * shear_z;
+}
+
+// A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does not.
+DEVICE void take(Closest* closest, float t, bool back, uint triangle, float tolerance) {
+    if (t < (back ? 0.0f : -tolerance) || t > closest->limit) return;
+    consider(closest, t, back, triangle, tolerance);
+}
+
+// One lane again, closely.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
                      float tolerance, const bool near) {
     float x[3], y[3], z[3];
@@ -84,21 +117,13 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
         if ((t0 > beyond && t1 > beyond && t2 > beyond) || (t0 < behind && t1 < behind && t2 < behind)) return;
     }
     for (int c = 0; c < 3; ++c) {
-        x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * z[c];
-        y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * z[c];
+        x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
+        y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
     }
-    const float u = cross_accurate(x[2], y[1], y[2], x[1]);
-    const float v = cross_accurate(x[0], y[2], y[0], x[2]);
-    const float w = cross_accurate(x[1], y[0], y[1], x[0]);
-    const bool front_side = u >= 0.0f && v >= 0.0f && w >= 0.0f;
-    const bool back_side = u <= 0.0f && v <= 0.0f && w <= 0.0f;
-    const float area = (u + v) + w;
-    if (!(front_side || back_side) || area == 0.0f) return; // edge-on: the neighbours take the hit
-    const float t = ((u * z[0] + v * z[1] + w * z[2]) / area) * ray->shear[2];
-    // A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does
-    // not.
-    if (t < (back_side ? 0.0f : -tolerance) || t > closest->limit) return;
-    consider(closest, t, back_side, block->triangle[lane], tolerance);
+    const Edges e = edges_of(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2], ray->shear[0], ray->shear[1]);
+    const bool front = e.u >= 0.0f && e.v >= 0.0f && e.w >= 0.0f, back = e.u <= 0.0f && e.v <= 0.0f && e.w <= 0.0f;
+    if (!(front || back) || area_of(e) == 0.0f) return; // edge-on: the neighbours take the hit
+    take(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
 }
 
 // Sixteen triangles at once: which may the ray's line pass through? Those whose edge functions have no two signs: two

@@ -19,7 +19,8 @@ struct Range {
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
-#define DEVICE_RARE [[maybe_unused, gnu::noinline]] static // what is seldom asked should not crowd the registers
+#define DEVICE_RARE [[maybe_unused, gnu::noinline]] static  // what is seldom asked should not crowd the registers
+#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
@@ -40,8 +41,14 @@ namespace raycontact::kernels {
 DEVICE uint lowest_bit(uint bits) {
     return static_cast<uint>(__builtin_ctz(bits));
 }
+DEVICE uint lowest_bit_of_long(ulong bits) {
+    return static_cast<uint>(__builtin_ctzll(bits));
+}
 DEVICE uint bit_count(uint bits) {
     return static_cast<uint>(__builtin_popcount(bits));
+}
+DEVICE uint bit_count_of_long(ulong bits) {
+    return static_cast<uint>(__builtin_popcountll(bits));
 }
 DEVICE float magnitude_of(float x) {
     return __builtin_fabsf(x);

@@ -7,6 +7,7 @@ typedef unsigned long long ulong;
 #define DEVICE static inline __device__
 #define DEVICE_CALL static __noinline__ __device__
 #define DEVICE_RARE DEVICE_CALL
+#define DEVICE_BATCH DEVICE
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index)

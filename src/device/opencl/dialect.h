@@ -6,6 +6,7 @@
 #define DEVICE static inline
 #define DEVICE_CALL DEVICE
 #define DEVICE_RARE DEVICE_CALL
+#define DEVICE_BATCH DEVICE
 #define GLOBAL __global
 #define RESTRICT restrict
 #define PREFETCH(array, index)

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays of a pair begin side by side, and short ones end there: what of the tree reaches into the box around them is
+// sought once for all, and each ray is tested against those leaves alone. For a CPU.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
+#if RAYS_IN_GROUP > 1
+#define GROUP_VISITS (8 * RAYS_IN_GROUP)
+
+// Rays of a group that belong to one pair lie side by side, short ones in a small box.
+typedef struct {
+    float box[RAYS_IN_GROUP][6]; // lower x y z, upper x y z
+    uint rays[RAYS_IN_GROUP];    // a bit each
+    uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
+    uint count;
+} Runs;
+
+// What is still to be tested: nodes for which run, or triangle blocks (absolute) for which ray.
+typedef struct {
+    uint who[GROUP_VISITS], at[GROUP_VISITS];
+    uint count;
+} Visits;
+
+// Leaves that a run's box reaches: lanes of nodes.
+typedef struct {
+    uint run[GROUP_VISITS], node[GROUP_VISITS], lane[GROUP_VISITS], block[GROUP_VISITS];
+    uint meets[GROUP_VISITS]; // rays of the run, a bit each
+    uint count;
+} NearLeaves;
+
+DEVICE void begin_run(Runs* runs, const Group* group, uint r) {
+    float* box = runs->box[runs->count];
+    for (int i = 0; i < 3; ++i) {
+        box[i] = UNBOUNDED;
+        box[3 + i] = -UNBOUNDED;
+    }
+    runs->rays[runs->count] = 0u;
+    runs->node_first[runs->count] = group->node_first[r];
+    runs->block_first[runs->count] = group->block_first[r];
+    runs->count += 1u;
+}
+
+// The box of a run holds its rays up to their lengths, and as far beyond either end as they are tested.
+DEVICE void find_runs(Runs* runs, const Group* group) {
+    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];
+    for (int i = 0; i < 3; ++i) {
+        FOR_LANES(r, RAYS_IN_GROUP) {
+            const float beyond = 3.0f * group->tolerance[r];
+            const float start = group->position[i][r], end = start + group->length[r] * group->direction[i][r];
+            low[i][r] = (start < end ? start : end) - beyond;
+            high[i][r] = (start < end ? end : start) + beyond;
+        }
+    }
+    runs->count = 0u;
+    for (uint r = 0u; r < group->count; ++r) {
+        if (r == 0u || group->pair[r] != group->pair[r - 1u]) begin_run(runs, group, r);
+        float* box = runs->box[runs->count - 1u];
+        for (int i = 0; i < 3; ++i) {
+            box[i] = low[i][r] < box[i] ? low[i][r] : box[i];
+            box[3 + i] = high[i][r] > box[3 + i] ? high[i][r] : box[3 + i];
+        }
+        runs->rays[runs->count - 1u] |= 1u << r;
+    }
+}
+
+// Masks of sixteen bits, four at a time: a loop over the bits of each would end where nobody can guess.
+DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
+    ulong bits = 0u;
+    for (uint i = 0u; i < 4u; ++i) bits |= (ulong)(first + i < count ? masks[first + i] : 0u) << (16u * i);
+    return bits;
+}
+
+// Down the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
+DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, const Node* RESTRICT nodes) {
+    Visits levels[2];
+    uint near[GROUP_VISITS];
+    uint full = 0u, level = 0u;
+    leaves->count = 0u;
+    levels[0].count = runs->count;
+    for (uint i = 0u; i < runs->count; ++i) {
+        levels[0].who[i] = i;
+        levels[0].at[i] = runs->node_first[i];
+    }
+    while (levels[level].count != 0u) {
+        const Visits* visits = levels + level;
+        Visits* below = levels + (1u - level);
+        level = 1u - level;
+        below->count = 0u;
+        for (uint i = 0u; i < visits->count; ++i)
+            near[i] = children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
+        for (uint i = 0u; i < visits->count; i += 4u) {
+            ulong left = four_sixteens(near, i, visits->count);
+            const uint most = bit_count_of_long(left);
+            if (below->count + most > GROUP_VISITS || leaves->count + most > GROUP_VISITS) {
+                for (uint j = i; j < i + 4u && j < visits->count; ++j) full |= 1u << visits->who[j];
+                continue;
+            }
+            // Written to both, and kept in one: which it is, is hard to guess.
+            for (; left != 0u; left &= left - 1u) {
+                const uint bit = lowest_bit_of_long(left), j = i + bit / 16u, lane = bit % 16u;
+                const uint run = visits->who[j], node = visits->at[j];
+                const uint child = nodes[node].child[lane], leaf = (uint)((child & LEAF) != 0u);
+                leaves->run[leaves->count] = run;
+                leaves->node[leaves->count] = node;
+                leaves->lane[leaves->count] = lane;
+                leaves->block[leaves->count] = runs->block_first[run] + (child & ~LEAF);
+                leaves->count += leaf;
+                below->who[below->count] = run;
+                below->at[below->count] = runs->node_first[run] + child;
+                below->count += 1u - leaf;
+            }
+        }
+    }
+    return full;
+}
+
+// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays.
+DEVICE uint rays_that_meet(const Group* group, const Node* RESTRICT node, uint lane) {
+    const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
+    const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
+    int meets[RAYS_IN_GROUP];
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
+        const float ix = group->inverse[0][r], iy = group->inverse[1][r], iz = group->inverse[2][r];
+        const float ax = (low_x - px) * ix, ay = (low_y - py) * iy, az = (low_z - pz) * iz;
+        const float bx = (high_x - px) * ix, by = (high_y - py) * iy, bz = (high_z - pz) * iz;
+        const float nx = ax < bx ? ax : bx, ny = ay < by ? ay : by, nz = az < bz ? az : bz;
+        const float fx = ax < bx ? bx : ax, fy = ay < by ? by : ay, fz = az < bz ? bz : az;
+        const float tolerance = group->tolerance[r], limit = group->length[r] + tolerance;
+        const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
+        const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
+        const float enter = nxy > nzt ? nxy : nzt;
+        const float leave = fxy < fzt ? fxy : fzt;
+        meets[r] = -(int)(enter <= leave);
+    }
+    return pack_sixteen(meets);
+}
+#endif
+// NOLINTEND(modernize-use-using)

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays that wait until there are enough of them for a group, to be framed and cast together. A lane each; on a GPU a
+// group is one ray.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
+
+// A ray in each lane; of its frame, what RayFrame holds.
+typedef struct {
+    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
+    float origin[3][RAYS_IN_GROUP], shear[3][RAYS_IN_GROUP], inverse[3][RAYS_IN_GROUP];
+    uint axis[3][RAYS_IN_GROUP];
+    float reach[RAYS_IN_GROUP];
+    float length[RAYS_IN_GROUP], tolerance[RAYS_IN_GROUP]; // metres; the group seeks no farther than `length`
+    uint pair[RAYS_IN_GROUP], target[RAYS_IN_GROUP];
+    uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
+    uint at[RAYS_IN_GROUP]; // whose ray it is
+    uint count;
+} Group;
+
+// Lanes without a ray are framed with the others.
+DEVICE void clear_group(Group* group) {
+    group->count = 0u;
+    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
+    FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
+}
+
+// at: whose ray it is. The group seeks it no farther than `probe`.
+DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, float probe, uint pair, uint target,
+                    GLOBAL const ShapeHeader* RESTRICT shape) {
+    const uint r = group->count;
+    for (int i = 0; i < 3; ++i) {
+        group->position[i][r] = ray->position[i];
+        group->direction[i][r] = ray->direction[i];
+    }
+    group->reach[r] = reach;
+    group->length[r] = probe < reach ? probe : reach;
+    group->tolerance[r] = shape->tolerance;
+    group->pair[r] = pair;
+    group->target[r] = target;
+    group->node_first[r] = shape->node_first;
+    group->block_first[r] = shape->triangle_block_first;
+    group->at[r] = at;
+    group->count = r + 1u;
+}
+
+DEVICE bool is_full(const Group* group) {
+    return group->count == RAYS_IN_GROUP;
+}
+
+DEVICE SourceRay ray_of(const Group* group, uint r) {
+    SourceRay ray;
+    for (int i = 0; i < 3; ++i) {
+        ray.position[i] = group->position[i][r];
+        ray.direction[i] = group->direction[i][r];
+    }
+    ray.reach = group->reach[r];
+    return ray;
+}
+
+// frame_ray() for every lane. mirrored: of the ray against the given direction, which is turned; see opposite_frame().
+DEVICE void frame_group(Group* group, const bool mirrored) {
+    const float sign = mirrored ? -1.0f : 1.0f;
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
+        const float dx = sign * group->direction[0][r], dy = sign * group->direction[1][r];
+        const float dz = sign * group->direction[2][r];
+        const float ax = magnitude_of(dx), ay = magnitude_of(dy), az = magnitude_of(dz);
+        const float larger = ax > ay ? ax : ay;
+        const uint z = larger > az ? (uint)(ax <= ay) : 2u;
+        const uint next = z == 2u ? 0u : z + 1u, last = 3u - z - next;
+        const float far = z == 0u ? dx : z == 1u ? dy : dz;
+        const uint down = (uint)(far < 0.0f) ^ (uint)mirrored;
+        const uint x = down != 0u ? last : next, y = down != 0u ? next : last;
+        const float ix = safe_inverse(dx), iy = safe_inverse(dy), iz = safe_inverse(dz);
+        const float far_inverse = z == 0u ? ix : z == 1u ? iy : iz;
+        group->direction[0][r] = dx;
+        group->direction[1][r] = dy;
+        group->direction[2][r] = dz;
+        group->axis[0][r] = x;
+        group->axis[1][r] = y;
+        group->axis[2][r] = z;
+        group->origin[0][r] = x == 0u ? px : x == 1u ? py : pz;
+        group->origin[1][r] = y == 0u ? px : y == 1u ? py : pz;
+        group->origin[2][r] = z == 0u ? px : z == 1u ? py : pz;
+        group->shear[0][r] = (x == 0u ? dx : x == 1u ? dy : dz) * far_inverse;
+        group->shear[1][r] = (y == 0u ? dx : y == 1u ? dy : dz) * far_inverse;
+        group->shear[2][r] = far_inverse;
+        group->inverse[0][r] = ix;
+        group->inverse[1][r] = iy;
+        group->inverse[2][r] = iz;
+    }
+}
+
+DEVICE RayFrame frame_of(const Group* group, uint r) {
+    RayFrame frame;
+    for (int i = 0; i < 3; ++i) {
+        frame.origin[i] = group->origin[i][r];
+        frame.shear[i] = group->shear[i][r];
+        frame.axis[i] = group->axis[i][r];
+        frame.raw_origin[i] = group->position[i][r];
+        frame.inverse[i] = group->inverse[i][r];
+        const uint down = (uint)(frame.inverse[i] < 0.0f);
+        frame.near_plane[i] = (uint)i + 3u * down;
+        frame.far_plane[i] = (uint)i + 3u * (1u - down);
+    }
+    return frame;
+}
+// NOLINTEND(modernize-use-using)

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ray of a vertex, as the target sees it.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
+
+typedef struct {
+    float position[3]; // target frame
+    float direction[3];
+    float reach;
+} SourceRay;
+
+// slot: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
+DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT vertices,
+                            uint slot) {
+    SourceRay ray;
+    GLOBAL const VertexBlock* RESTRICT block = vertices + slot / VERTEX_LANES;
+    const uint lane = slot % VERTEX_LANES;
+    GLOBAL const float* r = pair->rotation;
+    const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
+    const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];
+    for (int i = 0; i < 3; ++i) {
+        ray.position[i] = ((r[3 * i] * x + r[3 * i + 1] * y) + r[3 * i + 2] * z) + pair->translation[i];
+        ray.direction[i] = (r[3 * i] * dx + r[3 * i + 1] * dy) + r[3 * i + 2] * dz;
+    }
+    ray.reach = block->exit[lane];
+    return ray;
+}
+// NOLINTEND(modernize-use-using)
