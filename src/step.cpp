@@ -35,11 +35,18 @@ void NarrowPhase::rename(std::vector<kernels::LocalContact>& contacts, std::span
     for (kernels::LocalContact& contact : contacts) contact.pair = ordered[contact.pair];
 }
 
-// Makes one of two runs of local_, the second beginning there.
-void NarrowPhase::merge(std::vector<kernels::LocalContact>::iterator second) {
-    other_.resize(local_.size());
-    std::merge(local_.begin(), second, second, local_.end(), other_.begin(), by_pair);
-    local_.swap(other_);
+// Makes one of two runs, the second beginning there.
+void NarrowPhase::merge(std::vector<kernels::LocalContact>& contacts, std::size_t second) {
+    const auto middle = contacts.begin() + static_cast<std::ptrdiff_t>(second);
+    merged_.resize(contacts.size());
+    std::merge(contacts.begin(), middle, middle, contacts.end(), merged_.begin(), by_pair);
+    contacts.swap(merged_);
+}
+
+void NarrowPhase::add(std::vector<kernels::LocalContact>& contacts, std::span<const kernels::LocalContact> others) {
+    const std::size_t second = contacts.size();
+    contacts.insert(contacts.end(), others.begin(), others.end());
+    merge(contacts, second);
 }
 
 // Every vertex in the other body's bounds casts its ray, unless a grid knows that it is outside.
@@ -91,25 +98,30 @@ void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const P
 
 // The same contacts; pairs, and blocks of vertices, that cannot touch yet are left alone.
 void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
-    Device& on = device();
     motion_.update(executor(), bodies);
-    certified_.fill(on, executor(), shapes_, bodies, pairs, motion_, settings_.displacement_threshold);
+    cast_certified(bodies, pairs, settings_.displacement_threshold, local_, stats);
+}
+
+void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                                 std::optional<double> threshold, std::vector<kernels::LocalContact>& contacts,
+                                 StepStats& stats) {
+    Device& on = device();
+    certified_.fill(on, executor(), shapes_, bodies, pairs, motion_, threshold);
     certified_.cast(on, settings_.caster, shapes_);
-    stats.side_tests =
-        gather_.run(on, shapes_.arrays(), certified_.pairs(), certified_.rays(), certified_.hits(), local_);
-    rename(local_, certified_.ordered());
-    stats.vertices = certified_.vertices_tested();
-    stats.rays = certified_.vertices_inside();
-    stats.rays_cast = certified_.rays_cast();
-    stats.pairs_full = certified_.full_looks();
-    stats.pairs_asleep = 2 * pairs.size() - certified_.ordered().size() - certified_.fast().size();
-    stats.pair_bytes = certified_.bytes();
+    stats.side_tests +=
+        gather_.run(on, shapes_.arrays(), certified_.pairs(), certified_.rays(), certified_.hits(), contacts);
+    rename(contacts, certified_.ordered());
+    stats.vertices += certified_.vertices_tested();
+    stats.rays += certified_.vertices_inside();
+    stats.rays_cast += certified_.rays_cast();
+    stats.pairs_full += certified_.full_looks();
+    stats.pairs_asleep += 2 * pairs.size() - certified_.ordered().size() - certified_.fast().size();
+    stats.pair_bytes += certified_.bytes();
     if (certified_.fast().empty()) return;
 
-    cast_near(bodies, pairs, certified_.fast(), other_, stats);
-    rename(other_, certified_.fast());
-    const auto kept = local_.insert(local_.end(), other_.begin(), other_.end());
-    merge(kept);
+    cast_near(bodies, pairs, certified_.fast(), near_, stats);
+    rename(near_, certified_.fast());
+    add(contacts, near_);
 }
 
 // Contacts followed from the last step, and in full for pairs that moved too far; not always those of `standard`.
@@ -117,11 +129,21 @@ void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const P
     Device& on = device();
     motion_.update(executor(), bodies);
     coherent_.follow(on, executor(), shapes_, bodies, pairs, motion_, settings_);
-    stats.side_tests = gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
+    stats.side_tests +=
+        gather_.run(on, shapes_.arrays(), coherent_.pairs(), coherent_.rays(), coherent_.hits(), local_);
     // Two runs, pairs looked at in full and followed ones, each in the order of the pairs.
     rename(local_, coherent_.ordered());
-    merge(std::is_sorted_until(local_.begin(), local_.end(), by_pair));
+    const auto second = std::is_sorted_until(local_.begin(), local_.end(), by_pair);
+    merge(local_, static_cast<std::size_t>(second - local_.begin()));
     coherent_.count(stats);
+
+    if (coherent_.fast().empty()) return certified_.clear(); // its pairs are those of the step before
+    fast_pairs_.clear();
+    for (const std::uint32_t i : coherent_.fast()) fast_pairs_.push_back(pairs[i]);
+    cast_certified(bodies, fast_pairs_, std::nullopt, certified_contacts_, stats);
+    for (kernels::LocalContact& contact : certified_contacts_)
+        contact.pair = 2 * coherent_.fast()[contact.pair / 2] + contact.pair % 2;
+    add(local_, certified_contacts_);
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,

@@ -34,6 +34,9 @@ private:
     void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    void cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                        std::optional<double> threshold, std::vector<kernels::LocalContact>& contacts,
+                        StepStats& stats);
     /// `standard` for ordered_.
     void cast_whole(std::vector<kernels::LocalContact>& contacts, StepStats& stats);
     /// The same contacts, without looking at blocks that are clear of the other body.
@@ -43,7 +46,8 @@ private:
     /// The rays of queue_. near: as cast_standard() has it.
     void cast_queue(bool near, std::vector<kernels::LocalContact>& contacts, StepStats& stats);
     static void rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered);
-    void merge(std::vector<kernels::LocalContact>::iterator second);
+    void merge(std::vector<kernels::LocalContact>& contacts, std::size_t second);
+    void add(std::vector<kernels::LocalContact>& contacts, std::span<const kernels::LocalContact> others);
     void forget();
 
     Settings settings_;
@@ -60,7 +64,8 @@ private:
     Array<kernels::Hit> hits_;
     Gather gather_;
     Placer placer_;
-    std::vector<kernels::LocalContact> local_, other_;
+    std::vector<Pair> fast_pairs_; ///< of predictive, that are left to certified
+    std::vector<kernels::LocalContact> local_, certified_contacts_, near_, merged_;
     Changes changes_;
 };
 

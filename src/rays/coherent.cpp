@@ -19,6 +19,13 @@ constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
 
 } // namespace
 
+// Whether a pair moves on to other triangles in a few steps: then seeking ahead costs more than it saves.
+bool CoherentRays::is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed) {
+    const ShapeData &first = a.shape->data(), &second = b.shape->data();
+    return speed
+           > std::min(0.015 * std::min(first.diagonal, second.diagonal), 0.125 * std::min(first.grain, second.grain));
+}
+
 // How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full
 // looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
 // Counts, not clocks: equal input, equal result.
@@ -26,10 +33,8 @@ double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, co
                                     double follows, bool predictive) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = 0.015 * size;
-    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead. So is a pair
-    // that moves on to other triangles in a few steps, where seeking ahead costs more than it saves.
-    const double grain = std::min(a.shape->data().grain, b.shape->data().grain);
-    if (speed > (predictive ? std::min(most, 0.25 * grain) : most)) return 0.2 * least;
+    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
+    if (speed > most) return 0.2 * least;
     double threshold = 4 * speed;
     if (state.threshold >= least) {
         const double looks = cost_of_look[predictive ? 1 : 0] + state.look_cost;
@@ -44,6 +49,13 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
     PairState& state = table_.state(i);
     auto& [left, kept] = table_.hot(i);
     const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    const bool predictive = settings.method == Method::predictive;
+    if (predictive && !settings.displacement_threshold && is_too_fast(a, b, motion.pair_speed(pair))) {
+        turns_[i] = Turn::leave;
+        state = {};
+        table_.hot(i) = {};
+        return;
+    }
     const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
     if (state.threshold >= 0) { // it was looked at before
         const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
@@ -55,26 +67,25 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
             return;
         }
     }
-    full_[i] = 1;
+    turns_[i] = Turn::look;
     state.reference = now;
     const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
     state.looked = step_;
-    state.threshold = left =
-        settings.displacement_threshold
-            ? *settings.displacement_threshold
-            : next_threshold(a, b, state, motion.pair_speed(pair), follows, settings.method == Method::predictive);
+    state.threshold = left = settings.displacement_threshold
+                                 ? *settings.displacement_threshold
+                                 : next_threshold(a, b, state, motion.pair_speed(pair), follows, predictive);
     state.clear = state.culling = 0;
-    if (settings.method == Method::predictive)
+    if (predictive)
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
 }
 
 void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                            const Motion& motion, const Settings& settings) {
     const bool predictive = settings.method == Method::predictive;
-    full_.resize(pairs.size());
+    turns_.resize(pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         const auto asleep = [&](std::uint32_t i, Hot& hot) {
-            full_[i] = 0;
+            turns_[i] = Turn::follow;
             hot.slack -= motion.pair_bound(pairs[i]);
             return hot.slack >= 0;
         };
@@ -82,11 +93,14 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     });
 
     active_.clear();
-    for (std::uint32_t i = 0; i < pairs.size(); ++i)
-        if (full_[i] != 0) active_.insert(active_.end(), {2 * i, 2 * i + 1});
+    fast_.clear();
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        if (turns_[i] == Turn::look) active_.insert(active_.end(), {2 * i, 2 * i + 1});
+        if (turns_[i] == Turn::leave) fast_.push_back(i);
+    }
     full_count_ = active_.size();
     for (std::uint32_t i = 0; i < pairs.size(); ++i)
-        for (std::uint32_t d = 0; full_[i] == 0 && d < 2; ++d)
+        for (std::uint32_t d = 0; turns_[i] == Turn::follow && d < 2; ++d)
             if (table_.hot(i).kept[d].count > 0) active_.push_back(2 * i + d);
 
     host_pairs_.resize(active_.size());
@@ -237,16 +251,16 @@ void CoherentRays::follow(Device& device, Executor& executor, const ShapeStore& 
 }
 
 void CoherentRays::count(StepStats& stats) const {
-    stats.vertices = sums_.vertices;
-    stats.rays = sums_.rays;
-    stats.rays_cast = sums_.rays_cast;
-    stats.pairs_full = full_count_;
-    stats.pairs_asleep = 2 * open_pairs_ - active_.size();
-    stats.walks = sums_.walks;
-    stats.walks_lost = sums_.walks_lost;
-    stats.walk_casts = sums_.walk_casts;
-    stats.predictions = sums_.predictions;
-    stats.pair_bytes = table_.bytes() + candidates_kept_ * sizeof(kernels::Candidate);
+    stats.vertices += sums_.vertices;
+    stats.rays += sums_.rays;
+    stats.rays_cast += sums_.rays_cast;
+    stats.pairs_full += full_count_;
+    stats.pairs_asleep += 2 * (open_pairs_ - fast_.size()) - active_.size();
+    stats.walks += sums_.walks;
+    stats.walks_lost += sums_.walks_lost;
+    stats.walk_casts += sums_.walk_casts;
+    stats.predictions += sums_.predictions;
+    stats.pair_bytes += table_.bytes() + candidates_kept_ * sizeof(kernels::Candidate);
 }
 
 } // namespace raycontact

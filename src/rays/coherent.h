@@ -14,6 +14,7 @@ namespace raycontact {
 
 /// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
 /// that moved less than a threshold since it was last looked at in full follows the rays it kept; others cast anew.
+/// Where the threshold of `predictive` is left to the library, pairs too fast to be followed are left to others.
 class CoherentRays {
 public:
     void follow(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
@@ -25,6 +26,8 @@ public:
     const Array<kernels::Hit>& hits() const { return hits_; }
     /// 2 x pair + direction of each of pairs(): first those looked at in full, then those followed, each ascending.
     std::span<const std::uint32_t> ordered() const { return active_; }
+    /// Of the pairs of the last step those that are none of ours in it, ascending.
+    std::span<const std::uint32_t> fast() const { return fast_; }
     /// Adds what the last step did.
     void count(StepStats& stats) const;
 
@@ -55,12 +58,15 @@ private:
     };
     static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
                                  double follows, bool predictive);
+    static bool is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed);
     Kept& kept(std::uint32_t ordered) { return table_.hot(ordered / 2).kept[ordered % 2]; }
 
     PairTable<PairState, Hot> table_;
     Scan scan_;
-    std::vector<std::uint8_t> full_;    ///< per pair
+    enum class Turn : std::uint8_t { follow, look, leave };
+    std::vector<Turn> turns_;           ///< per pair
     std::vector<std::uint32_t> active_; ///< ordered pairs
+    std::vector<std::uint32_t> fast_;   ///< pairs
     std::size_t full_count_ = 0;        ///< of active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> cullings_, reaches_, margins_; ///< of active_, of the full ones, of the full ones
