@@ -56,6 +56,7 @@ public:
     bool build(std::vector<Item> items) {
         items_ = std::move(items);
         const int root = split(0, items_.size());
+        if (!balanced_) weigh();
         return collapse(root, 0, 1);
     }
 
@@ -152,31 +153,56 @@ private:
         return static_cast<uint>(shape_.triangle_blocks.size() - 1);
     }
 
-    // Up to sixteen descendants become the children of one wide node: the largest is opened first, or, to bound the
-    // depth, four levels at once.
-    std::vector<int> children_of(int branch) const {
-        std::vector<int> children{branch};
-        for (int opened = 0; children.size() < NODE_LANES && opened < NODE_LANES - 1; ++opened) {
-            int largest = -1;
-            double area = -1;
-            for (std::size_t i = 0; i < children.size(); ++i) {
-                const Branch& b = branches_[children[i]];
-                // Balanced: always the first unopened of the shallowest level, that is, breadth first.
-                if (b.left >= 0 && (balanced_ ? largest < 0 : b.box.area() > area)) {
-                    largest = static_cast<int>(i);
-                    area = b.box.area();
+    // Which binary branches become wide nodes, so that the sum of their areas, the nodes that a ray is expected to
+    // visit, is least: of each branch, the cheapest way to cover it with up to so many leaves and nodes, from below
+    // (after Pinter 2010). The largest branches opened first would leave most nodes above the leaves nearly empty.
+    void weigh() {
+        ways_.resize(branches_.size());
+        for (std::size_t id = branches_.size(); id-- > 0;) { // children come after their parents
+            const Branch& b = branches_[id];
+            std::array<Way, NODE_LANES>& ways = ways_[id];
+            if (b.left < 0) continue; // a leaf is tested however it is reached
+            const auto &left = ways_[b.left], &right = ways_[b.right];
+            for (std::size_t most = 1; most < NODE_LANES; ++most) {
+                ways[most].cost = std::numeric_limits<float>::infinity();
+                for (std::size_t k = 0; k < most; ++k) {
+                    const float cost = left[k].cost + right[most - 1 - k].cost;
+                    if (cost < ways[most].cost) ways[most] = {cost, static_cast<int>(k) + 1};
                 }
             }
-            if (largest < 0) break;
-            const Branch& b = branches_[children[largest]];
-            if (balanced_) { // breadth first: the children go to the end of the queue
-                children.erase(children.begin() + largest);
-                children.push_back(b.left);
-                children.push_back(b.right);
-            } else {
-                children[largest] = b.left;
-                children.insert(children.begin() + largest + 1, b.right);
-            }
+            ways[0] = {static_cast<float>(b.box.area()) + ways[NODE_LANES - 1].cost, 0};
+            for (std::size_t most = 1; most + 1 < NODE_LANES; ++most)
+                if (ways[0].cost <= ways[most].cost) ways[most] = ways[0];
+        }
+    }
+
+    // What covers a branch with up to `most` children of a wide node.
+    void cover(int branch, std::size_t most, std::vector<int>& children) const {
+        const int of_left = ways_[branch][most - 1].of_left;
+        if (of_left == 0) return children.push_back(branch);
+        cover(branches_[branch].left, static_cast<std::size_t>(of_left), children);
+        cover(branches_[branch].right, most - static_cast<std::size_t>(of_left), children);
+    }
+
+    std::vector<int> children_of(int branch) const {
+        if (balanced_) return four_levels(branch);
+        std::vector<int> children;
+        cover(branch, NODE_LANES, children);
+        return children;
+    }
+
+    // To bound the depth.
+    std::vector<int> four_levels(int branch) const {
+        std::vector<int> children{branch};
+        while (children.size() < NODE_LANES) {
+            // Breadth first: the children go to the end of the queue.
+            const auto next =
+                std::find_if(children.begin(), children.end(), [&](int child) { return branches_[child].left >= 0; });
+            if (next == children.end()) break;
+            const Branch& b = branches_[*next];
+            children.erase(next);
+            children.push_back(b.left);
+            children.push_back(b.right);
         }
         return children;
     }
@@ -217,7 +243,13 @@ private:
     double grow_;
     bool balanced_;
     std::vector<Item> items_;
+    // How a branch is covered at the least cost: by itself, or so many for its left part and the rest for its right.
+    struct Way {
+        float cost = 0;
+        int of_left = 0;
+    };
     std::vector<Branch> branches_;
+    std::vector<std::array<Way, NODE_LANES>> ways_; ///< by branch, with up to 1, 2, ... of them
     std::vector<double> right_area_;
 };
 
