@@ -34,8 +34,9 @@ struct Settings {
     Direction direction = Direction::reprojected;
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
-    /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and chosen
-    /// again as it moves. With `certified` no contact depends on it.
+    /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
+    /// chosen again as it moves; a pair too fast for `predictive` is then left to `certified` (docs/design.md). With
+    /// `certified` no contact depends on it.
     std::optional<double> displacement_threshold;
     /// How far ahead of a vertex its predictive ray looks, in displacement thresholds; at least 1 (paper equation 1).
     double confidence = 2;

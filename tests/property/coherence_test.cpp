@@ -434,4 +434,49 @@ TEST(coherence, memory_follows_the_pairs_that_overlap) {
     }
 }
 
+// Where no threshold is set, `predictive` follows no pair that is fast: it leaves them to `certified`, and takes them
+// back.
+TEST(coherence, predictive_leaves_fast_pairs_to_certified) {
+    Settings settings;
+    settings.threads = 1;
+    settings.method = Method::standard;
+    Scene standard(settings);
+    settings.method = Method::predictive;
+    Scene predictive(settings);
+    const std::vector<Pair> pairs = add_couples(standard, 6);
+    add_couples(predictive, 6);
+    // The first pair is always slow, so that fast ones are some of many.
+    std::vector<double> apart(pairs.size(), 0.9), way(pairs.size(), 1);
+    std::uint64_t compared = 0, walks_of_all = 0, walks_of_one = 0;
+    for (int step = 0; step < 200; ++step) {
+        const bool fast = step / 20 % 2 == 1;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            apart[i] += way[i] * (fast && i > 0 ? 0.015 + 0.001 * double(i) : 0.0004);
+            if (apart[i] < 0.8 || apart[i] > 0.95) way[i] = apart[i] > 0.9 ? -1 : 1;
+            Pose pose;
+            pose.translation = {10.0 * double(i), apart[i], 0};
+            standard.set_pose(pairs[i].second, pose);
+            predictive.set_pose(pairs[i].second, pose);
+        }
+        const auto of_fast = [&](std::span<const Contact> contacts) {
+            std::vector<Contact> of;
+            for (const Contact& c : contacts)
+                if (c.body_a != pairs[0].first) of.push_back(c);
+            return of;
+        };
+        const std::vector<Contact> expected = of_fast(standard.step(pairs)), found = of_fast(predictive.step(pairs));
+        if (step % 20 < 2) continue; // a pair that sped up is followed until it has come as far as it was to be
+        (fast ? walks_of_one : walks_of_all) += predictive.stats().walks;
+        if (!fast) continue;
+        ASSERT_TRUE(same_bits(expected, found)) << "step " << step;
+        compared += found.size();
+    }
+    std::printf("[ counts   ] %llu contacts of fast pairs; %llu rays followed of six slow pairs, %llu of one\n",
+                static_cast<unsigned long long>(compared), static_cast<unsigned long long>(walks_of_all),
+                static_cast<unsigned long long>(walks_of_one));
+    EXPECT_GT(compared, 1000u);
+    EXPECT_GT(walks_of_one, 100u);
+    EXPECT_GT(walks_of_all, 4 * walks_of_one);
+}
+
 } // namespace
