@@ -4,7 +4,6 @@
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define SIDE_DIRECTIONS 4
-#define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
 #define CASTER_BASIC 0
 #define CASTER_BVH 1
 
@@ -28,10 +27,6 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
     Closest closest = nothing_hit(reach, shape->tolerance);
     traverse_basic(&closest, ray, 1u, shape, blocks);
     return closest;
-}
-
-DEVICE float probe_of(GLOBAL const ShapeHeader* RESTRICT shape) {
-    return PROBE_TOLERANCES * shape->tolerance;
 }
 
 // What the ray meets first. Where a grid has sorted out the vertices far outside, most rays end close by
@@ -118,7 +113,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
             const Ray ray = rays[i + r];
             const uint target = pairs[ray.pair].target;
             const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
-            add_ray(&group, i + r, &source, source.reach, probe_of(shapes + target), ray.pair, target, shapes + target);
+            add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
         }
         frame_group(&group, false);
         find_group(own, &group, short_first, shapes, nodes, blocks);

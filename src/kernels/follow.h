@@ -262,7 +262,7 @@ DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GL
         hits[at] = hit;
         nexts[at] = hit.triangle;
         if (predictive == 0u || hit.triangle != NONE) continue;
-        add_ray(ahead, at, &source, cullings[pair], probe_of(shapes + target), pair, target, shapes + target);
+        add_ray(ahead, at, &source, cullings[pair], pair, target, shapes);
         if (is_full(ahead)) cast_ahead(ahead, shapes, nodes, blocks, nexts);
     }
     casting->count = 0u;
@@ -293,11 +293,11 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
         hows[i] = end.how;
         if ((end.how & CAST) == 0u) continue;
         if (inside != 0u && starts[i] != AHEAD_ONLY) {
-            add_ray(&casting, i, &source, source.reach, probe_of(shape), ray.pair, target, shape);
+            add_ray(&casting, i, &source, source.reach, ray.pair, target, shapes);
             if (is_full(&casting))
                 cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
         } else if (predictive != 0u && end.next == NONE) {
-            add_ray(&ahead, i, &source, culling, probe_of(shape), ray.pair, target, shape);
+            add_ray(&ahead, i, &source, culling, ray.pair, target, shapes);
             if (is_full(&ahead)) cast_ahead(&ahead, shapes, nodes, blocks, nexts);
         }
     }

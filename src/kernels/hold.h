@@ -283,7 +283,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
             after[i] = held;
         }
         casts[i] = 1u - known;
-        if (known == 0u) add_ray(&waiting, i, &source, source.reach, probe_of(shape), ray.pair, target, shape);
+        if (known == 0u) add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
         if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
 #if RAYS_IN_GROUP > 1

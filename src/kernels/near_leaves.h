@@ -3,7 +3,7 @@
 // sought once for all, and each ray is tested against those leaves alone. For a CPU.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 #if RAYS_IN_GROUP > 1
-#define GROUP_VISITS (8 * RAYS_IN_GROUP)
+#define GROUP_VISITS (8 * RAYS_IN_GROUP) // a ray alone has two or three leaves
 
 // Rays of a group that belong to one pair lie side by side, short ones in a small box.
 typedef struct {
@@ -85,12 +85,15 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, const Node* R
         level = 1u - level;
         below->count = 0u;
         for (uint i = 0u; i < visits->count; ++i)
-            near[i] = children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
+            near[i] = ((full >> visits->who[i]) & 1u) != 0u
+                          ? 0u // in vain, and in the way of others
+                          : children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
         for (uint i = 0u; i < visits->count; i += 4u) {
             ulong left = four_sixteens(near, i, visits->count);
             const uint most = bit_count_of_long(left);
             if (below->count + most > GROUP_VISITS || leaves->count + most > GROUP_VISITS) {
-                for (uint j = i; j < i + 4u && j < visits->count; ++j) full |= 1u << visits->who[j];
+                for (uint j = i; j < i + 4u && j < visits->count; ++j)
+                    full |= near[j] != 0u ? 1u << visits->who[j] : 0u;
                 continue;
             }
             // Written to both, and kept in one: which it is, is hard to guess.
@@ -112,7 +115,8 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, const Node* R
     return full;
 }
 
-// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays.
+// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
+// children_in() let through only: the box of an empty one would come out the right way round.
 DEVICE uint rays_that_meet(const Group* group, const Node* RESTRICT node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];

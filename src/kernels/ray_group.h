@@ -3,6 +3,8 @@
 // group is one ray.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
+#define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
+
 // A ray in each lane; of its frame, what RayFrame holds.
 typedef struct {
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
@@ -23,10 +25,16 @@ DEVICE void clear_group(Group* group) {
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
-// at: whose ray it is. The group seeks it no farther than `probe`.
-DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, float probe, uint pair, uint target,
-                    GLOBAL const ShapeHeader* RESTRICT shape) {
+DEVICE float probe_of(GLOBAL const ShapeHeader* RESTRICT shape) {
+    return PROBE_TOLERANCES * shape->tolerance;
+}
+
+// at: whose ray it is. The group seeks no farther than a short ray.
+DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
+                    GLOBAL const ShapeHeader* RESTRICT shapes) {
     const uint r = group->count;
+    GLOBAL const ShapeHeader* RESTRICT shape = shapes + target;
+    const float probe = probe_of(shape);
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
         group->direction[i][r] = ray->direction[i];

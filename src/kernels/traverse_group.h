@@ -3,7 +3,7 @@
 // is done for all rays before the next one begins, so that hardly a branch hangs on a test that is not finished.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 #if RAYS_IN_GROUP > 1
-#define GROUP_LOOKS (3 * RAYS_IN_GROUP + TRIANGLE_LANES)
+#define GROUP_LOOKS (4 * RAYS_IN_GROUP) // one or two for a ray
 
 // Triangles to be looked at closely, each by its ray.
 typedef struct {
@@ -34,9 +34,10 @@ DEVICE void look_closely(Closest* closest, const Group* group, const Visits* lea
             const float az = corner[2][k] - oz, bz = corner[5][k] - oz, cz = corner[8][k] - oz;
             const Edges e = edges_of(corner[0][k] - ox, corner[1][k] - oy, az, corner[3][k] - ox, corner[4][k] - oy, bz,
                                      corner[6][k] - ox, corner[7][k] - oy, cz, shear[0][k], shear[1][k]);
-            const int through = ((e.u >= 0.0f) & (e.v >= 0.0f) & (e.w >= 0.0f));
+            const float area = area_of(e);
+            const int front = (e.u >= 0.0f) & (e.v >= 0.0f) & (e.w >= 0.0f);
             back[k] = (e.u <= 0.0f) & (e.v <= 0.0f) & (e.w <= 0.0f);
-            met[k] = (through | back[k]) & (int)(area_of(e) != 0.0f);
+            met[k] = (front | back[k]) & (int)(area != 0.0f);
             t[k] = distance_of(e, az, bz, cz, shear[2][k]);
         }
         for (uint k = 0u; k < few; ++k) {
@@ -62,8 +63,10 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, const Node* RES
     find_runs(&runs, group);
     for (uint lost = find_near_leaves(&near, &runs, nodes); lost != 0u; lost &= lost - 1u)
         full |= runs.rays[lowest_bit(lost)];
-    for (uint i = 0u; i < near.count; ++i)
-        near.meets[i] = runs.rays[near.run[i]] & rays_that_meet(group, nodes + near.node[i], near.lane[i]);
+    for (uint i = 0u; i < near.count; ++i) {
+        const uint meets = rays_that_meet(group, nodes + near.node[i], near.lane[i]);
+        near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
+    }
     leaves.count = 0u;
     for (uint i = 0u; i < near.count; i += 4u) {
         ulong left = four_sixteens(near.meets, i, near.count);

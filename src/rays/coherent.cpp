@@ -16,14 +16,16 @@ namespace {
 
 // Of a look at a pair without rays, in rays followed; `predictive` also casts for those.
 constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
+// Of the smaller body's diagonal: a pair that moves farther in a step is not worth following.
+constexpr double farthest = 0.015;
 
 } // namespace
 
 // Whether a pair moves on to other triangles in a few steps: then seeking ahead costs more than it saves.
 bool CoherentRays::is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed) {
     const ShapeData &first = a.shape->data(), &second = b.shape->data();
-    return speed
-           > std::min(0.015 * std::min(first.diagonal, second.diagonal), 0.125 * std::min(first.grain, second.grain));
+    const double size = std::min(first.diagonal, second.diagonal), grain = std::min(first.grain, second.grain);
+    return speed > std::min(farthest * size, 0.125 * grain);
 }
 
 // How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full
@@ -32,8 +34,8 @@ bool CoherentRays::is_too_fast(const PlacedBody& a, const PlacedBody& b, double 
 double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
                                     double follows, bool predictive) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    const double least = 0.001 * size, most = 0.015 * size;
-    // Too fast to be followed at all: looked at in full in every step, so nothing need be sought ahead.
+    const double least = 0.001 * size, most = farthest * size;
+    // Too fast to be followed (of `predictive` others take such a pair): looked at in full in every step.
     if (speed > most) return 0.2 * least;
     double threshold = 4 * speed;
     if (state.threshold >= least) {

@@ -32,6 +32,7 @@ public:
     void count(StepStats& stats) const;
 
 private:
+    enum class Turn : std::uint8_t { follow, look, leave };
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
                    const Settings& settings);
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -63,7 +64,6 @@ private:
 
     PairTable<PairState, Hot> table_;
     Scan scan_;
-    enum class Turn : std::uint8_t { follow, look, leave };
     std::vector<Turn> turns_;           ///< per pair
     std::vector<std::uint32_t> active_; ///< ordered pairs
     std::vector<std::uint32_t> fast_;   ///< pairs

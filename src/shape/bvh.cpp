@@ -42,6 +42,12 @@ struct Item {
     uint triangle;
 };
 
+// How a branch is covered at the least cost: by itself, or so many for its left part and the rest for its right.
+struct Way {
+    float cost = 0;
+    int of_left = 0;
+};
+
 struct Branch {
     Box box;
     int left = -1, right = -1;
@@ -56,7 +62,12 @@ public:
     bool build(std::vector<Item> items) {
         items_ = std::move(items);
         const int root = split(0, items_.size());
-        if (!balanced_) weigh();
+        if (!balanced_) {
+            weigh();
+            if (collapse(root, 0, 1)) return true;
+            ways_ = {};
+            shape_.nodes.clear();
+        }
         return collapse(root, 0, 1);
     }
 
@@ -185,7 +196,7 @@ private:
     }
 
     std::vector<int> children_of(int branch) const {
-        if (balanced_) return four_levels(branch);
+        if (ways_.empty()) return four_levels(branch);
         std::vector<int> children;
         cover(branch, NODE_LANES, children);
         return children;
@@ -243,11 +254,6 @@ private:
     double grow_;
     bool balanced_;
     std::vector<Item> items_;
-    // How a branch is covered at the least cost: by itself, or so many for its left part and the rest for its right.
-    struct Way {
-        float cost = 0;
-        int of_left = 0;
-    };
     std::vector<Branch> branches_;
     std::vector<std::array<Way, NODE_LANES>> ways_; ///< by branch, with up to 1, 2, ... of them
     std::vector<double> right_area_;
