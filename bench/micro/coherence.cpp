@@ -180,7 +180,8 @@ void Coherence::look_at_watches() {
 }
 
 void Coherence::write_watch_rays() {
-    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, segment_firsts_, watch_rays_);
+    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, segment_rays_, segment_firsts_,
+                                       watch_rays_);
 }
 
 void Coherence::hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before,

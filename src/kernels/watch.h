@@ -96,13 +96,15 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     }
 }
 
+// counts: rays of each segment. A list is read no farther than its last one.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
-                             GLOBAL const Watch* RESTRICT watches, GLOBAL const uint* RESTRICT firsts,
-                             GLOBAL Ray* RESTRICT rays) {
+                             GLOBAL const Watch* RESTRICT watches, GLOBAL const uint* RESTRICT counts,
+                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
+        const uint end = firsts[s] + counts[s];
         uint at = firsts[s];
-        for (uint i = segment.first; i < segment.first + segment.count; ++i) {
+        for (uint i = segment.first; at < end; ++i) {
             uint lanes = watches[i].cast;
             while (lanes != 0u) {
                 Ray ray;

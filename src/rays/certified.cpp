@@ -224,7 +224,7 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
                                       watches_, looks_, counts_);
     rays_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
-                                       firsts_, rays_);
+                                       counts_, firsts_, rays_);
     host_looks_.resize(host_segments_.size());
     looks_.read(device, host_looks_);
     inside_ = blocks_ = 0;
