@@ -29,36 +29,33 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
     return closest;
 }
 
-// What the ray meets first. Where a grid has sorted out the vertices far outside, most rays end close by
+// What the ray meets first, by the BVH. Where a grid has sorted out the vertices far outside, most rays end close by
 // (`short_first`): a short one visits few boxes, and what it finds within its length is the closest of all.
-DEVICE Closest find_closest(const uint caster, uint short_first, const RayFrame* frame, float reach,
+DEVICE Closest find_closest(uint short_first, const RayFrame* frame, float reach,
                             GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                             GLOBAL const TriangleBlock* RESTRICT blocks) {
     const float probe = probe_of(shape);
-    if (caster == CASTER_BVH && short_first != 0u && probe < reach) {
-        const Closest near = traverse(caster, frame, probe, shape, nodes, blocks);
+    if (short_first != 0u && probe < reach) {
+        const Closest near = traverse_bvh(frame, probe, shape, nodes, blocks);
         if (near.back <= probe || near.front <= probe) return near;
     }
-    return traverse(caster, frame, reach, shape, nodes, blocks);
+    return traverse_bvh(frame, reach, shape, nodes, blocks);
 }
 
-// find_closest() for each ray of a framed group, by the BVH.
-DEVICE void find_group(Closest* own, const Group* group, uint short_first, GLOBAL const ShapeHeader* RESTRICT shapes,
-                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
-#if RAYS_IN_GROUP > 1
-    const bool grouped = short_first != 0u;
+// find_closest() for each ray of a group, or for its opposite.
+DEVICE void find_group(Closest* own, Group* group, const bool opposite, uint short_first,
+                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                       GLOBAL const TriangleBlock* RESTRICT blocks) {
+    frame_group(group, opposite);
+    const bool grouped = RAYS_IN_GROUP > 1 && short_first != 0u;
     const uint alone = grouped ? traverse_group(own, group, nodes, blocks) : 0u;
-#else
-    const bool grouped = false;
-    const uint alone = 0u;
-#endif
     for (uint r = 0u; r < group->count; ++r) {
         GLOBAL const ShapeHeader* shape = shapes + group->target[r];
         const float length = group->length[r], reach = group->reach[r];
         const uint found = grouped ? (uint)(own[r].back <= length) | (uint)(own[r].front <= length) : 0u;
         if (grouped && ((alone >> r) & 1u) == 0u && (found != 0u || length >= reach)) continue;
         const RayFrame frame = frame_of(group, r);
-        own[r] = find_closest(CASTER_BVH, grouped ? 0u : short_first, &frame, reach, shape, nodes, blocks);
+        own[r] = find_closest(grouped ? 0u : short_first, &frame, reach, shape, nodes, blocks);
     }
 }
 
@@ -92,12 +89,15 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
     return hit;
 }
 
-DEVICE Hit cast_ray(const uint caster, uint short_first, const SourceRay* ray, GLOBAL const ShapeHeader* RESTRICT shape,
-                    GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                    GLOBAL const Packed3* RESTRICT normals) {
-    const RayFrame frame = frame_ray(ray->position, ray->direction);
-    const Closest own = find_closest(caster, short_first, &frame, ray->reach, shape, nodes, blocks);
-    return decide(caster, ray, &own, shape, nodes, blocks, normals);
+// What the rays of a group meet, and what that makes of each of them: hits by whose they are.
+DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL const ShapeHeader* RESTRICT shapes,
+                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                       GLOBAL const Packed3* RESTRICT normals, GLOBAL Hit* RESTRICT hits) {
+    find_group(own, group, false, short_first, shapes, nodes, blocks);
+    for (uint r = 0u; r < group->count; ++r) {
+        const SourceRay ray = ray_of(group, r);
+        hits[group->at[r]] = decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals);
+    }
 }
 
 KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const OrderedPair* RESTRICT pairs,
@@ -115,12 +115,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
             const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
             add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
         }
-        frame_group(&group, false);
-        find_group(own, &group, short_first, shapes, nodes, blocks);
-        for (uint r = 0u; r < few; ++r) {
-            const SourceRay source = ray_of(&group, r);
-            hits[i + r] = decide(CASTER_BVH, &source, own + r, shapes + group.target[r], nodes, blocks, normals);
-        }
+        cast_group(own, &group, short_first, shapes, nodes, blocks, normals, hits);
     }
 }
 

@@ -32,21 +32,6 @@ DEVICE Hit no_hit(uint sides) {
     return hit;
 }
 
-// The frame of the opposite ray, mirrored, so that faces keep the side they show to the ray itself.
-DEVICE RayFrame opposite_frame(const SourceRay* ray) {
-    const float direction[3] = {-ray->direction[0], -ray->direction[1], -ray->direction[2]};
-    RayFrame frame = frame_ray(ray->position, direction);
-    const uint axis = frame.axis[0];
-    frame.axis[0] = frame.axis[1];
-    frame.axis[1] = axis;
-    const float origin = frame.origin[0], shear = frame.shear[0];
-    frame.origin[0] = frame.origin[1];
-    frame.origin[1] = origin;
-    frame.shear[0] = frame.shear[1];
-    frame.shear[1] = shear;
-    return frame;
-}
-
 // The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
 // (paper equation 1), where the ray is cut (paper section 5.3).
 DEVICE uint predicted(const Closest* ahead, float culling) {
@@ -58,18 +43,18 @@ DEVICE uint predicted(const Closest* ahead, float culling) {
 DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive, float culling,
                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
-    Outcome end;
-    end.how = CAST;
+    const RayFrame frame = frame_ray(ray->position, ray->direction);
+    Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
     if (predictive != 0u) {
-        const RayFrame frame = frame_ray(ray->position, ray->direction), opposite = opposite_frame(ray);
-        Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
+        const RayFrame opposite = frame_opposite(ray->position, ray->direction);
         traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, blocks);
-        end.hit = own != 0u ? decide(CASTER_BASIC, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
-        end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
-        return end;
+    } else if (own != 0u) {
+        traverse_basic(&closest, &frame, 1u, shape, blocks);
     }
-    end.hit = own != 0u ? cast_ray(CASTER_BASIC, 1u, ray, shape, nodes, blocks, normals) : no_hit(0u);
-    end.next = end.hit.triangle;
+    Outcome end;
+    end.hit = own != 0u ? decide(CASTER_BASIC, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
+    end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
+    end.how = CAST;
     return end;
 }
 
@@ -241,8 +226,7 @@ KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT seg
 DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL uint* RESTRICT nexts) {
     Closest met[RAYS_IN_GROUP];
-    frame_group(ahead, true);
-    find_group(met, ahead, 1u, shapes, nodes, blocks);
+    find_group(met, ahead, true, 1u, shapes, nodes, blocks);
     for (uint r = 0u; r < ahead->count; ++r) nexts[ahead->at[r]] = predicted(met + r, ahead->reach[r]);
     ahead->count = 0u;
 }
@@ -253,16 +237,13 @@ DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GL
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
                                GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts) {
     Closest met[RAYS_IN_GROUP];
-    frame_group(casting, false);
-    find_group(met, casting, 1u, shapes, nodes, blocks);
+    cast_group(met, casting, 1u, shapes, nodes, blocks, normals, hits);
     for (uint r = 0u; r < casting->count; ++r) {
-        const uint at = casting->at[r], pair = casting->pair[r], target = casting->target[r];
+        const uint at = casting->at[r], pair = casting->pair[r];
+        nexts[at] = hits[at].triangle;
+        if (predictive == 0u || nexts[at] != NONE) continue;
         const SourceRay source = ray_of(casting, r);
-        const Hit hit = decide(CASTER_BVH, &source, met + r, shapes + target, nodes, blocks, normals);
-        hits[at] = hit;
-        nexts[at] = hit.triangle;
-        if (predictive == 0u || hit.triangle != NONE) continue;
-        add_ray(ahead, at, &source, cullings[pair], pair, target, shapes);
+        add_ray(ahead, at, &source, cullings[pair], pair, casting->target[r], shapes);
         if (is_full(ahead)) cast_ahead(ahead, shapes, nodes, blocks, nexts);
     }
     casting->count = 0u;
@@ -301,10 +282,10 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
             if (is_full(&ahead)) cast_ahead(&ahead, shapes, nodes, blocks, nexts);
         }
     }
-#if RAYS_IN_GROUP > 1
-    cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
-    cast_ahead(&ahead, shapes, nodes, blocks, nexts);
-#endif
+    if (RAYS_IN_GROUP > 1) {
+        cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
+        cast_ahead(&ahead, shapes, nodes, blocks, nexts);
+    }
 }
 
 KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,

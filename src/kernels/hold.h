@@ -231,15 +231,13 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
                                GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits) {
     Closest own[RAYS_IN_GROUP];
-    frame_group(waiting, false);
-    find_group(own, waiting, 1u, shapes, nodes, blocks);
+    cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, hits);
     for (uint r = 0u; r < waiting->count; ++r) {
+        GLOBAL const Holder* holder = holders + waiting->pair[r];
+        if (is_idle(holder)) continue;
         const uint at = waiting->at[r];
         const SourceRay source = ray_of(waiting, r);
         GLOBAL const ShapeHeader* shape = shapes + waiting->target[r];
-        GLOBAL const Holder* holder = holders + waiting->pair[r];
-        hits[at] = decide(CASTER_BVH, &source, own + r, shape, nodes, blocks, normals);
-        if (is_idle(holder)) continue;
         Held held = after[at];
         const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
         const uint slot = held.slot;
@@ -286,8 +284,6 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         if (known == 0u) add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
         if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
-#if RAYS_IN_GROUP > 1
-    cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
-#endif
+    if (RAYS_IN_GROUP > 1) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
 }
 // NOLINTEND(modernize-use-using)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of a pair begin side by side, and short ones end there: what of the tree reaches into the box around them is
-// sought once for all, and each ray is tested against those leaves alone. For a CPU.
+// sought once for all, and each ray is tested against those leaves alone. Of use where RAYS_IN_GROUP is more than 1.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
-#if RAYS_IN_GROUP > 1
+
 #define GROUP_VISITS (8 * RAYS_IN_GROUP) // a ray alone has two or three leaves
 
 // Rays of a group that belong to one pair lie side by side, short ones in a small box.
@@ -69,7 +69,7 @@ DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
 }
 
 // Down the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
-DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, const Node* RESTRICT nodes) {
+DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, GLOBAL const Node* RESTRICT nodes) {
     Visits levels[2];
     uint near[GROUP_VISITS];
     uint full = 0u, level = 0u;
@@ -117,10 +117,11 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, const Node* R
 
 // A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
 // children_in() let through only: the box of an empty one would come out the right way round.
-DEVICE uint rays_that_meet(const Group* group, const Node* RESTRICT node, uint lane) {
+DEVICE uint rays_that_meet(const Group* group, GLOBAL const Node* RESTRICT node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
-    int meets[RAYS_IN_GROUP];
+    int meets[NODE_LANES];
+    FOR_LANES(r, NODE_LANES) meets[r] = 0;
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
         const float ix = group->inverse[0][r], iy = group->inverse[1][r], iz = group->inverse[2][r];
@@ -128,14 +129,9 @@ DEVICE uint rays_that_meet(const Group* group, const Node* RESTRICT node, uint l
         const float bx = (high_x - px) * ix, by = (high_y - py) * iy, bz = (high_z - pz) * iz;
         const float nx = ax < bx ? ax : bx, ny = ay < by ? ay : by, nz = az < bz ? az : bz;
         const float fx = ax < bx ? bx : ax, fy = ay < by ? by : ay, fz = az < bz ? bz : az;
-        const float tolerance = group->tolerance[r], limit = group->length[r] + tolerance;
-        const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
-        const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
-        const float enter = nxy > nzt ? nxy : nzt;
-        const float leave = fxy < fzt ? fxy : fzt;
-        meets[r] = -(int)(enter <= leave);
+        const float tolerance = group->tolerance[r];
+        meets[r] = -(int)meets_box(nx, ny, nz, fx, fy, fz, group->length[r] + tolerance, tolerance);
     }
     return pack_sixteen(meets);
 }
-#endif
 // NOLINTEND(modernize-use-using)

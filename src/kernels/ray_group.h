@@ -64,37 +64,33 @@ DEVICE SourceRay ray_of(const Group* group, uint r) {
     return ray;
 }
 
-// frame_ray() for every lane. mirrored: of the ray against the given direction, which is turned; see opposite_frame().
-DEVICE void frame_group(Group* group, const bool mirrored) {
-    const float sign = mirrored ? -1.0f : 1.0f;
+// frame_ray() for every lane, where components are chosen instead of looked up. opposite: frame_opposite(); then the
+// rays themselves are turned, too.
+DEVICE void frame_group(Group* group, const bool opposite) {
+    const float sign = opposite ? -1.0f : 1.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
         const float dx = sign * group->direction[0][r], dy = sign * group->direction[1][r];
         const float dz = sign * group->direction[2][r];
-        const float ax = magnitude_of(dx), ay = magnitude_of(dy), az = magnitude_of(dz);
-        const float larger = ax > ay ? ax : ay;
-        const uint z = larger > az ? (uint)(ax <= ay) : 2u;
-        const uint next = z == 2u ? 0u : z + 1u, last = 3u - z - next;
-        const float far = z == 0u ? dx : z == 1u ? dy : dz;
-        const uint down = (uint)(far < 0.0f) ^ (uint)mirrored;
-        const uint x = down != 0u ? last : next, y = down != 0u ? next : last;
         const float ix = safe_inverse(dx), iy = safe_inverse(dy), iz = safe_inverse(dz);
-        const float far_inverse = z == 0u ? ix : z == 1u ? iy : iz;
+        const uint z = largest_axis(dx, dy, dz);
+        const Axes axes = axes_of(z, component(z, dx, dy, dz), opposite);
+        const float along = component(z, ix, iy, iz);
         group->direction[0][r] = dx;
         group->direction[1][r] = dy;
         group->direction[2][r] = dz;
-        group->axis[0][r] = x;
-        group->axis[1][r] = y;
-        group->axis[2][r] = z;
-        group->origin[0][r] = x == 0u ? px : x == 1u ? py : pz;
-        group->origin[1][r] = y == 0u ? px : y == 1u ? py : pz;
-        group->origin[2][r] = z == 0u ? px : z == 1u ? py : pz;
-        group->shear[0][r] = (x == 0u ? dx : x == 1u ? dy : dz) * far_inverse;
-        group->shear[1][r] = (y == 0u ? dx : y == 1u ? dy : dz) * far_inverse;
-        group->shear[2][r] = far_inverse;
+        group->origin[0][r] = component(axes.x, px, py, pz);
+        group->origin[1][r] = component(axes.y, px, py, pz);
+        group->origin[2][r] = component(axes.z, px, py, pz);
+        group->shear[0][r] = component(axes.x, dx, dy, dz) * along;
+        group->shear[1][r] = component(axes.y, dx, dy, dz) * along;
+        group->shear[2][r] = along;
         group->inverse[0][r] = ix;
         group->inverse[1][r] = iy;
         group->inverse[2][r] = iz;
+        group->axis[0][r] = axes.x;
+        group->axis[1][r] = axes.y;
+        group->axis[2][r] = axes.z;
     }
 }
 
@@ -106,9 +102,6 @@ DEVICE RayFrame frame_of(const Group* group, uint r) {
         frame.axis[i] = group->axis[i][r];
         frame.raw_origin[i] = group->position[i][r];
         frame.inverse[i] = group->inverse[i][r];
-        const uint down = (uint)(frame.inverse[i] < 0.0f);
-        frame.near_plane[i] = (uint)i + 3u * down;
-        frame.far_plane[i] = (uint)i + 3u * (1u - down);
     }
     return frame;
 }

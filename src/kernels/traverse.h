@@ -65,25 +65,33 @@ DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Clos
     }
 }
 
+// Whether a ray that meets the near planes of a box at n, the far ones at f, meets the box no farther than the limit.
+DEVICE uint meets_box(float nx, float ny, float nz, float fx, float fy, float fz, float limit, float tolerance) {
+    const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
+    const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
+    const float enter = nxy > nzt ? nxy : nzt;
+    const float leave = fxy < fzt ? fxy : fzt;
+    return (uint)(enter <= leave);
+}
+
 // A bit for each child box that the ray meets no farther than the limit.
 DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, float limit, float tolerance) {
-    GLOBAL const float* RESTRICT near_x = node->bounds[ray->near_plane[0]];
-    GLOBAL const float* RESTRICT near_y = node->bounds[ray->near_plane[1]];
-    GLOBAL const float* RESTRICT near_z = node->bounds[ray->near_plane[2]];
-    GLOBAL const float* RESTRICT far_x = node->bounds[ray->far_plane[0]];
-    GLOBAL const float* RESTRICT far_y = node->bounds[ray->far_plane[1]];
-    GLOBAL const float* RESTRICT far_z = node->bounds[ray->far_plane[2]];
+    // Rows of Node.bounds that the ray meets first.
+    const uint x = ray->inverse[0] < 0.0f ? 3u : 0u, y = ray->inverse[1] < 0.0f ? 4u : 1u;
+    const uint z = ray->inverse[2] < 0.0f ? 5u : 2u;
+    GLOBAL const float* RESTRICT near_x = node->bounds[x];
+    GLOBAL const float* RESTRICT near_y = node->bounds[y];
+    GLOBAL const float* RESTRICT near_z = node->bounds[z];
+    GLOBAL const float* RESTRICT far_x = node->bounds[3u - x];
+    GLOBAL const float* RESTRICT far_y = node->bounds[5u - y];
+    GLOBAL const float* RESTRICT far_z = node->bounds[7u - z];
     const float px = ray->raw_origin[0], py = ray->raw_origin[1], pz = ray->raw_origin[2];
     const float ix = ray->inverse[0], iy = ray->inverse[1], iz = ray->inverse[2];
     int hit[NODE_LANES];
     FOR_LANES(k, NODE_LANES) {
         const float nx = (near_x[k] - px) * ix, ny = (near_y[k] - py) * iy, nz = (near_z[k] - pz) * iz;
         const float fx = (far_x[k] - px) * ix, fy = (far_y[k] - py) * iy, fz = (far_z[k] - pz) * iz;
-        const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
-        const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
-        const float enter = nxy > nzt ? nxy : nzt;
-        const float leave = fxy < fzt ? fxy : fzt;
-        hit[k] = -(int)(enter <= leave);
+        hit[k] = -(int)meets_box(nx, ny, nz, fx, fy, fz, limit, tolerance);
     }
     return pack_sixteen(hit);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short rays, several at a time, for a CPU. A ray by itself waits for each test before it knows the next; here a stage
-// is done for all rays before the next one begins, so that hardly a branch hangs on a test that is not finished.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
-#if RAYS_IN_GROUP > 1
+// Short rays, several at a time: where RAYS_IN_GROUP is more than 1, on a CPU. A ray by itself waits for each test
+// before it knows the next; here a stage is done for all rays before the next one begins, so that hardly a branch hangs
+// on a test that is not finished. NOLINTBEGIN(modernize-use-using): this text is C as well
+
 #define GROUP_LOOKS (4 * RAYS_IN_GROUP) // one or two for a ray
 
 // Triangles to be looked at closely, each by its ray.
@@ -13,7 +13,7 @@ typedef struct {
 
 // hit_lane() for all of them, sixteen at a time.
 DEVICE void look_closely(Closest* closest, const Group* group, const Visits* leaves, const Looks* looks,
-                         const TriangleBlock* RESTRICT blocks) {
+                         GLOBAL const TriangleBlock* RESTRICT blocks) {
     for (uint first = 0u; first < looks->count; first += TRIANGLE_LANES) {
         const uint left = looks->count - first, few = left < TRIANGLE_LANES ? left : TRIANGLE_LANES;
         float corner[9][TRIANGLE_LANES], origin[3][TRIANGLE_LANES], shear[3][TRIANGLE_LANES], t[TRIANGLE_LANES];
@@ -21,7 +21,7 @@ DEVICE void look_closely(Closest* closest, const Group* group, const Visits* lea
         for (uint k = 0u; k < TRIANGLE_LANES; ++k) {
             const uint i = first + (k < few ? k : 0u), visit = looks->visit[i], r = leaves->who[visit];
             const uint lane = looks->lane[i];
-            const TriangleBlock* RESTRICT block = blocks + leaves->at[visit];
+            GLOBAL const TriangleBlock* RESTRICT block = blocks + leaves->at[visit];
             for (uint j = 0u; j < 3u; ++j) {
                 const uint axis = group->axis[j][r];
                 for (uint c = 0u; c < 3u; ++c) corner[3u * c + j][k] = block->corner[3u * c + axis][lane];
@@ -51,8 +51,8 @@ DEVICE void look_closely(Closest* closest, const Group* group, const Visits* lea
 
 // The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that is to be cast
 // by itself.
-DEVICE uint traverse_group(Closest* closest, const Group* group, const Node* RESTRICT nodes,
-                           const TriangleBlock* RESTRICT blocks) {
+DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const Node* RESTRICT nodes,
+                           GLOBAL const TriangleBlock* RESTRICT blocks) {
     Runs runs;
     NearLeaves near;
     Visits leaves;
@@ -103,5 +103,4 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, const Node* RES
     look_closely(closest, group, &leaves, &looks, blocks);
     return full;
 }
-#endif
 // NOLINTEND(modernize-use-using)

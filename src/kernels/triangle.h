@@ -10,9 +10,7 @@ typedef struct {
     float shear[3];  // x / z, y / z, 1 / z
     uint axis[3];
     float raw_origin[3];
-    float inverse[3];   // 1 / direction, huge instead of infinite
-    uint near_plane[3]; // rows of Node.bounds
-    uint far_plane[3];
+    float inverse[3]; // 1 / direction, huge instead of infinite
 } RayFrame;
 
 // Closest hits so far. `limit` bounds what can still change the outcome.
@@ -28,30 +26,56 @@ DEVICE float safe_inverse(float d) {
     return 1.0f / (magnitude_of(d) < tiny ? least : d);
 }
 
-// Without a branch where it can be: where a ray points is as good as random, and a wrong guess costs more than it all.
-DEVICE RayFrame frame_ray(const float* p, const float* d) {
-    RayFrame ray;
-    const float ax = magnitude_of(d[0]), ay = magnitude_of(d[1]), az = magnitude_of(d[2]);
+// Axes of a frame: z where the direction is largest, the winding kept. Found without a branch: where a ray points is as
+// good as random, and a wrong guess costs more than it all.
+typedef struct {
+    uint x, y, z;
+} Axes;
+
+DEVICE uint largest_axis(float x, float y, float z) {
+    const float ax = magnitude_of(x), ay = magnitude_of(y), az = magnitude_of(z);
     const float larger = ax > ay ? ax : ay;
-    const uint z = larger > az ? (uint)(ax <= ay) : 2u;
+    const uint third = (uint) !(larger > az);
+    return 2u * third + ((third ^ 1u) & (uint)(ax <= ay));
+}
+
+DEVICE Axes axes_of(uint z, float along, const bool mirrored) {
     const uint next = (z + 1u) & (0u - (uint)(z != 2u)), last = 3u - z - next;
-    const uint swap = (next ^ last) & (0u - (uint)(d[z] < 0.0f)); // keeps the winding
-    const uint x = next ^ swap, y = last ^ swap;
-    ray.axis[0] = x;
-    ray.axis[1] = y;
-    ray.axis[2] = z;
+    const uint swap = (next ^ last) & (0u - ((uint)(along < 0.0f) ^ (uint)mirrored));
+    Axes axes;
+    axes.x = next ^ swap;
+    axes.y = last ^ swap;
+    axes.z = z;
+    return axes;
+}
+
+// mirrored: as if seen in a mirror, so that faces keep the side that they show to the opposite ray.
+DEVICE RayFrame frame_line(const float* p, const float* d, const bool mirrored) {
+    RayFrame ray;
+    const uint z = largest_axis(d[0], d[1], d[2]);
+    const Axes axes = axes_of(z, d[z], mirrored);
+    ray.axis[0] = axes.x;
+    ray.axis[1] = axes.y;
+    ray.axis[2] = axes.z;
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
         ray.inverse[i] = safe_inverse(d[i]);
-        const uint down = (uint)(ray.inverse[i] < 0.0f);
-        ray.near_plane[i] = (uint)i + 3u * down;
-        ray.far_plane[i] = (uint)i + 3u * (1u - down);
     }
-    ray.shear[2] = ray.inverse[z];
-    ray.shear[0] = d[x] * ray.inverse[z];
-    ray.shear[1] = d[y] * ray.inverse[z];
+    ray.shear[2] = ray.inverse[axes.z];
+    ray.shear[0] = d[axes.x] * ray.inverse[axes.z];
+    ray.shear[1] = d[axes.y] * ray.inverse[axes.z];
     return ray;
+}
+
+DEVICE RayFrame frame_ray(const float* p, const float* d) {
+    return frame_line(p, d, false);
+}
+
+// Of the opposite ray.
+DEVICE RayFrame frame_opposite(const float* p, const float* d) {
+    const float opposite[3] = {-d[0], -d[1], -d[2]};
+    return frame_line(p, opposite, true);
 }
 
 DEVICE void consider(Closest* closest, float t, bool back, uint triangle, float tolerance) {

@@ -56,4 +56,11 @@ DEVICE float magnitude_of(float x) {
 DEVICE float root_of(float x) {
     return __builtin_sqrtf(x);
 }
+// By masks: conditions asked again and again would be threaded to branches, which lanes cannot take.
+DEVICE float component(uint axis, float x, float y, float z) {
+    const uint is_x = 0U - static_cast<uint>(axis == 0), is_y = 0U - static_cast<uint>(axis == 1);
+    const uint is_z = 0U - static_cast<uint>(axis == 2);
+    return __builtin_bit_cast(float, (__builtin_bit_cast(uint, x) & is_x) | (__builtin_bit_cast(uint, y) & is_y)
+                                         | (__builtin_bit_cast(uint, z) & is_z));
+}
 } // namespace raycontact::kernels

@@ -22,14 +22,23 @@ typedef unsigned long long ulong;
 DEVICE uint lowest_bit(uint bits) {
     return (uint)__ffs((int)bits) - 1u;
 }
+DEVICE uint lowest_bit_of_long(ulong bits) {
+    return (uint)__ffsll((long long)bits) - 1u;
+}
 DEVICE uint bit_count(uint bits) {
     return (uint)__popc(bits);
+}
+DEVICE uint bit_count_of_long(ulong bits) {
+    return (uint)__popcll(bits);
 }
 DEVICE float magnitude_of(float x) {
     return fabsf(x);
 }
 DEVICE float root_of(float x) {
     return __fsqrt_rn(x);
+}
+DEVICE float component(uint axis, float x, float y, float z) {
+    return axis == 0u ? x : axis == 1u ? y : z;
 }
 DEVICE uint pack_sixteen(const int* lanes) {
     uint bits = 0u;

@@ -21,14 +21,23 @@
 DEVICE uint lowest_bit(uint bits) {
     return 31u - clz(bits & (0u - bits));
 }
+DEVICE uint lowest_bit_of_long(ulong bits) {
+    return (uint)(63ul - clz(bits & (0ul - bits)));
+}
 DEVICE uint bit_count(uint bits) {
     return popcount(bits);
+}
+DEVICE uint bit_count_of_long(ulong bits) {
+    return (uint)popcount(bits);
 }
 DEVICE float magnitude_of(float x) {
     return fabs(x);
 }
 DEVICE float root_of(float x) {
     return sqrt(x);
+}
+DEVICE float component(uint axis, float x, float y, float z) {
+    return axis == 0u ? x : axis == 1u ? y : z;
 }
 DEVICE uint pack_sixteen(const int* lanes) {
     uint bits = 0u;

@@ -86,7 +86,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         const auto radius = static_cast<float>(std::pow(10.0, random.uniform(-3, -1)) * target.diagonal);
         const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
         const kernels::prototype::Closest own = kernels::prototype::find_closest(
-            CASTER_BVH, 0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
+            0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
         kernels::Holder holder{0, 0, static_cast<float>(margin), radius};
         const kernels::Held held = kernels::prototype::seek_tube(&ray, &own, &holder, &target.header,
                                                                  target.nodes.data(), target.triangle_blocks.data());
@@ -126,7 +126,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
             };
             const kernels::Hit said = decide(closest);
             const kernels::Hit truth = decide(kernels::prototype::find_closest(
-                CASTER_BVH, 0, &view, moved.reach, &target.header, target.nodes.data(), target.triangle_blocks.data()));
+                0, &view, moved.reach, &target.header, target.nodes.data(), target.triangle_blocks.data()));
             counts.contacts += truth.triangle != NONE;
             if (said.triangle != truth.triangle || said.distance != truth.distance || said.facing != truth.facing
                 || said.sides != truth.sides)
