@@ -3,10 +3,11 @@
 
 #include "contacts/changes.h"
 #include "contacts/gather.h"
+#include "contacts/local_contacts.h"
 #include "contacts/place.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
-#include "rays/ray_queue.h"
+#include "rays/standard.h"
 
 #include <raycontact/scene.h>
 
@@ -34,38 +35,26 @@ private:
     void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
+    /// which: what numbers `pairs` have in the step; empty: their own.
     void cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
-                        std::optional<double> threshold, std::vector<kernels::LocalContact>& contacts,
-                        StepStats& stats);
-    /// `standard` for ordered_.
-    void cast_whole(std::vector<kernels::LocalContact>& contacts, StepStats& stats);
-    /// The same contacts, without looking at blocks that are clear of the other body.
-    void cast_near(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
-                   std::span<const std::uint32_t> which, std::vector<kernels::LocalContact>& contacts,
-                   StepStats& stats);
-    /// The rays of queue_. near: as cast_standard() has it.
-    void cast_queue(bool near, std::vector<kernels::LocalContact>& contacts, StepStats& stats);
-    static void rename(std::vector<kernels::LocalContact>& contacts, std::span<const std::uint32_t> ordered);
-    void merge(std::vector<kernels::LocalContact>& contacts, std::size_t second);
-    void add(std::vector<kernels::LocalContact>& contacts, std::span<const kernels::LocalContact> others);
+                        std::span<const std::uint32_t> which, std::optional<double> threshold, StepStats& stats);
+    /// The contacts among the rays that a method has cast.
+    template <class Rays>
+    void take(const Rays& rays, std::span<const std::uint32_t> which, StepStats& stats);
     void forget();
 
     Settings settings_;
     OpenDevice opened_;
     ShapeStore shapes_;
-    std::vector<kernels::OrderedPair> ordered_;
-    std::vector<float> margins_; ///< of ordered_
-    Array<kernels::OrderedPair> device_pairs_;
-    Array<float> device_margins_;
-    RayQueue queue_;
     Motion motion_;
+    StandardRays standard_;
     CertifiedRays certified_;
     CoherentRays coherent_;
-    Array<kernels::Hit> hits_;
     Gather gather_;
+    std::vector<kernels::LocalContact> found_; ///< by one method
+    LocalContacts local_;                      ///< by all
     Placer placer_;
     std::vector<Pair> fast_pairs_; ///< of predictive, that are left to certified
-    std::vector<kernels::LocalContact> local_, certified_contacts_, near_, merged_;
     Changes changes_;
 };
 

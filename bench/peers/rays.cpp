@@ -6,7 +6,7 @@
 #include "executor/float_environment.h"
 #include "pairs/ordered_pairs.h"
 #include "rays/ray_queue.h"
-#include "rays/standard.h"
+#include "rays/cast_standard.h"
 
 namespace raycontact::bench {
 

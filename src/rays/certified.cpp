@@ -4,7 +4,7 @@
 #include "mesh/vector.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
-#include "rays/standard.h"
+#include "rays/cast_standard.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -276,10 +276,20 @@ void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& s
                          std::optional<double> threshold) {
     if (packed_ != shapes.packed()) clear(); // lists name vertex blocks by their place
     packed_ = shapes.packed();
+    open_pairs_ = pairs.size();
     table_.match(pairs, [this](PairState& state) { close(state); });
     wake_up(executor, bodies, pairs, motion, threshold);
     make_lists(device, shapes);
     look(device, shapes);
+}
+
+void CertifiedRays::count(StepStats& stats) const {
+    stats.vertices += VERTEX_LANES * blocks_;
+    stats.rays += inside_;
+    stats.rays_cast += cast_;
+    stats.pairs_full += stale_.size();
+    stats.pairs_asleep += 2 * open_pairs_ - active_.size() - fast_.size();
+    stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch) + held_.bytes();
 }
 
 } // namespace raycontact

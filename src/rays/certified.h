@@ -8,6 +8,8 @@
 #include "rays/block_finder.h"
 #include "rays/held.h"
 
+#include <raycontact/settings.h>
+
 #include <optional>
 
 namespace raycontact {
@@ -28,16 +30,13 @@ public:
     /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast.
     void cast(Device& device, Caster caster, const ShapeStore& shapes);
     const Array<kernels::Hit>& hits() const { return hits_; }
-    std::uint64_t rays_cast() const { return cast_; }
     /// 2 x pair + direction of each of pairs(), ascending.
     std::span<const std::uint32_t> ordered() const { return active_; }
     /// The same of the pairs that are none of ours in this step: every vertex of theirs is to be looked at.
     std::span<const std::uint32_t> fast() const { return fast_; }
 
-    std::uint64_t vertices_inside() const { return inside_; }
-    std::uint64_t vertices_tested() const { return VERTEX_LANES * blocks_; }
-    std::uint64_t full_looks() const { return stale_.size(); }
-    std::uint64_t bytes() const { return table_.bytes() + pool_.in_use() * sizeof(kernels::Watch) + held_.bytes(); }
+    /// Adds what the last step did.
+    void count(StepStats& stats) const;
 
 private:
     /// One direction of a pair: its list of blocks, and its clock. All of it in metres of the clock, which runs from
@@ -89,7 +88,7 @@ private:
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
     std::vector<kernels::Holder> host_holders_;
-    std::uint64_t inside_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
+    std::uint64_t open_pairs_ = 0, inside_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;

@@ -1,19 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/standard.h"
 
+#include "pairs/rounding.h"
+#include "rays/cast_standard.h"
+
+#include <numeric>
+
 namespace raycontact {
 
-void cast_standard(Device& device, Caster caster, const ShapeStore::Arrays& shapes,
-                   const Array<kernels::OrderedPair>& pairs, const Array<kernels::Ray>& rays, Array<kernels::Hit>& hits,
-                   bool near) {
-    hits.resize(device, rays.size());
-    if (caster == Caster::basic)
-        launch<KernelId::cast_rays_basic>(device, rays.size(), pairs, shapes.headers, shapes.vertex_blocks,
-                                          shapes.nodes, shapes.triangle_blocks, shapes.face_normals, rays, hits);
-    else
-        launch<KernelId::cast_rays_bvh>(device, rays.size(), near ? 1u : 0u, pairs, shapes.headers,
-                                        shapes.vertex_blocks, shapes.nodes, shapes.triangle_blocks, shapes.face_normals,
-                                        rays, hits);
+void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
+                        std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Settings& settings) {
+    which_.resize(2 * pairs.size());
+    std::iota(which_.begin(), which_.end(), 0U);
+    order_pairs(executor, bodies, pairs, host_pairs_);
+    device_pairs_.write(device, host_pairs_);
+    sorted_out_ = settings.skip_outside && settings.caster != Caster::basic;
+    queue_.fill(device, shapes.arrays(), device_pairs_, sorted_out_);
+}
+
+void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStore& shapes,
+                             std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                             std::span<const std::uint32_t> which) {
+    which_.assign(which.begin(), which.end());
+    order_pairs(executor, bodies, pairs, which, host_pairs_);
+    margins_.resize(which.size());
+    executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const Pair& pair = pairs[which[i] / 2];
+            const bool from_a = which[i] % 2 == 0;
+            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
+            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            // Of few blocks it is not worth asking which are near.
+            const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+            margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
+        }
+    });
+    device_pairs_.write(device, host_pairs_);
+    device_margins_.write(device, margins_);
+    sorted_out_ = true;
+    queue_.fill_near(device, shapes.arrays(), device_pairs_, device_margins_);
+}
+
+void StandardRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
+    cast_standard(device, caster, shapes.arrays(), device_pairs_, queue_.rays(), hits_, sorted_out_);
+}
+
+void StandardRays::count(StepStats& stats) const {
+    stats.vertices += queue_.vertices_tested();
+    stats.rays += queue_.vertices_inside();
+    stats.rays_cast += queue_.rays().size();
+    stats.pairs_full += which_.size();
 }
 
 } // namespace raycontact

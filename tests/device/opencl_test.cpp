@@ -7,7 +7,7 @@
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "kernels_opencl.h"
-#include "rays/standard.h"
+#include "rays/cast_standard.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "pairs/ordered_pairs.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
-#include "rays/standard.h"
+#include "rays/cast_standard.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contacts/place.h"
+
+#include "device/device.h"
+#include "reference/random.h"
+#include "scenes/models/model.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace raycontact {
+namespace {
+
+// Pairs of so many contacts are sorted in different ways.
+TEST(Placer, SortsTheContactsOfEachPair) {
+    const std::shared_ptr<const Shape> shape = Shape::make(scenes::scene_model("gear", 902).mesh);
+    const auto vertices = static_cast<std::uint32_t>(shape->data().mesh.vertices.size());
+    const OpenDevice opened = open_device("cpu", 2);
+    reference::Random random(1);
+    std::vector<PlacedBody> bodies;
+    std::vector<Pair> pairs;
+    std::vector<kernels::LocalContact> local;
+    for (const std::uint32_t count : {1u, 2u, 7u, 8u, 9u, 15u, 16u, 17u, 100u, 127u, 128u, 129u, 300u, 3u, 33u}) {
+        ASSERT_LT(count, vertices);
+        const auto pair = static_cast<std::uint32_t>(pairs.size());
+        pairs.push_back({2 * pair, 2 * pair + 1});
+        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, {}, {}});
+        std::vector<std::uint32_t> chosen(vertices);
+        std::iota(chosen.begin(), chosen.end(), 0u);
+        for (std::uint32_t direction = 0; direction < 2; ++direction) {
+            for (std::uint32_t i = 0; i < count; ++i) {
+                std::swap(chosen[i], chosen[i + random.below(vertices - i)]);
+                local.push_back({2 * pair + direction, chosen[i], 0, static_cast<float>(chosen[i]), 1, {1, 0, 0}});
+            }
+        }
+    }
+    std::vector<Contact> contacts;
+    Placer placer;
+    placer.run(*opened.executor, Direction::ray, bodies, pairs, local, contacts);
+
+    std::sort(local.begin(), local.end(),
+              [](const auto& a, const auto& b) { return std::pair(a.pair, a.vertex) < std::pair(b.pair, b.vertex); });
+    ASSERT_EQ(contacts.size(), local.size());
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        EXPECT_EQ(contacts[i].body_a, local[i].pair / 2 * 2);
+        EXPECT_EQ(contacts[i].vertex_body, local[i].pair % 2 == 0 ? VertexBody::a : VertexBody::b);
+        EXPECT_EQ(contacts[i].vertex, shape->data().mesh.vertex_index[local[i].vertex]);
+        EXPECT_EQ(contacts[i].ray_length, local[i].distance);
+    }
+}
+
+} // namespace
+} // namespace raycontact
