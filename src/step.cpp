@@ -45,7 +45,7 @@ void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<c
                                  std::span<const std::uint32_t> which, std::optional<double> threshold,
                                  StepStats& stats) {
     certified_.fill(device(), executor(), shapes_, bodies, pairs, motion_, threshold);
-    certified_.cast(device(), settings_.caster, shapes_);
+    certified_.cast(device(), executor(), settings_.caster, shapes_);
     take(certified_, which, stats);
     if (certified_.fast().empty()) return;
     standard_.fill_near(device(), executor(), shapes_, bodies, pairs, certified_.fast());

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/changes.h"
 
-#include <tuple>
+#include <compare>
+#include <cstdint>
 
 namespace raycontact {
 
 namespace {
 
+// What contacts are sorted by, in two words.
+struct Order {
+    std::uint64_t pair, vertex;
+    std::strong_ordering operator<=>(const Order&) const = default;
+};
+
 template <class Key>
-auto order_of(const Key& key) {
-    return std::tuple(key.body_a, key.body_b, key.vertex_body, key.vertex);
+Order order_of(const Key& key) {
+    return {std::uint64_t{key.body_a} << 32 | key.body_b,
+            std::uint64_t{static_cast<std::uint32_t>(key.vertex_body)} << 32 | key.vertex};
 }
 
 } // namespace
@@ -19,7 +27,7 @@ void Changes::mark(std::span<Contact> contacts) {
     new_count_ = 0;
     std::size_t old = 0;
     for (Contact& contact : contacts) {
-        const auto order = order_of(contact);
+        const Order order = order_of(contact);
         while (old < previous_.size() && order_of(previous_[old]) < order) lost_.push_back(previous_[old++]);
         contact.is_new = old == previous_.size() || order_of(previous_[old]) != order;
         if (contact.is_new)
@@ -28,8 +36,9 @@ void Changes::mark(std::span<Contact> contacts) {
             ++old;
     }
     lost_.insert(lost_.end(), previous_.begin() + static_cast<std::ptrdiff_t>(old), previous_.end());
-    previous_.clear();
-    for (const Contact& c : contacts) previous_.push_back({c.body_a, c.body_b, c.vertex_body, c.vertex});
+    previous_.resize(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        previous_[i] = {contacts[i].body_a, contacts[i].body_b, contacts[i].vertex_body, contacts[i].vertex};
 }
 
 } // namespace raycontact

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes keeps every thread busy
 
-enum What : std::uint8_t { look_0 = 1, list_0 = 4, is_fast = 16 };
+constexpr std::uint32_t slice_size = 128; // pairs
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
@@ -68,7 +68,7 @@ void CertifiedRays::close(PairState& state) {
 
 // Decides for one pair, in double, what must be looked at.
 void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair,
-                              const Motion& motion, std::optional<double> threshold) {
+                              const Motion& motion, std::optional<double> threshold, Slice& slice) {
     PairState& state = table_.state(i);
     const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
     const double size = size_of(*body[0], *body[1]), speed = motion.pair_speed(pair);
@@ -77,86 +77,105 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
     std::array<double, 2> moved{0, 0};
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
-    std::uint8_t what = 0;
+    bool look[2] = {}, list[2] = {};
     double slack = 1e300;
     for (std::size_t d = 0; d < 2; ++d) {
         const Watched& own = state.watched[d];
         const double clock = own.clock + moved[d];
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
-        if (fresh || !(clock < own.expiry))
-            what |= static_cast<std::uint8_t>(list_0 << d);
-        else if (!(clock < own.wake))
-            what |= static_cast<std::uint8_t>(look_0 << d);
-        else
-            slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
+        list[d] = fresh || !(clock < own.expiry);
+        look[d] = list[d] || !(clock < own.wake);
+        if (!look[d]) slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
     }
-    what_[i] = what;
     table_.hot(i) = {slack, true};
-    if (what == 0) return;
+    if (!(look[0] || look[1])) return;
 
-    const bool list = (what & (3 * list_0)) != 0;
-    if (list) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-    const bool move = list || !(std::max(moved[0], moved[1]) < trembling * size);
+    if (list[0] || list[1]) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
+    const bool move = list[0] || list[1] || !(std::max(moved[0], moved[1]) < trembling * size);
     if (move) state.reference = now;
-    for (std::size_t d = 0; d < 2; ++d) {
+    for (std::uint32_t d = 0; d < 2; ++d) {
         Watched& own = state.watched[d];
         if (move) {
             own.clock += moved[d];
             moved[d] = 0;
         }
-        if ((what & (list_0 << d)) != 0) {
+        if (list[d]) {
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
-            due_[2 * i + d].longest = longest_clock(*body[1 - d]);
+            slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
         }
-        if ((what & ((look_0 | list_0) << d)) == 0) continue;
-        Due& due = due_[2 * i + d];
-        due.pair = order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second());
+        if (!look[d]) continue;
+        Due& due = slice.due.emplace_back();
+        due.ordered = 2 * i + d;
         due.now = static_cast<float>(own.clock + moved[d]);
         due.from = static_cast<float>(own.clock - moved[d]);
         due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
         const double radius = tube_radius(size, *body[1 - d]);
         due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+        due.longest = longest_clock(*body[1 - d]);
+        due.expiry = own.expiry;
+        due.first = own.first;
+        due.count = own.count;
+        due.held_first = own.held_first;
+        due.held_count = own.held_count;
+        slice.pairs.push_back(order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second()));
     }
 }
 
 // A cheap bound first, which most pairs at rest pass.
 void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
-    what_.resize(pairs.size());
-    due_.resize(2 * pairs.size());
-    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        const auto asleep = [&](std::uint32_t i, Slack& slack) {
-            what_[i] = 0;
-            slack.metres -= motion.pair_bound(pairs[i]);
-            if (slack.metres > 0) return true;
-            const double size = size_of(bodies[pairs[i].first], bodies[pairs[i].second]);
-            if (threshold || !(motion.pair_speed(pairs[i]) > fastest * size)) return false;
-            what_[i] = is_fast;
-            return true;
-        };
-        table_.sift(begin, end, asleep, [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold); });
+    const auto count = static_cast<std::uint32_t>(pairs.size());
+    slices_.resize((pairs.size() + slice_size - 1) / slice_size);
+    executor.run(static_cast<std::uint32_t>(slices_.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t s = begin; s < end; ++s) {
+            Slice& slice = slices_[s];
+            slice.due.clear();
+            slice.pairs.clear();
+            slice.stale.clear();
+            slice.fast.clear();
+            const auto asleep = [&](std::uint32_t i, Slack& slack) {
+                slack.metres -= motion.pair_bound(pairs[i]);
+                if (slack.metres > 0) return true;
+                const double size = size_of(bodies[pairs[i].first], bodies[pairs[i].second]);
+                if (threshold || !(motion.pair_speed(pairs[i]) > fastest * size)) return false;
+                slice.fast.push_back(i);
+                return true;
+            };
+            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), asleep,
+                        [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold, slice); });
+        }
     });
+    gather(executor);
+}
 
-    active_.clear();
+// What the slices found, in the order of the pairs.
+void CertifiedRays::gather(Executor& executor) {
     stale_.clear();
     fast_.clear();
-    host_pairs_.clear();
-    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        if (what_[i] == 0) continue;
-        if (what_[i] == is_fast) {
+    std::size_t due_count = 0;
+    for (Slice& slice : slices_) {
+        slice.first = due_count;
+        due_count += slice.due.size();
+        for (const std::uint32_t i : slice.stale) stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
+        for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).lists) close(table_.state(i));
             table_.hot(i) = {};
             fast_.insert(fast_.end(), {2 * i, 2 * i + 1});
-            continue;
-        }
-        for (std::uint32_t d = 0; d < 2; ++d) {
-            if ((what_[i] & ((look_0 | list_0) << d)) == 0) continue;
-            if ((what_[i] & (list_0 << d)) != 0) stale_.push_back(static_cast<std::uint32_t>(active_.size()));
-            active_.push_back(2 * i + d);
-            host_pairs_.push_back(due_[2 * i + d].pair);
         }
     }
+    active_.resize(due_count);
+    due_.resize(due_count);
+    host_pairs_.resize(due_count);
+    executor.run(static_cast<std::uint32_t>(slices_.size()), 8, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t s = begin; s < end; ++s) {
+            const Slice& slice = slices_[s];
+            const auto at = static_cast<std::ptrdiff_t>(slice.first);
+            std::copy(slice.due.begin(), slice.due.end(), due_.begin() + at);
+            std::copy(slice.pairs.begin(), slice.pairs.end(), host_pairs_.begin() + at);
+            for (std::size_t i = 0; i < slice.due.size(); ++i) active_[slice.first + i] = slice.due[i].ordered;
+        }
+    });
 }
 
 // The blocks of each stale pair that reach into its bounds widened by what the list is to last, and could be in contact
@@ -167,10 +186,10 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     stale_margins_.resize(stale_.size());
     horizons_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
+        const Due& due = due_[stale_[i]];
         wide_pairs_[i] = host_pairs_[stale_[i]];
-        const std::uint32_t ordered = active_[stale_[i]];
-        stale_margins_[i] = due_[ordered].margin;
-        horizons_[i] = static_cast<float>(watched(ordered).expiry) + stale_margins_[i];
+        stale_margins_[i] = due.margin;
+        horizons_[i] = static_cast<float>(due.expiry) + due.margin;
         widen(wide_pairs_[i], horizons_[i]);
     }
     device_wide_.write(device, wide_pairs_);
@@ -183,16 +202,17 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        Watched& own = watched(active_[stale_[i]]);
+        Due& due = due_[stale_[i]];
+        Watched& own = watched(due.ordered);
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
         const RangePool::Range range = pool_.take(host_counts_[i]);
-        places_[i] = own.first = range.first;
+        places_[i] = due.first = own.first = range.first;
         own.capacity = range.capacity;
-        own.count = host_counts_[i];
+        due.count = own.count = host_counts_[i];
         if (own.count == 0) { // nothing to look at for longer than was asked
             const double clear = 0.99999 * double(host_clears_[i]) - double(stale_margins_[i]);
-            own.expiry = std::max(own.expiry, std::min(clear, due_[active_[stale_[i]]].longest));
+            due.expiry = own.expiry = std::max(own.expiry, std::min(clear, due.longest));
         }
     }
     if (finder_.blocks().size() == 0) return;
@@ -207,13 +227,12 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
     host_segments_.clear();
-    for (std::uint32_t i = 0; i < active_.size(); ++i) {
-        Watched& own = watched(active_[i]);
-        const Due& due = due_[active_[i]];
-        own.wake = own.expiry;
-        for (std::uint32_t done = 0; done < own.count; done += segment_size)
+    for (std::uint32_t i = 0; i < due_.size(); ++i) {
+        Due& due = due_[i];
+        due.wake = due.expiry;
+        for (std::uint32_t done = 0; done < due.count; done += segment_size)
             host_segments_.push_back(
-                {i, own.first + done, std::min(segment_size, own.count - done), due.now, due.from, due.margin});
+                {i, due.first + done, std::min(segment_size, due.count - done), due.now, due.from, due.margin});
     }
     device_pairs_.write(device, host_pairs_);
     segments_.write(device, host_segments_);
@@ -229,38 +248,52 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     looks_.read(device, host_looks_);
     inside_ = blocks_ = 0;
     for (std::size_t s = 0; s < host_segments_.size(); ++s) {
-        Watched& own = watched(active_[host_segments_[s].pair]);
-        own.wake = std::min(own.wake, double(host_looks_[s].wake));
+        Due& due = due_[host_segments_[s].pair];
+        due.wake = std::min(due.wake, double(host_looks_[s].wake));
+        due.rays += host_looks_[s].rays;
         inside_ += host_looks_[s].inside;
         blocks_ += host_looks_[s].blocks;
-    }
-    for (const std::uint32_t ordered : active_) {
-        double& slack = table_.hot(ordered / 2).metres; // of the other direction, if it need not be looked at
-        slack = std::min(slack, watched(ordered).wake - double(due_[ordered].now));
     }
 }
 
 // Where every ray of the last step lies, by pair, and how wide a tube this step may seek.
 void CertifiedRays::find_holders() {
     host_holders_.clear();
-    for (const std::uint32_t ordered : active_) {
-        Watched& own = watched(ordered);
-        host_holders_.push_back({own.held_first, own.held_count, due_[ordered].margin, due_[ordered].radius});
-        own.held_count = 0;
-    }
     std::uint32_t ray = 0;
-    for (std::size_t s = 0; s < host_segments_.size(); ++s) {
-        Watched& own = watched(active_[host_segments_[s].pair]);
-        if (own.held_count == 0) own.held_first = ray;
+    for (Due& due : due_) {
+        host_holders_.push_back({due.held_first, due.held_count, due.margin, due.radius});
         // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
-        if (!is_idle(host_holders_[host_segments_[s].pair])) own.held_count += host_looks_[s].rays;
-        ray += host_looks_[s].rays;
+        due.held_count = is_idle(host_holders_.back()) ? 0 : due.rays;
+        due.held_first = ray;
+        ray += due.rays;
     }
 }
 
-void CertifiedRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
+// What the pairs keep of this step; held: rays, too.
+void CertifiedRays::keep(Executor& executor, bool held) {
+    const auto begins_pair = [this](std::size_t i) {
+        return i == 0 || i == due_.size() || due_[i].ordered / 2 != due_[i - 1].ordered / 2;
+    };
+    executor.run(static_cast<std::uint32_t>(due_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        // Directions of a pair share its slack: a slice takes the pairs that begin in it.
+        while (!begins_pair(begin)) ++begin;
+        while (begin < end || !begins_pair(begin)) {
+            const Due& due = due_[begin++];
+            Watched& own = watched(due.ordered);
+            own.wake = due.wake;
+            own.held_first = due.held_first;
+            own.held_count = held ? due.held_count : 0;
+            double& slack = table_.hot(due.ordered / 2).metres; // of the other direction, if it need not be looked at
+            slack = std::min(slack, due.wake - double(due.now));
+        }
+    });
+}
+
+void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes) {
     find_holders();
-    if (caster != Caster::basic && !std::all_of(host_holders_.begin(), host_holders_.end(), is_idle)) {
+    const bool held = caster != Caster::basic && !std::all_of(host_holders_.begin(), host_holders_.end(), is_idle);
+    keep(executor, held);
+    if (held) {
         held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
         cast_ = held_.cast_in_full();
         return;
@@ -268,7 +301,6 @@ void CertifiedRays::cast(Device& device, Caster caster, const ShapeStore& shapes
     cast_standard(device, caster, shapes.arrays(), device_pairs_, rays_, hits_);
     cast_ = rays_.size();
     held_.forget(device);
-    for (const std::uint32_t ordered : active_) watched(ordered).held_count = 0;
 }
 
 void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,

@@ -28,7 +28,7 @@ public:
     const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
     const Array<kernels::Ray>& rays() const { return rays_; }
     /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast.
-    void cast(Device& device, Caster caster, const ShapeStore& shapes);
+    void cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes);
     const Array<kernels::Hit>& hits() const { return hits_; }
     /// 2 x pair + direction of each of pairs(), ascending.
     std::span<const std::uint32_t> ordered() const { return active_; }
@@ -53,12 +53,26 @@ private:
         double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
         Watched watched[2];
     };
-    /// What a direction that is due is looked at with. The clock now, and that from which new wakes count: the
-    /// reference is kept while a pair only trembles about it, and what is seen from beside it holds for that much less.
+    /// A direction that is due, and what its look finds.
     struct Due {
-        kernels::OrderedPair pair;
-        float now, from, margin, radius;
-        double longest; ///< metres that a new list may last
+        std::uint32_t ordered = 0; ///< 2 x pair + direction
+        /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about
+        /// it, and what is seen from beside it holds for that much less.
+        float now = 0, from = 0;
+        float margin = 0, radius = 0; ///< of rounding; of tubes
+        double longest = 0;           ///< metres that a new list may last
+        double expiry = 0;            ///< of Watched, as the rest
+        std::uint32_t first = 0, count = 0;
+        std::uint32_t held_first = 0, held_count = 0;
+        double wake = 0;
+        std::uint32_t rays = 0;
+    };
+    /// What is due of some successive pairs, found by one thread; pairs: of due. stale: places in due.
+    struct Slice {
+        std::vector<Due> due;
+        std::vector<kernels::OrderedPair> pairs;
+        std::vector<std::uint32_t> stale, fast;
+        std::size_t first = 0; ///< of due, in due_
     };
 
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -66,8 +80,10 @@ private:
     void make_lists(Device& device, const ShapeStore& shapes);
     void look(Device& device, const ShapeStore& shapes);
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
-                   std::optional<double> threshold);
+                   std::optional<double> threshold, Slice& slice);
+    void gather(Executor& executor);
     void find_holders();
+    void keep(Executor& executor, bool held);
     void close(PairState& state);
     Watched& watched(std::uint32_t ordered) { return table_.state(ordered / 2).watched[ordered % 2]; }
 
@@ -79,8 +95,8 @@ private:
     PairTable<PairState, Slack> table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<std::uint8_t> what_;                   ///< per pair: bits 0, 1 look; bits 2, 3 make a new list; 4 fast
-    std::vector<Due> due_;                             ///< per ordered pair; of those that are due
+    std::vector<Slice> slices_;
+    std::vector<Due> due_;                             ///< by active_
     std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_

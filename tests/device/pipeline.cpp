@@ -60,7 +60,7 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
     Array<kernels::Hit> hits;
     three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
-        certified.cast(tracing, Caster::bvh, store);
+        certified.cast(tracing, executor, Caster::bvh, store);
         std::vector<kernels::LocalContact> contacts;
         gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), certified.hits(), contacts);
         if (!begin) return;
