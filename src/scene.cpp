@@ -137,6 +137,7 @@ std::uint32_t Scene::body_count() const {
 std::span<const Contact> Scene::step() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
+    state_->narrow.executor().wake();
     state_->find_pairs();
     const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     state_->place_bodies();
@@ -147,6 +148,7 @@ std::span<const Contact> Scene::step() {
 
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
+    state_->narrow.executor().wake();
     for (const Pair& pair : pairs) {
         state_->existing(pair.first);
         state_->existing(pair.second);

@@ -19,6 +19,8 @@ public:
     Executor& operator=(const Executor&) = delete;
 
     std::uint32_t threads() const;
+    /// Calls for the threads, which take a while to wake up, without waiting for them: work is about to come.
+    void wake();
     /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, under FloatEnvironment, and returns when
     /// all are done. The first exception of a slice is thrown here.
     template <typename Slice>

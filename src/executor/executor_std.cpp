@@ -75,6 +75,9 @@ std::uint32_t Executor::threads() const {
     return state_->threads;
 }
 
+// These threads wait for work itself.
+void Executor::wake() {}
+
 void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;
     Pin pin;

@@ -52,6 +52,10 @@ std::uint32_t Executor::threads() const {
     return state_->threads;
 }
 
+void Executor::wake() {
+    if (state_->threads > 1) state_->arena.enqueue([] {});
+}
+
 void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;
     if (!state_->pinner && (state_->threads == 1 || count <= grain)) {

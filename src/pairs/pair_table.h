@@ -38,14 +38,19 @@ public:
     Hot& hot(std::size_t i) { return hot_[slots_[i]]; }
 
     /// ask(i) for each pair of [begin, end) of which asleep(i, hot) is false. By handfuls, so that the states of some
-    /// are on their way while others are asked: between two steps a solver has used the caches.
-    template <class Asleep, class Ask>
-    void sift(std::uint32_t begin, std::uint32_t end, Asleep&& asleep, Ask&& ask) {
-        constexpr std::uint32_t handful = 32;
+    /// are on their way while others are asked: between two steps a solver has used the caches. fetch(i), ahead of
+    /// both: what asleep reads.
+    template <class Fetch, class Asleep, class Ask>
+    void sift(std::uint32_t begin, std::uint32_t end, Fetch&& fetch, Asleep&& asleep, Ask&& ask) {
+        constexpr std::uint32_t handful = 32, ahead = 8;
         std::uint32_t awake[handful];
         for (std::uint32_t first = begin; first < end; first += handful) {
             std::uint32_t count = 0;
             for (std::uint32_t i = first; i < std::min(first + handful, end); ++i) {
+                if (i + ahead < end) {
+                    __builtin_prefetch(&hot(i + ahead));
+                    fetch(i + ahead);
+                }
                 if (asleep(i, hot(i))) continue;
                 awake[count++] = i;
                 prefetch(i);

@@ -142,7 +142,8 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
                 slice.fast.push_back(i);
                 return true;
             };
-            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), asleep,
+            const auto fetch = [&](std::uint32_t i) { motion.fetch(pairs[i]); };
+            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), fetch, asleep,
                         [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold, slice); });
         }
     });

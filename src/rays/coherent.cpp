@@ -91,7 +91,9 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             hot.slack -= motion.pair_bound(pairs[i]);
             return hot.slack >= 0;
         };
-        table_.sift(begin, end, asleep, [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, settings); });
+        const auto fetch = [&](std::uint32_t i) { motion.fetch(pairs[i]); };
+        table_.sift(begin, end, fetch, asleep,
+                    [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, settings); });
     });
 
     active_.clear();
