@@ -58,6 +58,7 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
         {"wall_ms", wall_ms},
         {"step_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.step_ms; })},
         {"narrow_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.narrow_ms; })},
+        {"narrow_ms_last_second", quantile(last_second, 0.5, [](const StepRow& r) { return r.narrow_ms; })},
         {"method", to_string(options.settings.method)},
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
@@ -85,14 +86,16 @@ std::string for_a_person(const Json& s) {
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most, {:.4f} m in the last second\n"
         "speed      median {:.4f} m/s in the last second; {} bodies below ground, {} flown off\n"
-        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n",
+        "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median, {:.2f} ms in the "
+        "last second\n",
         s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(), s["seed"].get<std::uint64_t>(),
         s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(), s["pairs_last_second"].get<double>(),
         s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(),
         s["penetration_max"].get<double>(), s["penetration_max_last_second"].get<double>(),
         s["median_speed_last_second"].get<double>(), s["below_ground"].get<std::uint64_t>(),
         s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(),
-        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>());
+        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
+        s["narrow_ms_last_second"].get<double>());
     return text + work_for_a_person(s) + "hash       " + s["hash"].get<std::string>() + "\n";
 }
 

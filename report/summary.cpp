@@ -54,6 +54,7 @@ constexpr Known known[] = {
     {"step_ms.p95", "Step, 95th percentile", "ms", "one step in twenty takes longer"},
     {"narrow_ms.median", "Narrow phase, median", "ms", "wall clock of contact finding alone"},
     {"narrow_ms.p95", "Narrow phase, 95th percentile", "ms", "one step in twenty takes longer"},
+    {"narrow_ms_last_second", "Narrow phase, last second", "ms", "its median there, when the pile has come to rest"},
     {"method", "Method", "", "how rays are kept from step to step"},
     {"caster", "Caster", "", "how a ray meets a mesh"},
     {"direction", "Direction", "", "what normal and depth are made of"},

@@ -62,6 +62,8 @@ TEST_F(Run, HasItsKeys) {
         EXPECT_TRUE(run_log[key].contains("median")) << key;
         EXPECT_TRUE(run_log[key].contains("p95")) << key;
     }
+    EXPECT_GT(run_log["narrow_ms_last_second"].get<double>(), 0);
+    EXPECT_LE(run_log["narrow_ms_last_second"].get<double>(), run_log["wall_ms"].get<double>());
     EXPECT_EQ(run_log["scene"], "avalanche");
     EXPECT_EQ(run_log["seed"], 7);
     EXPECT_EQ(run_log["steps"], 90);
