@@ -7,8 +7,8 @@
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "pairs/ordered_pairs.h"
-#include "rays/ray_queue.h"
 #include "rays/cast_standard.h"
+#include "rays/ray_queue.h"
 #include "shape/shape_data.h"
 
 #include <raycontact/error.h>

@@ -36,6 +36,11 @@ struct Scene::State {
         return bodies[body];
     }
 
+    /// Threads sleep while a solver runs; of a few pairs they take no part.
+    void call_threads(std::size_t pair_count) {
+        if (pair_count > 256) narrow.executor().wake();
+    }
+
     void place_bodies() {
         if (narrow.shapes().pack()) {
             for (BodyId id = 0; id < bodies.size(); ++id)
@@ -137,9 +142,9 @@ std::uint32_t Scene::body_count() const {
 std::span<const Contact> Scene::step() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
-    state_->narrow.executor().wake();
     state_->find_pairs();
     const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    state_->call_threads(state_->pairs.size());
     state_->place_bodies();
     state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
     state_->stats.broad_ms = broad;
@@ -148,7 +153,7 @@ std::span<const Contact> Scene::step() {
 
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
-    state_->narrow.executor().wake();
+    state_->call_threads(pairs.size());
     for (const Pair& pair : pairs) {
         state_->existing(pair.first);
         state_->existing(pair.second);

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step.h"
 
-#include "pairs/rounding.h"
-#include "rays/cast_standard.h"
-
 #include <algorithm>
 #include <chrono>
 

@@ -5,8 +5,8 @@
 #include "device/device.h"
 #include "executor/float_environment.h"
 #include "pairs/ordered_pairs.h"
-#include "rays/ray_queue.h"
 #include "rays/cast_standard.h"
+#include "rays/ray_queue.h"
 
 namespace raycontact::bench {
 

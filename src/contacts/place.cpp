@@ -44,7 +44,7 @@ Contact place(Direction direction, const PlacedBody& source, const PlacedBody& t
 }
 
 // What place() will read of the shapes: between two steps a solver has used the caches.
-void fetch(Direction direction, const Shape& source, const Shape& target, const kernels::LocalContact& local) {
+void prefetch(Direction direction, const Shape& source, const Shape& target, const kernels::LocalContact& local) {
     const ShapeData& shape = source.data();
     __builtin_prefetch(&shape.mesh.vertices[local.vertex]);
     __builtin_prefetch(&shape.mesh.vertex_index[local.vertex]);
@@ -96,7 +96,7 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
             const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
             do {
                 order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
-                fetch(direction, *source.shape, *target.shape, local[next]);
+                prefetch(direction, *source.shape, *target.shape, local[next]);
             } while (!begins_pair(++next));
             sort_by_vertex({order_.data() + begin, next - begin});
             for (std::uint32_t i = begin; i < next; ++i)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Short rays, several at a time: where RAYS_IN_GROUP is more than 1, on a CPU. A ray by itself waits for each test
 // before it knows the next; here a stage is done for all rays before the next one begins, so that hardly a branch hangs
-// on a test that is not finished. NOLINTBEGIN(modernize-use-using): this text is C as well
+// on a test that is not finished.
+//
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define GROUP_LOOKS (4 * RAYS_IN_GROUP) // one or two for a ray
 

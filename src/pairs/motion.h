@@ -17,7 +17,7 @@ public:
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// Asks for what pair_bound() reads; of the first body's the caches know from the pair before.
-    void fetch(const Pair& pair) const {
+    void prefetch(const Pair& pair) const {
         const auto* bytes = reinterpret_cast<const char*>(&bodies_[pair.second]);
         __builtin_prefetch(bytes);
         __builtin_prefetch(bytes + 64);

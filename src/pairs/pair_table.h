@@ -38,22 +38,25 @@ public:
     Hot& hot(std::size_t i) { return hot_[slots_[i]]; }
 
     /// ask(i) for each pair of [begin, end) of which asleep(i, hot) is false. By handfuls, so that the states of some
-    /// are on their way while others are asked: between two steps a solver has used the caches. fetch(i), ahead of
-    /// both: what asleep reads.
-    template <class Fetch, class Asleep, class Ask>
-    void sift(std::uint32_t begin, std::uint32_t end, Fetch&& fetch, Asleep&& asleep, Ask&& ask) {
+    /// are on their way while others are asked: between two steps a solver has used the caches. prefetch(i), ahead
+    /// of both: what asleep reads.
+    template <class Prefetch, class Asleep, class Ask>
+    void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Asleep&& asleep, Ask&& ask) {
         constexpr std::uint32_t handful = 32, ahead = 8;
         std::uint32_t awake[handful];
+        const auto send_for = [&](std::uint32_t i) {
+            if (i >= end) return;
+            __builtin_prefetch(&hot(i));
+            prefetch(i);
+        };
+        for (std::uint32_t i = begin; i < begin + ahead; ++i) send_for(i);
         for (std::uint32_t first = begin; first < end; first += handful) {
             std::uint32_t count = 0;
             for (std::uint32_t i = first; i < std::min(first + handful, end); ++i) {
-                if (i + ahead < end) {
-                    __builtin_prefetch(&hot(i + ahead));
-                    fetch(i + ahead);
-                }
+                send_for(i + ahead);
                 if (asleep(i, hot(i))) continue;
                 awake[count++] = i;
-                prefetch(i);
+                prefetch_state(i);
             }
             for (std::uint32_t k = 0; k < count; ++k) ask(awake[k]);
         }
@@ -74,7 +77,7 @@ public:
     }
 
 private:
-    void prefetch(std::size_t i) const {
+    void prefetch_state(std::size_t i) const {
         const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
         for (std::size_t at = 0; at < sizeof(State); at += 64) __builtin_prefetch(bytes + at);
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/certified.h"
 
-#include "mesh/vector.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
 #include "rays/cast_standard.h"
@@ -126,8 +125,15 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
 void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
     const auto count = static_cast<std::uint32_t>(pairs.size());
-    slices_.resize((pairs.size() + slice_size - 1) / slice_size);
-    executor.run(static_cast<std::uint32_t>(slices_.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t slices = (count + slice_size - 1) / slice_size;
+    while (slices_.size() < slices) {
+        Slice& slice = slices_.emplace_back();
+        slice.due.reserve(std::size_t{2} * slice_size);
+        slice.pairs.reserve(std::size_t{2} * slice_size);
+        slice.stale.reserve(std::size_t{2} * slice_size);
+        slice.fast.reserve(slice_size);
+    }
+    executor.run(slices, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             Slice& slice = slices_[s];
             slice.due.clear();
@@ -142,20 +148,20 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
                 slice.fast.push_back(i);
                 return true;
             };
-            const auto fetch = [&](std::uint32_t i) { motion.fetch(pairs[i]); };
-            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), fetch, asleep,
+            const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
+            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), prefetch, asleep,
                         [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold, slice); });
         }
     });
-    gather(executor);
+    gather(executor, std::span(slices_).first(slices));
 }
 
 // What the slices found, in the order of the pairs.
-void CertifiedRays::gather(Executor& executor) {
+void CertifiedRays::gather(Executor& executor, std::span<Slice> slices) {
     stale_.clear();
     fast_.clear();
     std::size_t due_count = 0;
-    for (Slice& slice : slices_) {
+    for (Slice& slice : slices) {
         slice.first = due_count;
         due_count += slice.due.size();
         for (const std::uint32_t i : slice.stale) stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
@@ -168,9 +174,9 @@ void CertifiedRays::gather(Executor& executor) {
     active_.resize(due_count);
     due_.resize(due_count);
     host_pairs_.resize(due_count);
-    executor.run(static_cast<std::uint32_t>(slices_.size()), 8, [&](std::uint32_t begin, std::uint32_t end) {
+    executor.run(static_cast<std::uint32_t>(slices.size()), 8, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
-            const Slice& slice = slices_[s];
+            const Slice& slice = slices[s];
             const auto at = static_cast<std::ptrdiff_t>(slice.first);
             std::copy(slice.due.begin(), slice.due.end(), due_.begin() + at);
             std::copy(slice.pairs.begin(), slice.pairs.end(), host_pairs_.begin() + at);

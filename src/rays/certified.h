@@ -27,7 +27,8 @@ public:
 
     const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
     const Array<kernels::Ray>& rays() const { return rays_; }
-    /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast.
+    /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast. Once after each
+    /// fill(): what that has found is kept here.
     void cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes);
     const Array<kernels::Hit>& hits() const { return hits_; }
     /// 2 x pair + direction of each of pairs(), ascending.
@@ -61,11 +62,10 @@ private:
         float now = 0, from = 0;
         float margin = 0, radius = 0; ///< of rounding; of tubes
         double longest = 0;           ///< metres that a new list may last
-        double expiry = 0;            ///< of Watched, as the rest
+        double expiry = 0, wake = 0;  ///< of Watched, as what follows
         std::uint32_t first = 0, count = 0;
-        std::uint32_t held_first = 0, held_count = 0;
-        double wake = 0;
-        std::uint32_t rays = 0;
+        std::uint32_t held_first = 0, held_count = 0; ///< in the last step; from find_holders() on in this one
+        std::uint32_t rays = 0;                       ///< of this step
     };
     /// What is due of some successive pairs, found by one thread; pairs: of due. stale: places in due.
     struct Slice {
@@ -81,7 +81,7 @@ private:
     void look(Device& device, const ShapeStore& shapes);
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
                    std::optional<double> threshold, Slice& slice);
-    void gather(Executor& executor);
+    void gather(Executor& executor, std::span<Slice> slices);
     void find_holders();
     void keep(Executor& executor, bool held);
     void close(PairState& state);
@@ -95,7 +95,7 @@ private:
     PairTable<PairState, Slack> table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<Slice> slices_;
+    std::vector<Slice> slices_;                        ///< only ever more
     std::vector<Due> due_;                             ///< by active_
     std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;

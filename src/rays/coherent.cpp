@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/coherent.h"
 
-#include "mesh/vector.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
@@ -91,8 +90,8 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
             hot.slack -= motion.pair_bound(pairs[i]);
             return hot.slack >= 0;
         };
-        const auto fetch = [&](std::uint32_t i) { motion.fetch(pairs[i]); };
-        table_.sift(begin, end, fetch, asleep,
+        const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
+        table_.sift(begin, end, prefetch, asleep,
                     [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, settings); });
     });
 

@@ -3,6 +3,7 @@
 
 #include "pairs/rounding.h"
 #include "rays/cast_standard.h"
+#include "shape/shape_data.h"
 
 #include <numeric>
 
@@ -14,8 +15,8 @@ void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& sh
     std::iota(which_.begin(), which_.end(), 0U);
     order_pairs(executor, bodies, pairs, host_pairs_);
     device_pairs_.write(device, host_pairs_);
-    sorted_out_ = settings.skip_outside && settings.caster != Caster::basic;
-    queue_.fill(device, shapes.arrays(), device_pairs_, sorted_out_);
+    short_first_ = settings.skip_outside && settings.caster != Caster::basic;
+    queue_.fill(device, shapes.arrays(), device_pairs_, short_first_);
 }
 
 void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStore& shapes,
@@ -37,12 +38,12 @@ void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStor
     });
     device_pairs_.write(device, host_pairs_);
     device_margins_.write(device, margins_);
-    sorted_out_ = true;
+    short_first_ = true;
     queue_.fill_near(device, shapes.arrays(), device_pairs_, device_margins_);
 }
 
 void StandardRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
-    cast_standard(device, caster, shapes.arrays(), device_pairs_, queue_.rays(), hits_, sorted_out_);
+    cast_standard(device, caster, shapes.arrays(), device_pairs_, queue_.rays(), hits_, short_first_);
 }
 
 void StandardRays::count(StepStats& stats) const {

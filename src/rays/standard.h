@@ -35,7 +35,7 @@ private:
     Array<kernels::OrderedPair> device_pairs_;
     Array<float> device_margins_;
     RayQueue queue_;
-    bool sorted_out_ = false; ///< a grid left over what lies close by
+    bool short_first_ = false; ///< as cast_standard() has it
     Array<kernels::Hit> hits_;
 };
 

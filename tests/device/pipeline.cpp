@@ -5,9 +5,9 @@
 #include "device/cpu/device.h"
 #include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
+#include "rays/cast_standard.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
-#include "rays/cast_standard.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
 
