@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/changes.h"
 
-#include <compare>
 #include <cstdint>
+#include <utility>
 
 namespace raycontact {
 
 namespace {
 
 // What contacts are sorted by, in two words.
-struct Order {
-    std::uint64_t pair, vertex;
-    std::strong_ordering operator<=>(const Order&) const = default;
-};
+using Order = std::pair<std::uint64_t, std::uint64_t>;
 
 template <class Key>
 Order order_of(const Key& key) {

@@ -43,15 +43,6 @@ Contact place(Direction direction, const PlacedBody& source, const PlacedBody& t
     return contact;
 }
 
-// What place() will read of the shapes: between two steps a solver has used the caches.
-void prefetch(Direction direction, const Shape& source, const Shape& target, const kernels::LocalContact& local) {
-    const ShapeData& shape = source.data();
-    __builtin_prefetch(&shape.mesh.vertices[local.vertex]);
-    __builtin_prefetch(&shape.mesh.vertex_index[local.vertex]);
-    __builtin_prefetch(&target.triangle_index()[local.triangle]);
-    if (direction == Direction::ray) __builtin_prefetch(&shape.vertex_normals[local.vertex]);
-}
-
 // How many vertices are smaller says where a contact belongs, without a branch to guess wrong: of this many contacts
 // that is faster than sorting them.
 constexpr std::size_t few = 8, many = 128, lanes = 16;
@@ -90,15 +81,13 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
     executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         while (!begins_pair(begin)) ++begin;
         for (std::uint32_t next = begin; begin < end; begin = next) {
+            do order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
+            while (!begins_pair(++next));
+            sort_by_vertex({order_.data() + begin, next - begin});
             const Pair& pair = pairs[local[begin].pair / 2];
             const bool from_a = local[begin].pair % 2 == 0;
             const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
             const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
-            do {
-                order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
-                prefetch(direction, *source.shape, *target.shape, local[next]);
-            } while (!begins_pair(++next));
-            sort_by_vertex({order_.data() + begin, next - begin});
             for (std::uint32_t i = begin; i < next; ++i)
                 contacts[i] = place(direction, source, target, pair, from_a, local[order_[i] & 0xffffffff]);
         }

@@ -120,8 +120,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, GLOBAL const 
 DEVICE uint rays_that_meet(const Group* group, GLOBAL const Node* RESTRICT node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
-    int meets[NODE_LANES];
-    FOR_LANES(r, NODE_LANES) meets[r] = 0;
+    int meets[NODE_LANES] = {0}; // lanes without a ray
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
         const float ix = group->inverse[0][r], iy = group->inverse[1][r], iz = group->inverse[2][r];
