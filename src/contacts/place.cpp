@@ -84,12 +84,11 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
             do order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
             while (!begins_pair(++next));
             sort_by_vertex({order_.data() + begin, next - begin});
-            const Pair& pair = pairs[local[begin].pair / 2];
-            const bool from_a = local[begin].pair % 2 == 0;
-            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            const std::uint32_t ordered = local[begin].pair;
+            const auto [source, target] = directed_pair(bodies, pairs, ordered);
             for (std::uint32_t i = begin; i < next; ++i)
-                contacts[i] = place(direction, source, target, pair, from_a, local[order_[i] & 0xffffffff]);
+                contacts[i] = place(direction, source, target, pairs[ordered / 2], ordered % 2 == 0,
+                                    local[order_[i] & 0xffffffff]);
         }
     });
 }

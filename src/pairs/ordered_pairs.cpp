@@ -68,10 +68,8 @@ void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::sp
     ordered.resize(which.size());
     executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const Pair& pair = pairs[which[i] / 2];
-            const bool from_a = which[i] % 2 == 0;
-            ordered[i] =
-                order_pair(bodies[from_a ? pair.first : pair.second], bodies[from_a ? pair.second : pair.first]);
+            const auto [source, target] = directed_pair(bodies, pairs, which[i]);
+            ordered[i] = order_pair(source, target);
         }
     });
 }

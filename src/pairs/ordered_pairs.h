@@ -18,6 +18,17 @@ struct PlacedBody {
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
 };
 
+/// One direction of a pair. In a list of pairs it is numbered 2 x pair + 0 for a into b, + 1 for b into a.
+struct DirectedPair {
+    const PlacedBody& source;
+    const PlacedBody& target;
+};
+inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                                  std::uint32_t ordered) {
+    const auto [a, b] = pairs[ordered / 2];
+    return ordered % 2 == 0 ? DirectedPair{bodies[a], bodies[b]} : DirectedPair{bodies[b], bodies[a]};
+}
+
 /// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is
 /// lost far from the origin.
 kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target);
@@ -31,7 +42,7 @@ void widen(kernels::OrderedPair& pair, float by);
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::vector<kernels::OrderedPair>& ordered);
 
-/// Those directions only: 2 x pair + 0 for a into b, + 1 for b into a.
+/// Those directions only, by their numbers.
 void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered);
 

@@ -14,8 +14,7 @@ namespace raycontact {
 namespace {
 
 constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes keeps every thread busy
-
-constexpr std::uint32_t slice_size = 128; // pairs
+constexpr std::uint32_t slice_size = 128;  // pairs
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
@@ -104,8 +103,8 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
         }
         if (!look[d]) continue;
+        slice.ordered.push_back(2 * i + d);
         Due& due = slice.due.emplace_back();
-        due.ordered = 2 * i + d;
         due.now = static_cast<float>(own.clock + moved[d]);
         due.from = static_cast<float>(own.clock - moved[d]);
         due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
@@ -125,18 +124,20 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
 void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
     const auto count = static_cast<std::uint32_t>(pairs.size());
-    const std::uint32_t slices = (count + slice_size - 1) / slice_size;
-    while (slices_.size() < slices) {
+    slice_count_ = (count + slice_size - 1) / slice_size;
+    while (slices_.size() < slice_count_) {
         Slice& slice = slices_.emplace_back();
         slice.due.reserve(std::size_t{2} * slice_size);
+        slice.ordered.reserve(std::size_t{2} * slice_size);
         slice.pairs.reserve(std::size_t{2} * slice_size);
         slice.stale.reserve(std::size_t{2} * slice_size);
         slice.fast.reserve(slice_size);
     }
-    executor.run(slices, 1, [&](std::uint32_t begin, std::uint32_t end) {
+    executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             Slice& slice = slices_[s];
             slice.due.clear();
+            slice.ordered.clear();
             slice.pairs.clear();
             slice.stale.clear();
             slice.fast.clear();
@@ -153,15 +154,15 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
                         [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold, slice); });
         }
     });
-    gather(executor, std::span(slices_).first(slices));
+    gather(executor);
 }
 
 // What the slices found, in the order of the pairs.
-void CertifiedRays::gather(Executor& executor, std::span<Slice> slices) {
+void CertifiedRays::gather(Executor& executor) {
     stale_.clear();
     fast_.clear();
     std::size_t due_count = 0;
-    for (Slice& slice : slices) {
+    for (Slice& slice : std::span(slices_).first(slice_count_)) {
         slice.first = due_count;
         due_count += slice.due.size();
         for (const std::uint32_t i : slice.stale) stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
@@ -174,13 +175,13 @@ void CertifiedRays::gather(Executor& executor, std::span<Slice> slices) {
     active_.resize(due_count);
     due_.resize(due_count);
     host_pairs_.resize(due_count);
-    executor.run(static_cast<std::uint32_t>(slices.size()), 8, [&](std::uint32_t begin, std::uint32_t end) {
+    executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
-            const Slice& slice = slices[s];
+            const Slice& slice = slices_[s];
             const auto at = static_cast<std::ptrdiff_t>(slice.first);
             std::copy(slice.due.begin(), slice.due.end(), due_.begin() + at);
+            std::copy(slice.ordered.begin(), slice.ordered.end(), active_.begin() + at);
             std::copy(slice.pairs.begin(), slice.pairs.end(), host_pairs_.begin() + at);
-            for (std::size_t i = 0; i < slice.due.size(); ++i) active_[slice.first + i] = slice.due[i].ordered;
         }
     });
 }
@@ -210,7 +211,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         Due& due = due_[stale_[i]];
-        Watched& own = watched(due.ordered);
+        Watched& own = watched(active_[stale_[i]]);
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
         const RangePool::Range range = pool_.take(host_counts_[i]);
@@ -276,21 +277,17 @@ void CertifiedRays::find_holders() {
     }
 }
 
-// What the pairs keep of this step; held: rays, too.
+// What the pairs keep of this step; held: rays, too. The directions of a pair, which share its slack, are in one slice.
 void CertifiedRays::keep(Executor& executor, bool held) {
-    const auto begins_pair = [this](std::size_t i) {
-        return i == 0 || i == due_.size() || due_[i].ordered / 2 != due_[i - 1].ordered / 2;
-    };
-    executor.run(static_cast<std::uint32_t>(due_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        // Directions of a pair share its slack: a slice takes the pairs that begin in it.
-        while (!begins_pair(begin)) ++begin;
-        while (begin < end || !begins_pair(begin)) {
-            const Due& due = due_[begin++];
-            Watched& own = watched(due.ordered);
+    executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
+        const std::size_t last = slices_[end - 1].first + slices_[end - 1].due.size();
+        for (std::size_t i = slices_[begin].first; i < last; ++i) {
+            const Due& due = due_[i];
+            Watched& own = watched(active_[i]);
             own.wake = due.wake;
             own.held_first = due.held_first;
             own.held_count = held ? due.held_count : 0;
-            double& slack = table_.hot(due.ordered / 2).metres; // of the other direction, if it need not be looked at
+            double& slack = table_.hot(active_[i] / 2).metres; // of the other direction, if it need not be looked at
             slack = std::min(slack, due.wake - double(due.now));
         }
     });

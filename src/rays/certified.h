@@ -56,7 +56,6 @@ private:
     };
     /// A direction that is due, and what its look finds.
     struct Due {
-        std::uint32_t ordered = 0; ///< 2 x pair + direction
         /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about
         /// it, and what is seen from beside it holds for that much less.
         float now = 0, from = 0;
@@ -67,9 +66,10 @@ private:
         std::uint32_t held_first = 0, held_count = 0; ///< in the last step; from find_holders() on in this one
         std::uint32_t rays = 0;                       ///< of this step
     };
-    /// What is due of some successive pairs, found by one thread; pairs: of due. stale: places in due.
+    /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due.
     struct Slice {
         std::vector<Due> due;
+        std::vector<std::uint32_t> ordered;
         std::vector<kernels::OrderedPair> pairs;
         std::vector<std::uint32_t> stale, fast;
         std::size_t first = 0; ///< of due, in due_
@@ -81,7 +81,7 @@ private:
     void look(Device& device, const ShapeStore& shapes);
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
                    std::optional<double> threshold, Slice& slice);
-    void gather(Executor& executor, std::span<Slice> slices);
+    void gather(Executor& executor);
     void find_holders();
     void keep(Executor& executor, bool held);
     void close(PairState& state);
@@ -96,6 +96,7 @@ private:
     RangePool pool_;
     Scan scan_;
     std::vector<Slice> slices_;                        ///< only ever more
+    std::uint32_t slice_count_ = 0;                    ///< of this step
     std::vector<Due> due_;                             ///< by active_
     std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;

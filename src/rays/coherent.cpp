@@ -113,10 +113,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     margins_.resize(full_count_);
     executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const Pair& pair = pairs[active_[i] / 2];
-            const bool from_a = active_[i] % 2 == 0;
-            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            const auto [source, target] = directed_pair(bodies, pairs, active_[i]);
             host_pairs_[i] = order_pair(source, target);
             cullings_[i] = static_cast<float>(table_.state(active_[i] / 2).culling);
             if (i >= full_count_) continue;

@@ -11,9 +11,9 @@ namespace raycontact {
 
 void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
                         std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Settings& settings) {
+    order_pairs(executor, bodies, pairs, host_pairs_); // refuses more pairs than have numbers
     which_.resize(2 * pairs.size());
     std::iota(which_.begin(), which_.end(), 0U);
-    order_pairs(executor, bodies, pairs, host_pairs_);
     device_pairs_.write(device, host_pairs_);
     short_first_ = settings.skip_outside && settings.caster != Caster::basic;
     queue_.fill(device, shapes.arrays(), device_pairs_, short_first_);
@@ -27,10 +27,7 @@ void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStor
     margins_.resize(which.size());
     executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const Pair& pair = pairs[which[i] / 2];
-            const bool from_a = which[i] % 2 == 0;
-            const PlacedBody& source = bodies[from_a ? pair.first : pair.second];
-            const PlacedBody& target = bodies[from_a ? pair.second : pair.first];
+            const auto [source, target] = directed_pair(bodies, pairs, which[i]);
             // Of few blocks it is not worth asking which are near.
             const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
             margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
