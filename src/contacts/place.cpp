@@ -17,10 +17,10 @@ Vec3 rotate(const Pose& pose, const Vec3& v) {
             (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
 }
 
-Contact place(Direction direction, const PlacedBody& source, const PlacedBody& target, const Pair& pair, bool from_a,
-              const kernels::LocalContact& local) {
+// Written where it is to be: a contact made on the stack is copied in words that no store has just written, and waits.
+void place(Contact& contact, Direction direction, const PlacedBody& source, const PlacedBody& target, const Pair& pair,
+           bool from_a, const kernels::LocalContact& local) {
     const ShapeData& shape = source.shape->data();
-    Contact contact;
     contact.body_a = pair.first;
     contact.body_b = pair.second;
     contact.vertex_body = from_a ? VertexBody::a : VertexBody::b;
@@ -40,7 +40,6 @@ Contact place(Direction direction, const PlacedBody& source, const PlacedBody& t
     const double sign = from_a ? -1 : 1;
     contact.normal = {static_cast<float>(sign * out.x), static_cast<float>(sign * out.y),
                       static_cast<float>(sign * out.z)};
-    return contact;
 }
 
 // How many vertices are smaller says where a contact belongs, without a branch to guess wrong: of this many contacts
@@ -87,8 +86,8 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
             const std::uint32_t ordered = local[begin].pair;
             const auto [source, target] = directed_pair(bodies, pairs, ordered);
             for (std::uint32_t i = begin; i < next; ++i)
-                contacts[i] = place(direction, source, target, pairs[ordered / 2], ordered % 2 == 0,
-                                    local[order_[i] & 0xffffffff]);
+                place(contacts[i], direction, source, target, pairs[ordered / 2], ordered % 2 == 0,
+                      local[order_[i] & 0xffffffff]);
         }
     });
 }
