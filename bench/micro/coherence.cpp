@@ -16,7 +16,6 @@ namespace {
 
 constexpr double look_ahead = 0.02;      // of the box diagonal; what `predictive` does at a threshold of one percent
 constexpr kernels::uint iterations = 16; // Settings::max_iterations
-constexpr kernels::uint segment_size = 64;
 
 } // namespace
 
@@ -82,9 +81,9 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     const std::vector<kernels::uint> firsts = copy_of(*device_, cluster_firsts_),
                                      counts = copy_of(*device_, pair_clusters_);
     for (kernels::uint p = 0; p < wide.size(); ++p)
-        for (kernels::uint done = 0; done < counts[p]; done += segment_size)
+        for (kernels::uint done = 0; done < counts[p]; done += SEGMENT_WATCHES)
             segments.push_back(
-                {p, firsts[p] + done, std::min(segment_size, counts[p] - done), UNBOUNDED, 0, margins[p]});
+                {p, firsts[p] + done, std::min(SEGMENT_WATCHES, counts[p] - done), UNBOUNDED, 0, margins[p]});
     segments_.write(*device_, segments);
     watches_.resize(*device_, clusters.size());
     looks_.resize(*device_, segments.size());
@@ -180,7 +179,7 @@ void Coherence::look_at_watches() {
 }
 
 void Coherence::write_watch_rays() {
-    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, segment_rays_, segment_firsts_,
+    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, segment_firsts_,
                                        watch_rays_);
 }
 

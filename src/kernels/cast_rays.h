@@ -94,6 +94,8 @@ DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL cons
                        GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                        GLOBAL const Packed3* RESTRICT normals, GLOBAL Hit* RESTRICT hits) {
     find_group(own, group, false, short_first, shapes, nodes, blocks);
+    for (uint r = 0u; r < group->count; ++r)
+        if (own[r].back < UNBOUNDED) PREFETCH(normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
     for (uint r = 0u; r < group->count; ++r) {
         const SourceRay ray = ray_of(group, r);
         hits[group->at[r]] = decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals);

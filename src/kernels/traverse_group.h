@@ -69,6 +69,10 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const No
         const uint meets = rays_that_meet(group, nodes + near.node[i], near.lane[i]);
         near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
     }
+    // Of a fine mesh the leaves lie beyond the caches.
+    for (uint i = 0u; i < near.count; ++i)
+        if (near.meets[i] != 0u)
+            for (uint j = 0u; j < 9u; ++j) PREFETCH(blocks[near.block[i]].corner[j], 0u);
     leaves.count = 0u;
     for (uint i = 0u; i < near.count; i += 4u) {
         ulong left = four_sixteens(near.meets, i, near.count);

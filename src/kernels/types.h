@@ -5,6 +5,7 @@
 #define NODE_LANES 16
 #define VERTEX_LANES 16
 #define CLUSTER_LEVELS 4
+#define SEGMENT_WATCHES 64u // a bit each
 #define NODE_LEVELS 5
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
@@ -122,7 +123,7 @@ typedef struct {
 WIRE_SIZE(Followed, 20);
 
 // A vertex block that its pair watches. lanes: vertices that could be in contact; the others cannot before the pair's
-// clock exceeds `wake`. cast: those of lanes that cast a ray in this step.
+// clock exceeds `wake`. cast: those of lanes that cast a ray, where the last look says that any does.
 typedef struct {
     uint vertex_block; // absolute
     float wake;        // metres
@@ -131,25 +132,26 @@ typedef struct {
 } Watch;
 WIRE_SIZE(Watch, 16);
 
-// Part of a pair's watches. now: what its clock shows, metres. from: from where on a certificate given now counts.
-// margin: metres of rounding that it must exceed.
+// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
+// from where on a certificate given now counts. margin: metres of rounding that it must exceed.
 typedef struct {
     uint pair;
-    uint first, count; // watches
+    uint first, count;
     float now, from;
     float margin;
 } Segment;
 WIRE_SIZE(Segment, 24);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. inside: vertices in the bounds.
-// rays: those that are cast.
+// rays: those that are cast. casting: a bit for each watch that casts any.
 typedef struct {
     float wake;
     uint blocks;
     uint inside;
     uint rays;
+    ulong casting;
 } Look;
-WIRE_SIZE(Look, 16);
+WIRE_SIZE(Look, 24);
 
 // A ray that one triangle decides, or none, while no point of it has moved by `safe`.
 typedef struct {

@@ -37,11 +37,9 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         const Segment segment = segments[s];
         GLOBAL const OrderedPair* pair = pairs + segment.pair;
         GLOBAL const ShapeHeader* target = shapes + pair->target;
-        Look look;
-        look.wake = UNBOUNDED;
-        look.blocks = 0u;
-        look.inside = 0u;
-        uint ray_count = 0u;
+        float wake = UNBOUNDED;
+        uint looked_at = 0u, inside = 0u, ray_count = 0u;
+        ulong casting = 0u;
         if (s + 4u < count) {
             PREFETCH(watches, segments[s + 4u].first);
             PREFETCH(watches, segments[s + 4u].first + 4u);
@@ -50,9 +48,8 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             float own = watches[i].wake;
             uint lanes = watches[i].lanes;
-            watches[i].cast = 0u;
             if (own > segment.now && lanes == 0u) {
-                if (own < look.wake) look.wake = own;
+                if (own < wake) wake = own;
                 continue;
             }
             GLOBAL const VertexBlock* RESTRICT block = vertices + watches[i].vertex_block;
@@ -69,7 +66,7 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                 }
                 lanes = pack_sixteen(unsafe);
                 watches[i].lanes = lanes;
-                look.blocks += 1u;
+                looked_at += 1u;
                 float least = least_of_sixteen(others) - segment.margin;
                 // Vertices that cast are asked again after a while whether they still must.
                 const float again = REFRESH_TOLERANCES * target->tolerance;
@@ -80,39 +77,39 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             }
             if (lanes != 0u) {
                 uint cast = lanes & pack_sixteen(held.inside);
-                look.inside += bit_count(cast);
+                inside += bit_count(cast);
                 // Where the balls were asked just now, the bits know no more.
                 if (cast != 0u && !ask && target->grid_size[0] != 0u)
                     cast &= ~outside_lanes(&held, target, outside_cells);
                 ray_count += bit_count(cast);
                 watches[i].cast = cast;
+                casting |= (ulong)(cast != 0u) << (i - segment.first);
                 own = AWAKE;
             }
-            if (own < look.wake) look.wake = own;
+            if (own < wake) wake = own;
         }
-        look.rays = ray_count;
-        looks[s] = look;
+        looks[s].wake = wake;
+        looks[s].blocks = looked_at;
+        looks[s].inside = inside;
+        looks[s].rays = ray_count;
+        looks[s].casting = casting;
         rays[s] = ray_count;
     }
 }
 
-// counts: rays of each segment. A list is read no farther than its last one.
+// looks: of this step.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
-                             GLOBAL const Watch* RESTRICT watches, GLOBAL const uint* RESTRICT counts,
+                             GLOBAL const Watch* RESTRICT watches, GLOBAL const Look* RESTRICT looks,
                              GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
     FOR_EACH(s, count) {
-        const Segment segment = segments[s];
-        const uint end = firsts[s] + counts[s];
+        const uint pair = segments[s].pair, first = segments[s].first;
         uint at = firsts[s];
-        for (uint i = segment.first; at < end; ++i) {
-            uint lanes = watches[i].cast;
-            while (lanes != 0u) {
-                Ray ray;
-                ray.pair = segment.pair;
-                ray.slot = VERTEX_LANES * watches[i].vertex_block + lowest_bit(lanes);
-                rays[at] = ray;
+        for (ulong casting = looks[s].casting; casting != 0u; casting &= casting - 1u) {
+            GLOBAL const Watch* RESTRICT watch = watches + first + lowest_bit_of_long(casting);
+            for (uint lanes = watch->cast; lanes != 0u; lanes &= lanes - 1u) {
+                rays[at].pair = pair;
+                rays[at].slot = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);
                 ++at;
-                lanes &= lanes - 1u;
             }
         }
     }

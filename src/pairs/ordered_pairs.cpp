@@ -18,27 +18,27 @@ float reach_into(const ShapeData& target, const ShapeData& source) {
 
 } // namespace
 
-kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target) {
-    return order_pair(source, target, relative_pose(target.centred, source.centred));
+void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::OrderedPair& ordered) {
+    order_pair(source, target, relative_pose(target.centred, source.centred), ordered);
 }
 
-kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative) {
+// Written where it is to be: one made on the stack is copied in words that no store has just written, and waits.
+void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
+                kernels::OrderedPair& ordered) {
     const ShapeData& shape = target.shape->data();
     const float grow = reach_into(shape, source.shape->data());
-    kernels::OrderedPair pair{};
-    for (int i = 0; i < 9; ++i) pair.rotation[i] = static_cast<float>(relative.rotation[i]);
-    pair.translation[0] = static_cast<float>(relative.translation.x);
-    pair.translation[1] = static_cast<float>(relative.translation.y);
-    pair.translation[2] = static_cast<float>(relative.translation.z);
-    pair.bounds[0] = shape.low.x - grow;
-    pair.bounds[1] = shape.low.y - grow;
-    pair.bounds[2] = shape.low.z - grow;
-    pair.bounds[3] = shape.high.x + grow;
-    pair.bounds[4] = shape.high.y + grow;
-    pair.bounds[5] = shape.high.z + grow;
-    pair.source = source.shape_index;
-    pair.target = target.shape_index;
-    return pair;
+    for (int i = 0; i < 9; ++i) ordered.rotation[i] = static_cast<float>(relative.rotation[i]);
+    ordered.translation[0] = static_cast<float>(relative.translation.x);
+    ordered.translation[1] = static_cast<float>(relative.translation.y);
+    ordered.translation[2] = static_cast<float>(relative.translation.z);
+    ordered.bounds[0] = shape.low.x - grow;
+    ordered.bounds[1] = shape.low.y - grow;
+    ordered.bounds[2] = shape.low.z - grow;
+    ordered.bounds[3] = shape.high.x + grow;
+    ordered.bounds[4] = shape.high.y + grow;
+    ordered.bounds[5] = shape.high.z + grow;
+    ordered.source = source.shape_index;
+    ordered.target = target.shape_index;
 }
 
 void widen(kernels::OrderedPair& pair, float by) {
@@ -57,8 +57,8 @@ void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::sp
         for (std::uint32_t p = begin; p < end; ++p) {
             const PlacedBody& a = bodies[pairs[p].first];
             const PlacedBody& b = bodies[pairs[p].second];
-            ordered[2 * p] = order_pair(a, b);
-            ordered[2 * p + 1] = order_pair(b, a);
+            order_pair(a, b, ordered[2 * p]);
+            order_pair(b, a, ordered[2 * p + 1]);
         }
     });
 }
@@ -69,7 +69,7 @@ void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::sp
     executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto [source, target] = directed_pair(bodies, pairs, which[i]);
-            ordered[i] = order_pair(source, target);
+            order_pair(source, target, ordered[i]);
         }
     });
 }

@@ -31,9 +31,10 @@ inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<
 
 /// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is
 /// lost far from the origin.
-kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target);
+void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::OrderedPair& ordered);
 /// The same where the relative pose is known already: with the bits that relative_pose() gives.
-kernels::OrderedPair order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative);
+void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
+                kernels::OrderedPair& ordered);
 
 /// The bounds grown by some metres on every side.
 void widen(kernels::OrderedPair& pair, float by);

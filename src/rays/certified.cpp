@@ -13,8 +13,7 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint32_t segment_size = 64; // watches; a pair of large meshes keeps every thread busy
-constexpr std::uint32_t slice_size = 128;  // pairs
+constexpr std::uint32_t slice_size = 128; // pairs
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
@@ -116,7 +115,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
         due.count = own.count;
         due.held_first = own.held_first;
         due.held_count = own.held_count;
-        slice.pairs.push_back(order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second()));
+        order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
     }
 }
 
@@ -238,9 +237,9 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     for (std::uint32_t i = 0; i < due_.size(); ++i) {
         Due& due = due_[i];
         due.wake = due.expiry;
-        for (std::uint32_t done = 0; done < due.count; done += segment_size)
+        for (std::uint32_t done = 0; done < due.count; done += SEGMENT_WATCHES)
             host_segments_.push_back(
-                {i, due.first + done, std::min(segment_size, due.count - done), due.now, due.from, due.margin});
+                {i, due.first + done, std::min(SEGMENT_WATCHES, due.count - done), due.now, due.from, due.margin});
     }
     device_pairs_.write(device, host_pairs_);
     segments_.write(device, host_segments_);
@@ -251,7 +250,7 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
                                       watches_, looks_, counts_);
     rays_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
-                                       counts_, firsts_, rays_);
+                                       looks_, firsts_, rays_);
     host_looks_.resize(host_segments_.size());
     looks_.read(device, host_looks_);
     inside_ = blocks_ = 0;

@@ -114,7 +114,7 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto [source, target] = directed_pair(bodies, pairs, active_[i]);
-            host_pairs_[i] = order_pair(source, target);
+            order_pair(source, target, host_pairs_[i]);
             cullings_[i] = static_cast<float>(table_.state(active_[i] / 2).culling);
             if (i >= full_count_) continue;
             const double extension =
