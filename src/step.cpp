@@ -44,6 +44,11 @@ void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<c
     certified_.fill(device(), executor(), shapes_, bodies, pairs, motion_, threshold);
     certified_.cast(device(), executor(), settings_.caster, shapes_);
     take(certified_, which, stats);
+    if (!certified_.still().empty()) {
+        found_.clear();
+        last_.find(pairs, certified_.still(), found_);
+        local_.add(found_, certified_.still(), which);
+    }
     if (certified_.fast().empty()) return;
     standard_.fill_near(device(), executor(), shapes_, bodies, pairs, certified_.fast());
     standard_.cast(device(), settings_.caster, shapes_);
@@ -79,6 +84,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
     }
     placer_.run(executor(), settings_.direction, bodies, pairs, local_.contacts(), contacts);
     changes_.mark(contacts);
+    last_.keep(pairs, local_);
 
     stats.pairs = pairs.size();
     stats.contacts = contacts.size();

@@ -3,6 +3,7 @@
 
 #include "contacts/changes.h"
 #include "contacts/gather.h"
+#include "contacts/last_contacts.h"
 #include "contacts/local_contacts.h"
 #include "contacts/place.h"
 #include "rays/certified.h"
@@ -53,6 +54,7 @@ private:
     Gather gather_;
     std::vector<kernels::LocalContact> found_; ///< by one method
     LocalContacts local_;                      ///< by all
+    LastContacts last_;
     Placer placer_;
     std::vector<Pair> fast_pairs_; ///< of predictive, that are left to certified
     Changes changes_;

@@ -6,6 +6,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace raycontact {
 
@@ -17,11 +18,13 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             Body& body = bodies_[i];
             Last& last = lasts_[i];
             if (bodies[i].shape == nullptr) {
-                last.known = false;
+                last.known = body.still = false;
                 continue;
             }
             const Pose& now = bodies[i].centred;
-            if (last.known && last.centred == now) {
+            // Bits, not values: 0 and -0 are one place, but not one contact.
+            body.still = last.known && std::memcmp(&last.centred, &now, sizeof(Pose)) == 0;
+            if (body.still) {
                 body.shift = {};
                 body.turn = body.lost = 0;
                 continue;

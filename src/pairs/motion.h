@@ -24,6 +24,8 @@ public:
     }
     /// No less than what any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const Pair& pair) const;
+    /// Neither body has moved by a bit since the last step.
+    bool is_still(const Pair& pair) const { return bodies_[pair.first].still && bodies_[pair.second].still; }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const Pair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
@@ -37,6 +39,7 @@ private:
         double lost = 0;  ///< what rounding may have taken from it
         double turn = 0;  ///< turn_bound
         double reach = 0; ///< of the shape, about its centre
+        bool still = false;
     };
     struct Last {
         Pose centred; ///< of the last step

@@ -75,6 +75,8 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool look[2] = {}, list[2] = {};
+    if (table_.hot(i).still)
+        for (Watched& own : state.watched) own.held_count = 0;
     double slack = 1e300;
     for (std::size_t d = 0; d < 2; ++d) {
         const Watched& own = state.watched[d];
@@ -84,7 +86,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
         look[d] = list[d] || !(clock < own.wake);
         if (!look[d]) slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
     }
-    table_.hot(i) = {slack, true};
+    table_.hot(i) = {slack, true, false};
     if (!(look[0] || look[1])) return;
 
     if (list[0] || list[1]) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
@@ -131,6 +133,7 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
         slice.pairs.reserve(std::size_t{2} * slice_size);
         slice.stale.reserve(std::size_t{2} * slice_size);
         slice.fast.reserve(slice_size);
+        slice.still.reserve(slice_size);
     }
     executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
@@ -140,9 +143,15 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             slice.pairs.clear();
             slice.stale.clear();
             slice.fast.clear();
+            slice.still.clear();
             const auto asleep = [&](std::uint32_t i, Slack& slack) {
                 slack.metres -= motion.pair_bound(pairs[i]);
                 if (slack.metres > 0) return true;
+                if (slack.lists && motion.is_still(pairs[i])) {
+                    slack.still = true;
+                    slice.still.push_back(i);
+                    return true;
+                }
                 const double size = size_of(bodies[pairs[i].first], bodies[pairs[i].second]);
                 if (threshold || !(motion.pair_speed(pairs[i]) > fastest * size)) return false;
                 slice.fast.push_back(i);
@@ -160,6 +169,7 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
 void CertifiedRays::gather(Executor& executor) {
     stale_.clear();
     fast_.clear();
+    still_.clear();
     std::size_t due_count = 0;
     for (Slice& slice : std::span(slices_).first(slice_count_)) {
         slice.first = due_count;
@@ -170,6 +180,7 @@ void CertifiedRays::gather(Executor& executor) {
             table_.hot(i) = {};
             fast_.insert(fast_.end(), {2 * i, 2 * i + 1});
         }
+        for (const std::uint32_t i : slice.still) still_.insert(still_.end(), {2 * i, 2 * i + 1});
     }
     active_.resize(due_count);
     due_.resize(due_count);

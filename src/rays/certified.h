@@ -35,6 +35,8 @@ public:
     std::span<const std::uint32_t> ordered() const { return active_; }
     /// The same of the pairs that are none of ours in this step: every vertex of theirs is to be looked at.
     std::span<const std::uint32_t> fast() const { return fast_; }
+    /// The same of the pairs of which neither body has moved: their contacts are those of the last step.
+    std::span<const std::uint32_t> still() const { return still_; }
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
@@ -71,7 +73,7 @@ private:
         std::vector<Due> due;
         std::vector<std::uint32_t> ordered;
         std::vector<kernels::OrderedPair> pairs;
-        std::vector<std::uint32_t> stale, fast;
+        std::vector<std::uint32_t> stale, fast, still;
         std::size_t first = 0; ///< of due, in due_
     };
 
@@ -90,15 +92,16 @@ private:
     struct Slack {
         double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
         bool lists = false; ///< there is something to be given back
+        bool still = false; ///< it did not move in the last step, which kept no rays of it
     };
 
     PairTable<PairState, Slack> table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<Slice> slices_;                        ///< only ever more
-    std::uint32_t slice_count_ = 0;                    ///< of this step
-    std::vector<Due> due_;                             ///< by active_
-    std::vector<std::uint32_t> active_, stale_, fast_; ///< ordered pairs; stale_ are places in active_
+    std::vector<Slice> slices_;                                ///< only ever more
+    std::uint32_t slice_count_ = 0;                            ///< of this step
+    std::vector<Due> due_;                                     ///< by active_
+    std::vector<std::uint32_t> active_, stale_, fast_, still_; ///< ordered pairs; stale_ are places in active_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
     std::vector<kernels::uint> host_counts_, places_;

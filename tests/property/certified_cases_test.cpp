@@ -156,6 +156,74 @@ TEST(certified, flat_bodies_on_a_sheared_slab) {
     report("flat on sheared slab", counts, 1e3);
 }
 
+// Bodies of a crowd that stop and go on, each when it likes, while others come and go and some pairs are not asked for.
+// A pair that has stood still for a step costs no vertex and no ray.
+TEST(certified, bodies_that_stand_still) {
+    Counts counts;
+    std::uint64_t free_steps = 0, free_contacts = 0;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        Random random(first_seed() + 800000 + i);
+        Triplet triplet(some_settings(random), thresholds[random.below(std::size(thresholds))],
+                        "standing still " + std::to_string(i));
+        const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (int k = 0; k < 16; ++k) shapes.push_back(stock[random.below(static_cast<std::uint32_t>(stock.size()))]);
+        const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
+        std::vector<std::pair<BodyId, Mover>> bodies;
+        std::size_t next = 0;
+        const auto add = [&] {
+            BodyId id = 0;
+            triplet.each([&](Scene& scene) { id = scene.add(shapes[next], homes[next]); });
+            bodies.emplace_back(id, Mover(Course::drift, homes[next], 1, random));
+            ++next;
+        };
+        while (next < 12) add();
+        int still_for = 0;
+        bool moves = false; // whether any body may
+        for (int step = 0; step < 120; ++step) {
+            if (random.below(6) == 0) moves = !moves;
+            bool changed = false;
+            if (random.below(30) == 0 && next < shapes.size()) {
+                add();
+                changed = true;
+            } else if (random.below(40) == 0 && bodies.size() > 6) {
+                triplet.each([&](Scene& scene) { scene.remove(bodies.front().first); });
+                bodies.erase(bodies.begin());
+                changed = true;
+            }
+            for (auto& [id, mover] : bodies) {
+                if (!moves || random.below(3) != 0) continue;
+                const BodyId body = id;
+                const Pose pose = mover.next(random);
+                triplet.each([&](Scene& scene) { scene.set_pose(body, pose); });
+                changed = true;
+            }
+            std::vector<Pair> asked;
+            const bool few = random.below(10) == 0; // pairs that are left out, once
+            for (std::size_t a = 0; a < bodies.size(); ++a)
+                for (std::size_t b = a + 1; b < bodies.size(); ++b)
+                    if (!few || random.below(2) == 0) asked.emplace_back(bodies[a].first, bodies[b].first);
+            triplet.step(counts, asked);
+            still_for = changed || few ? 0 : still_for + 1;
+            if (still_for < 2) continue;
+            ++free_steps;
+            triplet.each([&](Scene& scene) {
+                if (scene.settings().method != Method::certified) return;
+                free_contacts += scene.contacts().size();
+                EXPECT_EQ(scene.stats().vertices, 0u);
+                EXPECT_EQ(scene.stats().rays_cast, 0u);
+                EXPECT_EQ(scene.stats().pairs_asleep, 2 * scene.stats().pairs);
+            });
+        }
+        ++counts.episodes;
+    }
+    report("standing still", counts, 1e4);
+    std::printf("[ counts   ] %llu steps without a vertex asked, %llu contacts in them\n",
+                static_cast<unsigned long long>(free_steps), static_cast<unsigned long long>(free_contacts));
+    EXPECT_GT(free_steps, 100u);
+    EXPECT_GT(free_contacts, 1000u);
+}
+
 // Shapes that go take others to new places in the store while pairs of those are asleep.
 TEST(certified, packed_shapes) {
     Counts counts;
