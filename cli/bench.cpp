@@ -288,7 +288,7 @@ void add_growth(CLI::App& bench) {
         bench.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
     auto c = std::make_shared<GrowthCommand>();
     command->add_option("--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
-    command->add_option("--only", c->options.parts, "parts: triangles,contacts,displacement,bodies")
+    command->add_option("--only", c->options.parts, "parts: triangles,contacts,creeping,still,displacement,bodies")
         ->type_name("NAMES")
         ->delimiter(',');
     add_number(*command, "--bodies", c->options.bodies, "largest avalanche, 64 and its doubles up to here; 0: none", 0u,

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace raycontact::bench {
 
@@ -17,6 +18,7 @@ namespace {
 constexpr Method methods[] = {Method::standard, Method::predictive, Method::certified};
 constexpr std::uint32_t sizes[] = {100, 316, 1'000, 3'160, 10'000, 31'600, 100'000};
 constexpr std::uint32_t least_of_slopes = 1'000; // triangles; below, what a pair costs anyhow hides the rest
+constexpr double creep = 0.0002;                 // of the size a step: a centimetre a second, of bodies of 1 m
 constexpr double displacements[] = {0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 constexpr std::uint32_t displaced_triangles = 10'000;
 
@@ -126,11 +128,15 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
         measure(approaching_pairs("triangles", sphere(triangles), "a bumpy sphere", approach), "triangles", triangles,
                 5, options, rows);
     }
-    for (const std::uint32_t triangles : sizes) {
-        if (triangles > options.triangles || !wanted("contacts")) break;
-        if (triangles < least_of_slopes) continue;
-        progress("rolling meshes of " + std::to_string(triangles) + " triangles");
-        measure(rolling(triangles, RollingOptions().displacement, options), "contacts", triangles, 5, options, rows);
+    constexpr std::pair<const char*, double> paces[] = {
+        {"contacts", RollingOptions().displacement}, {"creeping", creep}, {"still", 0}};
+    for (const auto& [part, displacement] : paces) {
+        for (const std::uint32_t triangles : sizes) {
+            if (triangles > options.triangles || !wanted(part)) break;
+            if (triangles < least_of_slopes) continue;
+            progress(std::string(part) + ": rolling meshes of " + std::to_string(triangles) + " triangles");
+            measure(rolling(triangles, displacement, options), part, triangles, 5, options, rows);
+        }
     }
     for (const double displacement : displacements) {
         if (options.triangles == 0 || !wanted("displacement")) break;
@@ -146,10 +152,14 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
     return rows;
 }
 
+bool keeps_contacts(const std::string& part) {
+    return part == "contacts" || part == "creeping" || part == "still";
+}
+
 std::vector<Slope> slopes(std::span<const GrowthRow> rows) {
     std::vector<Slope> all;
     for (const char* part : growth_parts) {
-        const bool of_meshes = std::string(part) == "triangles" || std::string(part) == "contacts";
+        const bool of_meshes = std::string(part) == "triangles" || keeps_contacts(part);
         for (const Method method : methods) {
             double n = 0, x = 0, y = 0, xx = 0, xy = 0;
             Slope slope{part, method, 0, 0, 0};

@@ -13,10 +13,11 @@ namespace raycontact::bench {
 
 // The parts:
 //   triangles     approaching pairs of ever finer meshes: contacts grow with the vertices that are inside
-//   contacts      rolling pairs of ever finer meshes, each with about the same number of contacts
+//   contacts      rolling pairs of ever finer meshes, each with about the same number of contacts; creeping: the same,
+//                 as slowly as a pile at rest creeps; still: the same pairs, which do not move at all
 //   displacement  rolling pairs of one mesh, faster and faster
 //   bodies        avalanches, larger and larger
-inline constexpr const char* growth_parts[] = {"triangles", "contacts", "displacement", "bodies"};
+inline constexpr const char* growth_parts[] = {"triangles", "contacts", "creeping", "still", "displacement", "bodies"};
 
 struct GrowthOptions {
     std::vector<std::string> parts;   ///< empty: all
@@ -42,6 +43,9 @@ struct GrowthRow {
 };
 
 std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress);
+
+/// Of those parts in which only the mesh grows.
+bool keeps_contacts(const std::string& part);
 
 /// The time a pair takes grows as its size to this power: the slope of a line through the logarithms, least squares.
 struct Slope {

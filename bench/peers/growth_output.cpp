@@ -27,10 +27,9 @@ std::string csv(const Machine& machine, std::span<const GrowthRow> rows) {
     return text;
 }
 
-const char* unit_of(const std::string& part) {
-    if (part == "bodies") return "bodies";
-    if (part == "displacement") return "displacement";
-    return part == "contacts" ? "triangles, contacts alike," : "triangles";
+std::string unit_of(const std::string& part) {
+    if (keeps_contacts(part)) return "triangles (" + part + ")";
+    return part;
 }
 
 std::string chart(std::span<const GrowthRow> rows) {
@@ -38,8 +37,10 @@ std::string chart(std::span<const GrowthRow> rows) {
         {"Avalanche", "bodies", "us a pair and step", {}},
         {"Approaching pairs", "triangles a mesh", "us a pair and step", {}},
         {"Rolling pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
+        {"Creeping pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
+        {"The same pairs, still", "triangles a mesh", "us a pair and step", {}},
         {"Rolling pairs, contacts alike", "displacement a step, part of the size", "us a pair and step", {}}};
-    const std::string parts[] = {"bodies", "triangles", "contacts", "displacement"};
+    const std::string parts[] = {"bodies", "triangles", "contacts", "creeping", "still", "displacement"};
     for (std::size_t i = 0; i < std::size(parts); ++i) {
         for (const Method method : {Method::standard, Method::predictive, Method::certified}) {
             Line& line = panels[i].lines.emplace_back();

@@ -253,12 +253,12 @@ TEST(Sweep, ReductionIsOfTheSameSeedAndSetting) {
 
 TEST(Growth, RaysGrowWithTriangles) {
     GrowthOptions options;
-    options.parts = {"triangles", "contacts"};
+    options.parts = {"triangles", "contacts", "creeping", "still"};
     options.bodies = 0;
     options.triangles = 3160;
     options.pairs = 2;
     const std::vector<GrowthRow> rows = growth(options, [](const std::string&) {});
-    ASSERT_EQ(rows.size(), 3 * (4 + 2u));
+    ASSERT_EQ(rows.size(), 3 * (4 + 3 * 2u));
     for (const GrowthRow& row : rows) {
         EXPECT_GT(row.contacts, 0);
         EXPECT_GT(row.us_per_pair, 0);
@@ -269,9 +269,16 @@ TEST(Growth, RaysGrowWithTriangles) {
     EXPECT_EQ(rows[12].part, "contacts");
     EXPECT_LT(rows[12].rays, rows[15].rays);
     EXPECT_NEAR(rows[12].contacts, rows[15].contacts, 0.1 * rows[12].contacts);
+    EXPECT_EQ(rows[20].part, "creeping");
+    EXPECT_NEAR(rows[20].pace, 0.0002, 2e-6);
+    EXPECT_GT(rows[20].rays, 0);
+    // What does not move is not asked again.
+    EXPECT_EQ(rows[26].part, "still");
+    EXPECT_EQ(rows[26].method, Method::certified);
+    EXPECT_EQ(rows[26].rays, 0);
     // Certified finds what standard finds.
     for (std::size_t i = 0; i < rows.size(); i += 3) EXPECT_EQ(rows[i].contacts, rows[i + 2].contacts);
-    EXPECT_EQ(slopes(rows).size(), 6u);
+    EXPECT_EQ(slopes(rows).size(), 12u);
 }
 
 TEST(Growth, SlopeOfAPower) {
