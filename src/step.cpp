@@ -17,6 +17,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
 void NarrowPhase::forget() {
     certified_.clear();
     coherent_.clear();
+    last_.clear();
 }
 
 template <class Rays>
@@ -36,6 +37,10 @@ void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const P
 void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
     motion_.update(executor(), bodies);
     cast_certified(bodies, pairs, {}, settings_.displacement_threshold, stats);
+    if (certified_.still().empty()) return;
+    found_.clear();
+    last_.find(pairs, certified_.still(), found_);
+    local_.add(found_, certified_.still());
 }
 
 void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -44,11 +49,6 @@ void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<c
     certified_.fill(device(), executor(), shapes_, bodies, pairs, motion_, threshold);
     certified_.cast(device(), executor(), settings_.caster, shapes_);
     take(certified_, which, stats);
-    if (!certified_.still().empty()) {
-        found_.clear();
-        last_.find(pairs, certified_.still(), found_);
-        local_.add(found_, certified_.still(), which);
-    }
     if (certified_.fast().empty()) return;
     standard_.fill_near(device(), executor(), shapes_, bodies, pairs, certified_.fast());
     standard_.cast(device(), settings_.caster, shapes_);
@@ -78,14 +78,16 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
             coherent(bodies, pairs, stats);
         else
             standard(bodies, pairs, stats);
+        placer_.run(executor(), settings_.direction, bodies, pairs, local_.contacts(), contacts);
+        changes_.mark(contacts);
+        if (settings_.method == Method::certified) last_.keep(pairs, local_);
     } catch (...) {
         forget(); // what a step that failed half-way kept is worth nothing
+        contacts.clear();
         throw;
     }
-    placer_.run(executor(), settings_.direction, bodies, pairs, local_.contacts(), contacts);
-    changes_.mark(contacts);
-    last_.keep(pairs, local_);
 
+    stats.pair_bytes += last_.bytes();
     stats.pairs = pairs.size();
     stats.contacts = contacts.size();
     stats.contacts_new = changes_.new_count();

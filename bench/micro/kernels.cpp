@@ -118,7 +118,7 @@ void add_coherence(rb::Coherence& on, const rb::Batch& batch, std::string_view i
         [&] { on.begin_watches(); });
     add(name("look_at_watches"), {"vertex block", blocks, block_look + 2 * sizeof(rk::Watch)},
         [&] { on.look_at_watches(); });
-    add(name("write_watch_rays"), {"ray", watch_rays, sizeof(rk::Ray) + blocks / watch_rays * sizeof(rk::Watch)},
+    add(name("write_watch_rays"), {"ray", watch_rays, sizeof(rk::Ray) + sizeof(rk::Watch)},
         [&] { on.write_watch_rays(); });
     const double held = ray + sizeof(rk::Holder) + sizeof(rk::Held);
     add(name("hold_rays/seek"), {"ray", watch_rays, held}, [&] { on.seek_tubes(); });

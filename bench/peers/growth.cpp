@@ -134,7 +134,7 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
         for (const std::uint32_t triangles : sizes) {
             if (triangles > options.triangles || !wanted(part)) break;
             if (triangles < least_of_slopes) continue;
-            progress(std::string(part) + ": rolling meshes of " + std::to_string(triangles) + " triangles");
+            progress(std::string(part) + ": meshes of " + std::to_string(triangles) + " triangles");
             measure(rolling(triangles, displacement, options), part, triangles, 5, options, rows);
         }
     }
@@ -152,14 +152,14 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
     return rows;
 }
 
-bool keeps_contacts(const std::string& part) {
+bool only_mesh_grows(const std::string& part) {
     return part == "contacts" || part == "creeping" || part == "still";
 }
 
 std::vector<Slope> slopes(std::span<const GrowthRow> rows) {
     std::vector<Slope> all;
     for (const char* part : growth_parts) {
-        const bool of_meshes = std::string(part) == "triangles" || keeps_contacts(part);
+        const bool of_meshes = std::string(part) == "triangles" || only_mesh_grows(part);
         for (const Method method : methods) {
             double n = 0, x = 0, y = 0, xx = 0, xy = 0;
             Slope slope{part, method, 0, 0, 0};

@@ -44,8 +44,8 @@ struct GrowthRow {
 
 std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress);
 
-/// Of those parts in which only the mesh grows.
-bool keeps_contacts(const std::string& part);
+/// Of the parts with contacts alike: what grows is the mesh alone.
+bool only_mesh_grows(const std::string& part);
 
 /// The time a pair takes grows as its size to this power: the slope of a line through the logarithms, least squares.
 struct Slope {

@@ -28,7 +28,7 @@ std::string csv(const Machine& machine, std::span<const GrowthRow> rows) {
 }
 
 std::string unit_of(const std::string& part) {
-    if (keeps_contacts(part)) return "triangles (" + part + ")";
+    if (only_mesh_grows(part)) return "triangles (" + part + ")";
     return part;
 }
 

@@ -10,6 +10,11 @@ void LastContacts::keep(std::span<const Pair> pairs, LocalContacts& contacts) {
     contacts.give(contacts_);
 }
 
+void LastContacts::clear() {
+    pairs_.clear();
+    contacts_.clear();
+}
+
 void LastContacts::find(std::span<const Pair> pairs, std::span<const std::uint32_t> ordered,
                         std::vector<kernels::LocalContact>& found) const {
     std::size_t pair = 0, contact = 0;

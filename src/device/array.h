@@ -19,8 +19,9 @@ public:
     /// Contents are lost when the array must grow.
     void resize(Device& device, std::size_t size) {
         if (size > capacity_) {
-            capacity_ = std::max<std::size_t>(size + size / 2, 16);
-            buffer_ = device.make_buffer(capacity_ * sizeof(T));
+            const std::size_t capacity = std::max<std::size_t>(size + size / 2, 16);
+            buffer_ = device.make_buffer(capacity * sizeof(T)); // may fail
+            capacity_ = capacity;
         }
         size_ = size;
     }

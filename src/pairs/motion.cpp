@@ -6,9 +6,15 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 
 namespace raycontact {
+
+namespace {
+using PoseBits = std::array<std::uint64_t, 12>;
+} // namespace
 
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     bodies_.resize(bodies.size());
@@ -23,7 +29,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             }
             const Pose& now = bodies[i].centred;
             // Bits, not values: 0 and -0 are one place, but not one contact.
-            body.still = last.known && std::memcmp(&last.centred, &now, sizeof(Pose)) == 0;
+            body.still = last.known && std::bit_cast<PoseBits>(last.centred) == std::bit_cast<PoseBits>(now);
             if (body.still) {
                 body.shift = {};
                 body.turn = body.lost = 0;

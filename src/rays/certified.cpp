@@ -14,6 +14,7 @@ namespace raycontact {
 namespace {
 
 constexpr std::uint32_t slice_size = 128; // pairs
+static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::Look::casting), "a bit for each watch of a segment");
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);

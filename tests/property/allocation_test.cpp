@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Once a scene has seen its worst step, further steps allocate nothing.
+// Once a scene has seen its worst step, further steps allocate nothing; and one for which there was no memory leaves
+// nothing behind.
 #include "scenes/models/model.h"
 
 #include <raycontact/scene.h>
@@ -11,9 +12,11 @@
 
 namespace {
 std::atomic<std::uint64_t> allocations{0};
+std::atomic<std::int64_t> allocations_left{-1}; // before one fails; below 0: none does
 
 void* counted(std::size_t bytes, std::size_t alignment) {
     ++allocations;
+    if (allocations_left >= 0 && allocations_left-- == 0) throw std::bad_alloc();
     void* memory = nullptr;
     if (posix_memalign(&memory, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
     return memory;
@@ -112,6 +115,52 @@ TEST(Allocations, NoneForPairsThatReturn) {
         for (int i = 192; i < 288; ++i) step(i);
         EXPECT_EQ(allocations - before, 0u) << to_string(method);
         EXPECT_GT(scene.stats().contacts, 100u);
+    }
+}
+
+// Whichever allocation of a step fails: the step repeated, and repeated again, gives the contacts of a fresh scene.
+TEST(Allocations, AStepThatFailsLeavesNothing) {
+    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    constexpr BodyId bodies = 27;
+    const auto pose_of = [](BodyId body, double spacing) {
+        const Vec3 at{spacing * (body % 3), spacing * (body / 3 % 3), spacing * (body / 9)};
+        return pose_from_quaternion(at, 1, 0.1 * body, 0.2, 0.3);
+    };
+    for (const Method method : methods) {
+        Settings settings;
+        settings.method = method;
+        settings.threads = 1;
+        std::uint64_t failures = 0;
+        for (std::int64_t k = 0;; ++k) {
+            Scene scene(settings);
+            for (BodyId body = 0; body < bodies; ++body) scene.add(shape, pose_of(body, 0.8));
+            scene.step();
+            for (BodyId body = 0; body < bodies; ++body) scene.set_pose(body, pose_of(body, 0.6));
+            bool failed = false;
+            allocations_left = k;
+            try {
+                scene.step();
+            } catch (const std::bad_alloc&) {
+                failed = true;
+            }
+            allocations_left = -1;
+            if (!failed) break;
+            ++failures;
+            EXPECT_TRUE(scene.contacts().empty());
+            Scene fresh(settings);
+            for (BodyId body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
+            const auto expected = fresh.step();
+            for (int again = 0; again < 2; ++again) {
+                const auto found = scene.step();
+                ASSERT_EQ(found.size(), expected.size()) << to_string(method) << ", allocation " << k;
+                for (std::size_t i = 0; i < found.size(); ++i) {
+                    ASSERT_EQ(found[i].vertex, expected[i].vertex);
+                    ASSERT_EQ(found[i].triangle, expected[i].triangle);
+                    ASSERT_EQ(found[i].depth, expected[i].depth);
+                }
+            }
+        }
+        EXPECT_GT(failures, 20u) << to_string(method);
     }
 }
 
