@@ -77,6 +77,25 @@ struct Scene::State {
         broad.find_pairs(boxes, pairs);
     }
 
+    // As a caller may give them: in any order, either way round, more than once.
+    void take_pairs(std::span<const Pair> given) {
+        const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
+        if (same && !removed) return; // they were looked through in an earlier step
+        for (const Pair& pair : given) {
+            existing(pair.first);
+            existing(pair.second);
+            if (pair.first == pair.second)
+                throw InputError("body " + std::to_string(pair.first)
+                                 + " is paired with itself; pairs need two bodies");
+        }
+        pairs.assign(given.begin(), given.end());
+        for (Pair& pair : pairs)
+            if (pair.first > pair.second) std::swap(pair.first, pair.second);
+        if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
+        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+        removed = false;
+    }
+
     NarrowPhase narrow;
     SweepAndPrune broad;
     std::vector<Body> bodies;
@@ -85,6 +104,7 @@ struct Scene::State {
     std::vector<Pair> pairs;
     std::vector<Contact> contacts;
     StepStats stats;
+    bool removed = false; ///< a body, since pairs were looked through
 };
 
 Scene::Scene(const Settings& settings) {
@@ -108,6 +128,7 @@ void Scene::remove(BodyId body) {
     state_->existing(body);
     state_->narrow.shapes().remove(state_->bodies[body].shape.get());
     state_->bodies[body].shape.reset();
+    state_->removed = true;
     state_->placed[body].shape = nullptr;
 }
 
@@ -154,18 +175,7 @@ std::span<const Contact> Scene::step() {
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
-    for (const Pair& pair : pairs) {
-        state_->existing(pair.first);
-        state_->existing(pair.second);
-        if (pair.first == pair.second)
-            throw InputError("body " + std::to_string(pair.first) + " is paired with itself; pairs need two bodies");
-    }
-    state_->pairs.assign(pairs.begin(), pairs.end());
-    for (Pair& pair : state_->pairs)
-        if (pair.first > pair.second) std::swap(pair.first, pair.second);
-    if (!std::is_sorted(state_->pairs.begin(), state_->pairs.end()))
-        std::sort(state_->pairs.begin(), state_->pairs.end());
-    state_->pairs.erase(std::unique(state_->pairs.begin(), state_->pairs.end()), state_->pairs.end());
+    state_->take_pairs(pairs);
     state_->place_bodies();
     state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
     state_->stats.broad_ms = 0;

@@ -19,6 +19,7 @@ public:
     /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
     template <class Closed>
     void match(std::span<const Pair> pairs, Closed&& closed) {
+        if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return;
         next_slots_.clear();
         std::size_t old = 0;
         for (const Pair& pair : pairs) {
