@@ -17,7 +17,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
 void NarrowPhase::forget() {
     certified_.clear();
     coherent_.clear();
-    last_.clear();
+    local_.clear();
 }
 
 template <class Rays>
@@ -28,6 +28,7 @@ void NarrowPhase::take(const Rays& rays, std::span<const std::uint32_t> which, S
 }
 
 void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+    local_.clear();
     standard_.fill(device(), executor(), shapes_, bodies, pairs, settings_);
     standard_.cast(device(), settings_.caster, shapes_);
     take(standard_, {}, stats);
@@ -36,18 +37,23 @@ void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const P
 // The same contacts; pairs, and blocks of vertices, that cannot touch yet are left alone.
 void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
     motion_.update(executor(), bodies);
-    cast_certified(bodies, pairs, {}, settings_.displacement_threshold, stats);
-    if (certified_.still().empty()) return;
-    found_.clear();
-    last_.find(pairs, certified_.still(), found_);
-    local_.add(found_, certified_.still());
+    cast_certified(bodies, pairs, settings_.displacement_threshold);
+    still_.clear();
+    if (!certified_.still().empty())
+        find_still_contacts(certified_.last_pairs(), local_.contacts(), pairs, certified_.still(), still_);
+    local_.clear();
+    take_certified(bodies, pairs, {}, stats);
+    if (!still_.empty()) local_.add(still_, certified_.still());
 }
 
 void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
-                                 std::span<const std::uint32_t> which, std::optional<double> threshold,
-                                 StepStats& stats) {
+                                 std::optional<double> threshold) {
     certified_.fill(device(), executor(), shapes_, bodies, pairs, motion_, threshold);
     certified_.cast(device(), executor(), settings_.caster, shapes_);
+}
+
+void NarrowPhase::take_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                                 std::span<const std::uint32_t> which, StepStats& stats) {
     take(certified_, which, stats);
     if (certified_.fast().empty()) return;
     standard_.fill_near(device(), executor(), shapes_, bodies, pairs, certified_.fast());
@@ -57,20 +63,21 @@ void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<c
 
 // Contacts followed from the last step, and in full for pairs that moved too far; not always those of `standard`.
 void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+    local_.clear();
     motion_.update(executor(), bodies);
     coherent_.follow(device(), executor(), shapes_, bodies, pairs, motion_, settings_);
     take(coherent_, {}, stats);
     if (coherent_.fast().empty()) return certified_.clear(); // its pairs are those of the step before
     fast_pairs_.clear();
     for (const std::uint32_t i : coherent_.fast()) fast_pairs_.push_back(pairs[i]);
-    cast_certified(bodies, fast_pairs_, coherent_.fast(), std::nullopt, stats);
+    cast_certified(bodies, fast_pairs_, std::nullopt);
+    take_certified(bodies, fast_pairs_, coherent_.fast(), stats);
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
                        StepStats& stats) {
     const auto start = std::chrono::steady_clock::now();
     stats = {};
-    local_.clear();
     try {
         if (settings_.method == Method::certified)
             certified(bodies, pairs, stats);
@@ -80,14 +87,12 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair>
             standard(bodies, pairs, stats);
         placer_.run(executor(), settings_.direction, bodies, pairs, local_.contacts(), contacts);
         changes_.mark(contacts);
-        if (settings_.method == Method::certified) last_.keep(pairs, local_);
     } catch (...) {
         forget(); // what a step that failed half-way kept is worth nothing
         contacts.clear();
         throw;
     }
 
-    stats.pair_bytes += last_.bytes();
     stats.pairs = pairs.size();
     stats.contacts = contacts.size();
     stats.contacts_new = changes_.new_count();

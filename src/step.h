@@ -3,9 +3,9 @@
 
 #include "contacts/changes.h"
 #include "contacts/gather.h"
-#include "contacts/last_contacts.h"
 #include "contacts/local_contacts.h"
 #include "contacts/place.h"
+#include "contacts/still_contacts.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
 #include "rays/standard.h"
@@ -36,9 +36,11 @@ private:
     void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
     void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
-    /// which: what numbers `pairs` have in the step; empty: their own.
     void cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
-                        std::span<const std::uint32_t> which, std::optional<double> threshold, StepStats& stats);
+                        std::optional<double> threshold);
+    /// which: what numbers `pairs` have in the step; empty: their own.
+    void take_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                        std::span<const std::uint32_t> which, StepStats& stats);
     /// The contacts among the rays that a method has cast.
     template <class Rays>
     void take(const Rays& rays, std::span<const std::uint32_t> which, StepStats& stats);
@@ -53,8 +55,8 @@ private:
     CoherentRays coherent_;
     Gather gather_;
     std::vector<kernels::LocalContact> found_; ///< by one method
-    LocalContacts local_;                      ///< by all
-    LastContacts last_;
+    LocalContacts local_;                      ///< by all; kept until the next step has asked for them
+    std::vector<kernels::LocalContact> still_; ///< of the last step, still true
     Placer placer_;
     std::vector<Pair> fast_pairs_; ///< of predictive, that are left to certified
     Changes changes_;

@@ -19,8 +19,6 @@ public:
     void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> ordered,
              std::span<const std::uint32_t> which = {});
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }
-    /// Hands them over, in exchange for room.
-    void give(std::vector<kernels::LocalContact>& to) { contacts_.swap(to); }
 
 private:
     void merge(std::size_t first, std::size_t second);

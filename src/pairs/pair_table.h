@@ -19,7 +19,8 @@ public:
     /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
     template <class Closed>
     void match(std::span<const Pair> pairs, Closed&& closed) {
-        if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return;
+        same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
+        if (same_) return;
         next_slots_.clear();
         std::size_t old = 0;
         for (const Pair& pair : pairs) {
@@ -31,8 +32,12 @@ public:
         }
         while (old < open_.size()) close(old++, closed);
         slots_.swap(next_slots_);
+        last_.swap(open_);
         open_.assign(pairs.begin(), pairs.end());
     }
+
+    /// Of the match before the last, unless all has been forgotten since.
+    std::span<const Pair> last_pairs() const { return same_ ? open_ : last_; }
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_[i]]; }
@@ -66,6 +71,8 @@ public:
     /// Forgets every pair.
     void clear() {
         open_.clear();
+        last_.clear();
+        same_ = false;
         slots_.clear();
         free_.clear();
         states_.clear();
@@ -102,7 +109,8 @@ private:
         return slot;
     }
 
-    std::vector<Pair> open_;
+    std::vector<Pair> open_, last_;
+    bool same_ = false; ///< last_ is not, but open_
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<State> states_;
     std::vector<Hot> hot_;

@@ -37,6 +37,8 @@ public:
     std::span<const std::uint32_t> fast() const { return fast_; }
     /// The same of the pairs of which neither body has moved: their contacts are those of the last step.
     std::span<const std::uint32_t> still() const { return still_; }
+    /// Of the step before.
+    std::span<const Pair> last_pairs() const { return table_.last_pairs(); }
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
