@@ -70,9 +70,10 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const No
         near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
     }
     // Of a fine mesh the leaves lie beyond the caches.
-    for (uint i = 0u; i < near.count; ++i)
-        if (near.meets[i] != 0u)
-            for (uint j = 0u; j < 9u; ++j) PREFETCH(blocks[near.block[i]].corner[j], 0u);
+    for (uint i = 0u; i < near.count; ++i) {
+        if (near.meets[i] == 0u) continue;
+        for (uint j = 0u; j < 9u; ++j) PREFETCH((GLOBAL const float*)(blocks + near.block[i]), TRIANGLE_LANES * j);
+    }
     leaves.count = 0u;
     for (uint i = 0u; i < near.count; i += 4u) {
         ulong left = four_sixteens(near.meets, i, near.count);

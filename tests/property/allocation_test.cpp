@@ -123,7 +123,8 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
     const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
     constexpr BodyId bodies = 27;
     const auto pose_of = [](BodyId body, double spacing) {
-        const Vec3 at{spacing * (body % 3), spacing * (body / 3 % 3), spacing * (body / 9)};
+        const BodyId column = body % 3, row = body / 3 % 3, layer = body / 9;
+        const Vec3 at{spacing * column, spacing * row, spacing * layer};
         return pose_from_quaternion(at, 1, 0.1 * body, 0.2, 0.3);
     };
     for (const Method method : methods) {

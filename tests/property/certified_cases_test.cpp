@@ -170,7 +170,9 @@ TEST(certified, bodies_that_stand_still) {
                         "standing still " + std::to_string(i));
         const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
         std::vector<std::shared_ptr<const Shape>> shapes;
-        for (int k = 0; k < (large ? 40 : 16); ++k)
+        const std::size_t most = large ? 40 : 16;
+        shapes.reserve(most);
+        for (std::size_t k = 0; k < most; ++k)
             shapes.push_back(stock[random.below(static_cast<std::uint32_t>(stock.size()))]);
         const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
         std::vector<std::pair<BodyId, Mover>> bodies;
