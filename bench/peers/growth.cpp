@@ -17,8 +17,12 @@ namespace {
 
 constexpr Method methods[] = {Method::standard, Method::predictive, Method::certified};
 constexpr std::uint32_t sizes[] = {100, 316, 1'000, 3'160, 10'000, 31'600, 100'000};
-constexpr std::uint32_t least_of_slopes = 1'000; // triangles; below, what a pair costs anyhow hides the rest
-constexpr double creep = 0.0002;                 // of the size a step: a centimetre a second, of bodies of 1 m
+constexpr std::uint32_t least_of_slopes = 1'000;     // triangles; below, what a pair costs anyhow hides the rest
+constexpr double creep = 0.0002;                     // of the size a step: a centimetre a second, of bodies of 1 m
+constexpr std::pair<const char*, double> paces[] = { // of rolling pairs, by part
+    {"contacts", RollingOptions().displacement},
+    {"creeping", creep},
+    {"still", 0}};
 constexpr double displacements[] = {0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 constexpr std::uint32_t displaced_triangles = 10'000;
 
@@ -128,8 +132,6 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
         measure(approaching_pairs("triangles", sphere(triangles), "a bumpy sphere", approach), "triangles", triangles,
                 5, options, rows);
     }
-    constexpr std::pair<const char*, double> paces[] = {
-        {"contacts", RollingOptions().displacement}, {"creeping", creep}, {"still", 0}};
     for (const auto& [part, displacement] : paces) {
         for (const std::uint32_t triangles : sizes) {
             if (triangles > options.triangles || !wanted(part)) break;
@@ -153,7 +155,7 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
 }
 
 bool only_mesh_grows(const std::string& part) {
-    return part == "contacts" || part == "creeping" || part == "still";
+    return std::any_of(std::begin(paces), std::end(paces), [&](const auto& pace) { return part == pace.first; });
 }
 
 std::vector<Slope> slopes(std::span<const GrowthRow> rows) {

@@ -110,7 +110,7 @@ private:
     }
 
     std::vector<Pair> open_, last_;
-    bool same_ = false; ///< last_ is not, but open_
+    bool same_ = false; ///< the last match had the pairs of the one before: last_ is older
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<State> states_;
     std::vector<Hot> hot_;
