@@ -11,35 +11,62 @@ namespace raycontact {
 
 namespace {
 
+// What all contacts of one direction of a pair have in common.
+struct Side {
+    Side(const DirectedPair& bodies, const Pair& of, bool first, Direction asked)
+        : pair(of), from_a(first), direction(asked), source(bodies.source.shape->data()),
+          source_pose(bodies.source.pose), target_pose(bodies.target.pose),
+          triangle_index(bodies.target.shape->triangle_index().data()) {}
+
+    // What place() reads, ahead of it: of a fine mesh it lies beyond the caches.
+    void send_for(const kernels::LocalContact& local) const {
+        __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
+        __builtin_prefetch(&source.mesh.vertices[local.vertex]);
+        __builtin_prefetch(&triangle_index[local.triangle]);
+    }
+
+    Pair pair;
+    bool from_a;
+    Direction direction;
+    const ShapeData& source;
+    const Pose &source_pose, &target_pose;
+    const std::uint32_t* triangle_index;
+};
+
 Vec3 rotate(const Pose& pose, const Vec3& v) {
     const auto& r = pose.rotation;
     return {(r[0] * v.x + r[1] * v.y) + r[2] * v.z, (r[3] * v.x + r[4] * v.y) + r[5] * v.z,
             (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
 }
 
-// Written where it is to be: a contact made on the stack is copied in words that no store has just written, and waits.
-void place(Contact& contact, Direction direction, const PlacedBody& source, const PlacedBody& target, const Pair& pair,
-           bool from_a, const kernels::LocalContact& local) {
-    const ShapeData& shape = source.shape->data();
-    contact.body_a = pair.first;
-    contact.body_b = pair.second;
-    contact.vertex_body = from_a ? VertexBody::a : VertexBody::b;
+// Written where it is to be, and nothing is returned by another unit: what was just stored in other pieces than it is
+// loaded in would be waited for. The point has the bits of transform_point().
+void place(Contact& contact, const Side& side, const kernels::LocalContact& local) {
+    const ShapeData& shape = side.source;
+    contact.body_a = side.pair.first;
+    contact.body_b = side.pair.second;
+    contact.vertex_body = side.from_a ? VertexBody::a : VertexBody::b;
     contact.vertex = shape.mesh.vertex_index[local.vertex];
-    contact.triangle = target.shape->triangle_index()[local.triangle];
-    contact.point = transform_point(source.pose, shape.mesh.vertices[local.vertex]);
+    contact.triangle = side.triangle_index[local.triangle];
+    const Vec3 turned = rotate(side.source_pose, shape.mesh.vertices[local.vertex]);
+    const Vec3& origin = side.source_pose.translation;
+    contact.point.x = turned.x + origin.x;
+    contact.point.y = turned.y + origin.y;
+    contact.point.z = turned.z + origin.z;
     contact.ray_length = local.distance;
     Vec3 out; // in which the source leaves the target
-    if (direction == Direction::reprojected) {
-        out = rotate(target.pose, {local.normal.x, local.normal.y, local.normal.z});
+    if (side.direction == Direction::reprojected) {
+        out = rotate(side.target_pose, {local.normal.x, local.normal.y, local.normal.z});
         contact.depth = local.distance * local.facing;
     } else {
         const Vec3 n = shape.vertex_normals[local.vertex];
-        out = rotate(source.pose, {-n.x, -n.y, -n.z});
+        out = rotate(side.source_pose, {-n.x, -n.y, -n.z});
         contact.depth = local.distance;
     }
-    const double sign = from_a ? -1 : 1;
-    contact.normal = {static_cast<float>(sign * out.x), static_cast<float>(sign * out.y),
-                      static_cast<float>(sign * out.z)};
+    const double sign = side.from_a ? -1 : 1;
+    contact.normal[0] = static_cast<float>(sign * out.x);
+    contact.normal[1] = static_cast<float>(sign * out.y);
+    contact.normal[2] = static_cast<float>(sign * out.z);
 }
 
 // How many vertices are smaller says where a contact belongs, without a branch to guess wrong: of this many contacts
@@ -80,14 +107,14 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
     executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         while (!begins_pair(begin)) ++begin;
         for (std::uint32_t next = begin; begin < end; begin = next) {
-            do order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
-            while (!begins_pair(++next));
-            sort_by_vertex({order_.data() + begin, next - begin});
             const std::uint32_t ordered = local[begin].pair;
-            const auto [source, target] = directed_pair(bodies, pairs, ordered);
-            for (std::uint32_t i = begin; i < next; ++i)
-                place(contacts[i], direction, source, target, pairs[ordered / 2], ordered % 2 == 0,
-                      local[order_[i] & 0xffffffff]);
+            const Side side(directed_pair(bodies, pairs, ordered), pairs[ordered / 2], ordered % 2 == 0, direction);
+            do {
+                order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
+                side.send_for(local[next]);
+            } while (!begins_pair(++next));
+            sort_by_vertex({order_.data() + begin, next - begin});
+            for (std::uint32_t i = begin; i < next; ++i) place(contacts[i], side, local[order_[i] & 0xffffffff]);
         }
     });
 }
