@@ -32,26 +32,39 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
     return grid;
 }
 
-// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
-// its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
-                           float reach) {
-    // The nearest point of the box; NaN takes its lower corner.
+// The nearest point of the grid's box, and its cell; NaN takes its lower corner.
+typedef struct {
+    float x, y, z;
+    int cell_x, cell_y, cell_z;
+    uint at; // of the grid's words
+} GridPlace;
+
+DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
+    GridPlace place;
     const float up_x = x >= grid.low_x ? x : grid.low_x, up_y = y >= grid.low_y ? y : grid.low_y;
     const float up_z = z >= grid.low_z ? z : grid.low_z;
-    const float px = up_x <= grid.high_x ? up_x : grid.high_x, py = up_y <= grid.high_y ? up_y : grid.high_y;
-    const float pz = up_z <= grid.high_z ? up_z : grid.high_z;
-    const float off_x = x - px, off_y = y - py, off_z = z - pz;
+    place.x = up_x <= grid.high_x ? up_x : grid.high_x;
+    place.y = up_y <= grid.high_y ? up_y : grid.high_y;
+    place.z = up_z <= grid.high_z ? up_z : grid.high_z;
+    place.cell_x = (int)((place.x - grid.low_x) * grid.scale);
+    place.cell_y = (int)((place.y - grid.low_y) * grid.scale);
+    place.cell_z = (int)((place.z - grid.low_z) * grid.scale);
+    place.at = ((uint)place.cell_z * grid.size_y + (uint)place.cell_y) * grid.size_x + (uint)place.cell_x;
+    return place;
+}
+
+// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
+// its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
+// p: the point's place; word: of its cell.
+DEVICE float safe_by(uint word, const GridPlace p, const Clearance grid, float x, float y, float z, float reach) {
+    const float off_x = x - p.x, off_y = y - p.y, off_z = z - p.z;
     const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-    const int cx = (int)((px - grid.low_x) * grid.scale), cy = (int)((py - grid.low_y) * grid.scale);
-    const int cz = (int)((pz - grid.low_z) * grid.scale);
-    const uint at = ((uint)cz * grid.size_y + (uint)cy) * grid.size_x + (uint)cx;
-    const uint word = balls[at];
-    const int bx = cx + (int)(word & 31u) - CLEARANCE_OFFSET, by = cy + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
-    const int bz = cz + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = px - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
-    const float ay = py - (grid.low_y + ((float)by + 0.5f) * grid.cell);
-    const float az = pz - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
+    const int bx = p.cell_x + (int)(word & 31u) - CLEARANCE_OFFSET;
+    const int by = p.cell_y + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
+    const int bz = p.cell_z + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
+    const float ax = p.x - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
+    const float ay = p.y - (grid.low_y + ((float)by + 0.5f) * grid.cell);
+    const float az = p.z - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
     const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
@@ -60,6 +73,12 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
         (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
     // Rays are stretched with their rotation, which is rigid to 1e-4 for each body.
     return away - (outside != 0u ? 0.0f : 1.0005f * reach);
+}
+
+DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
+                           float reach) {
+    const GridPlace place = place_in(grid, x, y, z);
+    return safe_by(balls[place.at], place, grid, x, y, z, reach);
 }
 
 // How far a point is outside the bounds at least, below 0 inside. As long as it needs to reach them, it casts nothing.
@@ -71,22 +90,32 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     return gap_xy > gap_z ? gap_xy : gap_z;
 }
 
-DEVICE SafeLanes safe_lanes(const InsideLanes* at, GLOBAL const OrderedPair* RESTRICT pair,
-                            GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
-                            GLOBAL const uint* RESTRICT clearances) {
+// What a grid's words say of the vertices of a block. at: the words, where they are known already (`sent_for`).
+DEVICE SafeLanes safe_lanes(const InsideLanes* seen, const bool sent_for, const uint* at,
+                            GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
+                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
     SafeLanes found;
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
-        const float x = at->x[k], y = at->y[k], z = at->z[k];
-        const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
+        const float x = seen->x[k], y = seen->y[k], z = seen->z[k];
+        const GridPlace place = place_in(grid, x, y, z);
+        const float clear = safe_by(balls[sent_for ? at[k] : place.at], place, grid, x, y, z, block->exit[k]);
         const float gap = bounds_gap(b, x, y, z);
         const float safe = clear > gap ? clear : gap;
         found.safe[k] = block->vertex[k] != NONE ? safe : UNBOUNDED;
     }
     return found;
+}
+
+// Sends for the words that safe_lanes() will ask.
+DEVICE void send_for_words(const InsideLanes* seen, uint* at, GLOBAL const ShapeHeader* RESTRICT target,
+                           GLOBAL const uint* RESTRICT clearances) {
+    const Clearance grid = clearance_of(target);
+    FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, seen->x[k], seen->y[k], seen->z[k]).at;
+    for (int k = 0; k < VERTEX_LANES; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }
 
 DEVICE float least_of_sixteen(const float* values) {

@@ -171,7 +171,7 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
         GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
         const InsideLanes held = inside_lanes(pair, block);
-        const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
+        const SafeLanes found = safe_lanes(&held, false, (const uint*)0, pair, block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
             close[k] = -(int)!(found.safe[k] > near);

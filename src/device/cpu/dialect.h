@@ -28,6 +28,7 @@ struct Range {
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4
 #define RAYS_IN_GROUP 16
+#define LOOKS_TOGETHER 4
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
          i < i##_end && (few = i##_end - i < (most) ? i##_end - i : (most)) != 0; i += few)

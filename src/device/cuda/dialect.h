@@ -15,6 +15,7 @@ typedef unsigned long long ulong;
 #define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
+#define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u; i < (n); i += gridDim.x * blockDim.x)
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)

@@ -14,6 +14,7 @@
 #define FOR_EACH(i, n) for (uint i = (uint)get_global_id(0); i < (n); i += (uint)get_global_size(0))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
+#define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = (uint)get_global_id(0), few = 1u; i < (n); i += (uint)get_global_size(0))
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
