@@ -36,6 +36,15 @@ struct Ball {
     }
 };
 
+// Balls follow the surface, so cells may be as long as its edges. Of a fine mesh longer ones, by the power 3/4: what
+// they no longer tell costs a few rays, a grid beyond the caches costs more.
+double wanted_cells(double triangles) {
+    constexpr double each = 25, coarse = 1000;
+    const double finer = triangles / coarse;
+    const double counted = finer < 1 ? triangles : coarse * std::sqrt(finer) * std::sqrt(std::sqrt(finer));
+    return std::clamp(each * counted, 6e2, 4e6);
+}
+
 class Grid {
 public:
     explicit Grid(const ShapeData& shape) {
@@ -44,8 +53,7 @@ public:
         double extent[3];
         for (int axis = 0; axis < 3; ++axis) extent[axis] = double(high[axis]) - double(low[axis]);
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
-        // Balls follow the surface, so cells may be as long as its edges; memory stays like that of the triangles.
-        const double wanted = std::clamp(25.0 * double(shape.mesh.triangles.size()), 6e2, 4e6);
+        const double wanted = wanted_cells(double(shape.mesh.triangles.size()));
         double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
         const auto cells = [&] {
             double product = 1;
