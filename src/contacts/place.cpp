@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
+#include "contacts/vertex_order.h"
 #include "shape/shape_data.h"
 
-#include <algorithm>
-#include <array>
 #include <span>
 
 namespace raycontact {
@@ -67,43 +66,6 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.normal[0] = static_cast<float>(sign * out.x);
     contact.normal[1] = static_cast<float>(sign * out.y);
     contact.normal[2] = static_cast<float>(sign * out.z);
-}
-
-// How many vertices are smaller says where a contact belongs, without a branch to guess wrong: of this many contacts
-// that is faster than sorting them.
-constexpr std::size_t few = 8, many = 128, lanes = 16;
-
-// Number: signed, which every processor compares many at once; the shorter, the more.
-template <class Number>
-void count_smaller(std::span<std::uint64_t> keys, std::uint32_t least) {
-    std::array<std::uint64_t, many> unsorted;
-    std::array<Number, many> vertex;
-    std::copy(keys.begin(), keys.end(), unsorted.begin());
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        vertex[i] = static_cast<Number>(static_cast<std::uint32_t>(keys[i] >> 32) - least);
-    for (std::size_t i = keys.size(); i % lanes != 0; ++i) vertex[i] = 0;
-    for (std::size_t first = 0; first < keys.size(); first += lanes) {
-        std::array<Number, lanes> smaller{};
-        for (std::size_t j = 0; j < keys.size(); ++j)
-            for (std::size_t k = 0; k < lanes; ++k)
-                smaller[k] = static_cast<Number>(smaller[k] - static_cast<Number>(-(vertex[j] < vertex[first + k])));
-        for (std::size_t k = 0; k < lanes && first + k < keys.size(); ++k)
-            keys[static_cast<std::size_t>(smaller[k])] = unsorted[first + k];
-    }
-}
-
-// keys: vertex, place; of a pair no vertex casts twice.
-void sort_by_vertex(std::span<std::uint64_t> keys) {
-    if (keys.size() < few || keys.size() > many) {
-        std::sort(keys.begin(), keys.end());
-        return;
-    }
-    const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
-    const auto first = static_cast<std::uint32_t>(*least >> 32), last = static_cast<std::uint32_t>(*most >> 32);
-    if (last - first <= 0x7fffu)
-        count_smaller<std::int16_t>(keys, first);
-    else
-        count_smaller<std::int32_t>(keys, 0);
 }
 
 } // namespace
