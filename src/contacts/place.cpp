@@ -17,7 +17,7 @@ struct Side {
           source_pose(bodies.source.pose), target_pose(bodies.target.pose),
           triangle_index(bodies.target.shape->triangle_index().data()) {}
 
-    // What place() reads, ahead of it: of a fine mesh it lies beyond the caches.
+    // Most of what place() reads, ahead of it: of a fine mesh it lies beyond the caches.
     void send_for(const kernels::LocalContact& local) const {
         __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
         __builtin_prefetch(&source.mesh.vertices[local.vertex]);

@@ -110,7 +110,7 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* seen, const bool sent_for, const 
     return found;
 }
 
-// Sends for the words that safe_lanes() will ask.
+// Fills `at` for safe_lanes(), and sends for those words.
 DEVICE void send_for_words(const InsideLanes* seen, uint* at, GLOBAL const ShapeHeader* RESTRICT target,
                            GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);

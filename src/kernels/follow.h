@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3),
 // and predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
 
 // Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
 #define IN_FULL NONE
@@ -363,4 +363,4 @@ KERNEL void write_candidates(RANGE uint count, GLOBAL const uint* RESTRICT range
         }
     }
 }
-// NOLINTEND(modernize-use-using)
+// NOLINTEND(modernize-use-using,modernize-use-nullptr)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
 // once the pair has moved as far as its nearest vertex was from touching.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr,modernize-redundant-void-arg): this text is C as well
 
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 #define AWAKE (-1.0f)              // of Watch.wake: to be looked at in every step
@@ -92,14 +92,15 @@ DEVICE Look look_at_block(uint i, const InsideLanes* seen, const bool ask, const
     return found;
 }
 
-// A block that is to be asked, of fine meshes: neither its vertices nor the cells that they fall into are near. Such
-// looks wait for each other, so that what one reads is under way while others are done.
+// A block that is to be asked of a large grid: the words of its cells are not near, and of its own lines hardly one.
+// Such looks wait for each other, so that what one reads is under way while others are done.
 typedef struct {
     uint segment, watch;
     InsideLanes seen;
     uint at[VERTEX_LANES];
 } WaitingLook;
 
+// All of it: what a look leaves its rays will read.
 DEVICE void send_for_block(GLOBAL const VertexBlock* RESTRICT vertices, uint block) {
     for (uint line = 0u; line < 8u; ++line) PREFETCH((GLOBAL const float*)(vertices + block), VERTEX_LANES * line);
 }
@@ -194,4 +195,4 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         }
     }
 }
-// NOLINTEND(modernize-use-using)
+// NOLINTEND(modernize-use-using,modernize-use-nullptr,modernize-redundant-void-arg)

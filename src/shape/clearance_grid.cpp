@@ -37,7 +37,7 @@ struct Ball {
 };
 
 // Balls follow the surface, so cells may be as long as its edges. Of a fine mesh longer ones, by the power 3/4: what
-// they no longer tell costs a few rays, a grid beyond the caches costs more.
+// they no longer tell costs a few rays, and the grid stays within the caches for longer.
 double wanted_cells(double triangles) {
     constexpr double each = 25, coarse = 1000;
     const double finer = triangles / coarse;

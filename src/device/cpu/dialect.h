@@ -20,7 +20,7 @@ struct Range {
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
 #define DEVICE_RARE [[maybe_unused, gnu::noinline]] static  // what is seldom asked should not crowd the registers
-#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays
+#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
