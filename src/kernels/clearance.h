@@ -91,7 +91,7 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
 }
 
 // What a grid's words say of the vertices of a block. at: the words, where they are known already (`sent_for`).
-DEVICE SafeLanes safe_lanes(const InsideLanes* seen, const bool sent_for, const uint* at,
+DEVICE SafeLanes safe_lanes(const InsideLanes* placed, const bool sent_for, const uint* at,
                             GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
                             GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
     SafeLanes found;
@@ -100,7 +100,7 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* seen, const bool sent_for, const 
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
-        const float x = seen->x[k], y = seen->y[k], z = seen->z[k];
+        const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
         const GridPlace place = place_in(grid, x, y, z);
         const float clear = safe_by(balls[sent_for ? at[k] : place.at], place, grid, x, y, z, block->exit[k]);
         const float gap = bounds_gap(b, x, y, z);
@@ -111,10 +111,10 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* seen, const bool sent_for, const 
 }
 
 // Fills `at` for safe_lanes(), and sends for those words.
-DEVICE void send_for_words(const InsideLanes* seen, uint* at, GLOBAL const ShapeHeader* RESTRICT target,
+DEVICE void send_for_words(const InsideLanes* placed, uint* at, GLOBAL const ShapeHeader* RESTRICT target,
                            GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);
-    FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, seen->x[k], seen->y[k], seen->z[k]).at;
+    FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
     for (int k = 0; k < VERTEX_LANES; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }
 

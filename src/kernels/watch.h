@@ -49,7 +49,7 @@ DEVICE Look nothing_found(void) {
 }
 
 // ask: the balls; else only which of its vertices cast. sent_for, at: as safe_lanes() has them.
-DEVICE Look look_at_block(uint i, const InsideLanes* seen, const bool ask, const bool sent_for, const uint* at,
+DEVICE Look look_at_block(uint i, const InsideLanes* placed, const bool ask, const bool sent_for, const uint* at,
                           const Segment segment, GLOBAL const OrderedPair* RESTRICT pair,
                           GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const VertexBlock* RESTRICT vertices,
                           GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
@@ -60,7 +60,7 @@ DEVICE Look look_at_block(uint i, const InsideLanes* seen, const bool ask, const
     found.wake = watch->wake;
     if (ask) {
         const SafeLanes asked =
-            safe_lanes(seen, sent_for, at, pair, vertices + watch->vertex_block, target, clearances);
+            safe_lanes(placed, sent_for, at, pair, vertices + watch->vertex_block, target, clearances);
         int unsafe[VERTEX_LANES];
         float others[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
@@ -80,10 +80,10 @@ DEVICE Look look_at_block(uint i, const InsideLanes* seen, const bool ask, const
         watch->wake = found.wake;
     }
     if (lanes != 0u) {
-        uint cast = lanes & pack_sixteen(seen->inside);
+        uint cast = lanes & pack_sixteen(placed->inside);
         found.inside = bit_count(cast);
         // Where the balls were asked just now, the bits know no more.
-        if (cast != 0u && !ask && target->grid_size[0] != 0u) cast &= ~outside_lanes(seen, target, outside_cells);
+        if (cast != 0u && !ask && target->grid_size[0] != 0u) cast &= ~outside_lanes(placed, target, outside_cells);
         found.rays = bit_count(cast);
         watch->cast = cast;
         found.casting = (ulong)(cast != 0u) << (i - segment.first);
@@ -96,7 +96,7 @@ DEVICE Look look_at_block(uint i, const InsideLanes* seen, const bool ask, const
 // Such looks wait for each other, so that what one reads is under way while others are done.
 typedef struct {
     uint segment, watch;
-    InsideLanes seen;
+    InsideLanes placed;
     uint at[VERTEX_LANES];
 } WaitingLook;
 
@@ -113,15 +113,15 @@ DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const O
     for (uint k = 0u; k < count; ++k) {
         WaitingLook* look = waiting + k;
         GLOBAL const OrderedPair* pair = pairs + segments[look->segment].pair;
-        look->seen = inside_lanes(pair, vertices + watches[look->watch].vertex_block);
-        send_for_words(&look->seen, look->at, shapes + pair->target, clearances);
+        look->placed = inside_lanes(pair, vertices + watches[look->watch].vertex_block);
+        send_for_words(&look->placed, look->at, shapes + pair->target, clearances);
     }
     for (uint k = 0u; k < count; ++k) {
         const uint s = waiting[k].segment;
         GLOBAL const OrderedPair* pair = pairs + segments[s].pair;
         const WaitingLook* look = waiting + k;
         looks[s] =
-            add_looks(looks[s], look_at_block(look->watch, &look->seen, true, true, look->at, segments[s], pair,
+            add_looks(looks[s], look_at_block(look->watch, &look->placed, true, true, look->at, segments[s], pair,
                                               shapes + pair->target, vertices, outside_cells, clearances, watches));
         rays[s] = looks[s].rays;
     }
@@ -166,8 +166,8 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                 waits = 0u;
                 continue;
             }
-            const InsideLanes seen = inside_lanes(pair, vertices + block);
-            found = add_looks(found, look_at_block(i, &seen, ask, false, (const uint*)0, segment, pair, target,
+            const InsideLanes placed = inside_lanes(pair, vertices + block);
+            found = add_looks(found, look_at_block(i, &placed, ask, false, (const uint*)0, segment, pair, target,
                                                    vertices, outside_cells, clearances, watches));
         }
         looks[s] = add_looks(looks[s], found);
