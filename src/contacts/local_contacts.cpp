@@ -23,13 +23,10 @@ void LocalContacts::merge(std::size_t first, std::size_t second) {
     contacts_.swap(merged_);
 }
 
-void LocalContacts::add(std::vector<kernels::LocalContact>& found, std::span<const std::uint32_t> ordered,
+void LocalContacts::add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> ordered,
                         std::span<const std::uint32_t> which) {
     const std::size_t before = contacts_.size();
-    if (before == 0)
-        contacts_.swap(found); // most often all there is
-    else
-        contacts_.insert(contacts_.end(), found.begin(), found.end());
+    contacts_.insert(contacts_.end(), found.begin(), found.end());
     std::size_t second = contacts_.size();
     for (std::size_t i = before; i < contacts_.size(); ++i) {
         std::uint32_t& pair = contacts_[i].pair;

@@ -16,8 +16,7 @@ public:
     void clear() { contacts_.clear(); }
     /// Adds contacts that name their pair by its place in `ordered`, in one or two ascending runs of those numbers; no
     /// pair may be in both, or have been added before. which: the pairs that `ordered` numbers; empty: all of them.
-    /// Takes what is in `found`, which then holds anything.
-    void add(std::vector<kernels::LocalContact>& found, std::span<const std::uint32_t> ordered,
+    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> ordered,
              std::span<const std::uint32_t> which = {});
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }
 

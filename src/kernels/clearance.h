@@ -55,8 +55,10 @@ DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
 
 // No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
 // its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-// p: the point's place; word: of its cell.
-DEVICE float safe_by(uint word, const GridPlace p, const Clearance grid, float x, float y, float z, float reach) {
+DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
+                           float reach) {
+    const GridPlace p = place_in(grid, x, y, z);
+    const uint word = balls[p.at];
     const float off_x = x - p.x, off_y = y - p.y, off_z = z - p.z;
     const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
     const int bx = p.cell_x + (int)(word & 31u) - CLEARANCE_OFFSET;
@@ -75,12 +77,6 @@ DEVICE float safe_by(uint word, const GridPlace p, const Clearance grid, float x
     return away - (outside != 0u ? 0.0f : 1.0005f * reach);
 }
 
-DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
-                           float reach) {
-    const GridPlace place = place_in(grid, x, y, z);
-    return safe_by(balls[place.at], place, grid, x, y, z, reach);
-}
-
 // How far a point is outside the bounds at least, below 0 inside. As long as it needs to reach them, it casts nothing.
 DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     const float gap_x = b[0] - x > x - b[3] ? b[0] - x : x - b[3];
@@ -90,10 +86,9 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     return gap_xy > gap_z ? gap_xy : gap_z;
 }
 
-// What a grid's words say of the vertices of a block. at: the words, where they are known already (`sent_for`).
-DEVICE SafeLanes safe_lanes(const InsideLanes* placed, const bool sent_for, const uint* at,
-                            GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
-                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
+DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair* RESTRICT pair,
+                            GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
+                            GLOBAL const uint* RESTRICT clearances) {
     SafeLanes found;
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
@@ -101,8 +96,7 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* placed, const bool sent_for, cons
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
         const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
-        const GridPlace place = place_in(grid, x, y, z);
-        const float clear = safe_by(balls[sent_for ? at[k] : place.at], place, grid, x, y, z, block->exit[k]);
+        const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
         const float gap = bounds_gap(b, x, y, z);
         const float safe = clear > gap ? clear : gap;
         found.safe[k] = block->vertex[k] != NONE ? safe : UNBOUNDED;
@@ -110,10 +104,11 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* placed, const bool sent_for, cons
     return found;
 }
 
-// Fills `at` for safe_lanes(), and sends for those words.
-DEVICE void send_for_words(const InsideLanes* placed, uint* at, GLOBAL const ShapeHeader* RESTRICT target,
+// Sends for the words that safe_lanes() will ask.
+DEVICE void send_for_words(const InsideLanes* placed, GLOBAL const ShapeHeader* RESTRICT target,
                            GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);
+    uint at[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
     for (int k = 0; k < VERTEX_LANES; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3),
 // and predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
-// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 // Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
 #define IN_FULL NONE
@@ -171,7 +171,7 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
         GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
         const InsideLanes held = inside_lanes(pair, block);
-        const SafeLanes found = safe_lanes(&held, false, (const uint*)0, pair, block, target, clearances);
+        const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
         FOR_LANES(k, VERTEX_LANES) {
             close[k] = -(int)!(found.safe[k] > near);
@@ -363,4 +363,4 @@ KERNEL void write_candidates(RANGE uint count, GLOBAL const uint* RESTRICT range
         }
     }
 }
-// NOLINTEND(modernize-use-using,modernize-use-nullptr)
+// NOLINTEND(modernize-use-using)

@@ -23,6 +23,8 @@
 
 #include "kernels/watch.h"
 
+#include "kernels/look.h"
+
 #include "kernels/cast_rays.h"
 #include "kernels/hold.h"
 

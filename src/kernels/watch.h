@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
-// once the pair has moved as far as its nearest vertex was from touching.
-// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr,modernize-redundant-void-arg): this text is C as well
+// once the pair has moved as far as its nearest vertex was from touching (look.h).
 
-#define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
-#define AWAKE (-1.0f)              // of Watch.wake: to be looked at in every step
+#define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
@@ -28,156 +26,6 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
     }
 }
 
-#define FAR_CELLS 65536u // a grid of more words lies beyond the nearer caches
-
-// What several looks found together.
-DEVICE Look add_looks(Look sum, const Look more) {
-    sum.wake = more.wake < sum.wake ? more.wake : sum.wake;
-    sum.blocks += more.blocks;
-    sum.inside += more.inside;
-    sum.rays += more.rays;
-    sum.casting |= more.casting;
-    return sum;
-}
-
-DEVICE Look nothing_found(void) {
-    Look none;
-    none.wake = UNBOUNDED;
-    none.blocks = none.inside = none.rays = 0u;
-    none.casting = 0u;
-    return none;
-}
-
-// ask: the balls; else only which of its vertices cast. sent_for, at: as safe_lanes() has them.
-DEVICE Look look_at_block(uint i, const InsideLanes* placed, const bool ask, const bool sent_for, const uint* at,
-                          const Segment segment, GLOBAL const OrderedPair* RESTRICT pair,
-                          GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const VertexBlock* RESTRICT vertices,
-                          GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                          GLOBAL Watch* RESTRICT watches) {
-    GLOBAL Watch* RESTRICT watch = watches + i;
-    Look found = nothing_found();
-    uint lanes = watch->lanes;
-    found.wake = watch->wake;
-    if (ask) {
-        const SafeLanes asked =
-            safe_lanes(placed, sent_for, at, pair, vertices + watch->vertex_block, target, clearances);
-        int unsafe[VERTEX_LANES];
-        float others[VERTEX_LANES];
-        FOR_LANES(k, VERTEX_LANES) {
-            const uint safe = (uint)(asked.safe[k] > segment.margin);
-            unsafe[k] = (int)safe - 1;
-            others[k] = safe != 0u ? asked.safe[k] : UNBOUNDED;
-        }
-        lanes = pack_sixteen(unsafe);
-        watch->lanes = lanes;
-        found.blocks = 1u;
-        float least = least_of_sixteen(others) - segment.margin;
-        // Vertices that cast are asked again after a while whether they still must.
-        const float again = REFRESH_TOLERANCES * target->tolerance;
-        if (lanes != 0u && least > again) least = again;
-        // Never asleep, whichever way the clock was rounded.
-        found.wake = least > 0.0f ? segment.from + least : AWAKE;
-        watch->wake = found.wake;
-    }
-    if (lanes != 0u) {
-        uint cast = lanes & pack_sixteen(placed->inside);
-        found.inside = bit_count(cast);
-        // Where the balls were asked just now, the bits know no more.
-        if (cast != 0u && !ask && target->grid_size[0] != 0u) cast &= ~outside_lanes(placed, target, outside_cells);
-        found.rays = bit_count(cast);
-        watch->cast = cast;
-        found.casting = (ulong)(cast != 0u) << (i - segment.first);
-        found.wake = AWAKE;
-    }
-    return found;
-}
-
-// A block that is to be asked of a large grid: the words of its cells are not near, and of its own lines hardly one.
-// Such looks wait for each other, so that what one reads is under way while others are done.
-typedef struct {
-    uint segment, watch;
-    InsideLanes placed;
-    uint at[VERTEX_LANES];
-} WaitingLook;
-
-// All of it: what a look leaves its rays will read.
-DEVICE void send_for_block(GLOBAL const VertexBlock* RESTRICT vertices, uint block) {
-    for (uint line = 0u; line < 8u; ++line) PREFETCH((GLOBAL const float*)(vertices + block), VERTEX_LANES * line);
-}
-
-DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                                GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                                GLOBAL const Segment* RESTRICT segments, GLOBAL Watch* RESTRICT watches,
-                                GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
-    for (uint k = 0u; k < count; ++k) {
-        WaitingLook* look = waiting + k;
-        GLOBAL const OrderedPair* pair = pairs + segments[look->segment].pair;
-        look->placed = inside_lanes(pair, vertices + watches[look->watch].vertex_block);
-        send_for_words(&look->placed, look->at, shapes + pair->target, clearances);
-    }
-    for (uint k = 0u; k < count; ++k) {
-        const uint s = waiting[k].segment;
-        GLOBAL const OrderedPair* pair = pairs + segments[s].pair;
-        const WaitingLook* look = waiting + k;
-        looks[s] =
-            add_looks(looks[s], look_at_block(look->watch, &look->placed, true, true, look->at, segments[s], pair,
-                                              shapes + pair->target, vertices, outside_cells, clearances, watches));
-        rays[s] = looks[s].rays;
-    }
-}
-
-KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                            GLOBAL const Segment* RESTRICT segments, GLOBAL Watch* RESTRICT watches,
-                            GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
-    WaitingLook waiting[LOOKS_TOGETHER];
-    uint waits = 0u;
-    FOR_EACH(s, count) {
-        const Segment segment = segments[s];
-        GLOBAL const OrderedPair* pair = pairs + segment.pair;
-        GLOBAL const ShapeHeader* target = shapes + pair->target;
-        const uint cells = target->clearance_size[0] * target->clearance_size[1] * target->clearance_size[2];
-        const bool together = LOOKS_TOGETHER > 1 && cells > FAR_CELLS;
-        if (s + 4u < count) {
-            PREFETCH(watches, segments[s + 4u].first);
-            PREFETCH(watches, segments[s + 4u].first + 4u);
-            PREFETCH(watches, segments[s + 4u].first + 8u);
-        }
-        Look found = nothing_found();
-        looks[s] = found;
-        for (uint i = segment.first; i < segment.first + segment.count; ++i) {
-            const float own = watches[i].wake;
-            const bool ask = own <= segment.now;
-            if (own > segment.now && watches[i].lanes == 0u) {
-                if (own < found.wake) found.wake = own;
-                continue;
-            }
-            const uint block = watches[i].vertex_block;
-            if (together && ask) {
-                send_for_block(vertices, block);
-                waiting[waits].segment = s;
-                waiting[waits].watch = i;
-                ++waits;
-                if (waits < LOOKS_TOGETHER) continue;
-                look_together(waiting, waits, pairs, shapes, vertices, outside_cells, clearances, segments, watches,
-                              looks, rays);
-                waits = 0u;
-                continue;
-            }
-            const InsideLanes placed = inside_lanes(pair, vertices + block);
-            found = add_looks(found, look_at_block(i, &placed, ask, false, (const uint*)0, segment, pair, target,
-                                                   vertices, outside_cells, clearances, watches));
-        }
-        looks[s] = add_looks(looks[s], found);
-        rays[s] = looks[s].rays;
-    }
-    if (LOOKS_TOGETHER > 1)
-        look_together(waiting, waits, pairs, shapes, vertices, outside_cells, clearances, segments, watches, looks,
-                      rays);
-}
-
 // looks: of this step.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
                              GLOBAL const Watch* RESTRICT watches, GLOBAL const Look* RESTRICT looks,
@@ -195,4 +43,3 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         }
     }
 }
-// NOLINTEND(modernize-use-using,modernize-use-nullptr,modernize-redundant-void-arg)

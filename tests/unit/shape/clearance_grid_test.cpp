@@ -40,8 +40,7 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
     Lookup found{};
     const auto seen = kernels::prototype::inside_lanes(&pair, &block);
     const auto safe = [&] {
-        return kernels::prototype::safe_lanes(&seen, false, nullptr, &pair, &block, &target.header,
-                                              target.clearances.data());
+        return kernels::prototype::safe_lanes(&seen, &pair, &block, &target.header, target.clearances.data());
     };
     const auto near = safe();
     std::copy(near.safe, near.safe + VERTEX_LANES, found.distance);
