@@ -11,8 +11,8 @@
 namespace raycontact {
 
 /// The pairs that were open in the last step, each with its state; others have none. Slots are reused, so memory is
-/// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot, kept apart, what it
-/// reads of every pair in every step.
+/// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot what it reads of every
+/// pair in every step, and lies in their order.
 template <class State, class Hot>
 class PairTable {
 public:
@@ -22,16 +22,17 @@ public:
         same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
         if (same_) return;
         next_slots_.clear();
+        next_hot_.clear();
         std::size_t old = 0;
         for (const Pair& pair : pairs) {
             while (old < open_.size() && open_[old] < pair) close(old++, closed);
-            if (old < open_.size() && open_[old] == pair)
-                next_slots_.push_back(slots_[old++]);
-            else
-                next_slots_.push_back(take_slot());
+            const bool known = old < open_.size() && open_[old] == pair;
+            next_slots_.push_back(known ? slots_[old] : take_slot());
+            next_hot_.push_back(known ? hot_[old++] : Hot{});
         }
         while (old < open_.size()) close(old++, closed);
         slots_.swap(next_slots_);
+        hot_.swap(next_hot_);
         last_.swap(open_);
         open_.assign(pairs.begin(), pairs.end());
     }
@@ -41,19 +42,17 @@ public:
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_[i]]; }
-    Hot& hot(std::size_t i) { return hot_[slots_[i]]; }
+    Hot& hot(std::size_t i) { return hot_[i]; }
 
     /// ask(i) for each pair of [begin, end) of which asleep(i, hot) is false. By handfuls, so that the states of some
     /// are on their way while others are asked: between two steps a solver has used the caches. prefetch(i), ahead
-    /// of both: what asleep reads.
+    /// of both: what asleep reads beside hot.
     template <class Prefetch, class Asleep, class Ask>
     void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Asleep&& asleep, Ask&& ask) {
         constexpr std::uint32_t handful = 32, ahead = 8;
         std::uint32_t awake[handful];
         const auto send_for = [&](std::uint32_t i) {
-            if (i >= end) return;
-            __builtin_prefetch(&hot(i));
-            prefetch(i);
+            if (i < end) prefetch(i);
         };
         for (std::uint32_t i = begin; i < begin + ahead; ++i) send_for(i);
         for (std::uint32_t first = begin; first < end; first += handful) {
@@ -80,8 +79,8 @@ public:
     }
 
     std::uint64_t bytes() const {
-        return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t))
-               + (states_.size() - free_.size()) * (sizeof(State) + sizeof(Hot));
+        return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t) + sizeof(Hot))
+               + (states_.size() - free_.size()) * sizeof(State);
     }
 
 private:
@@ -99,13 +98,11 @@ private:
     std::uint32_t take_slot() {
         if (free_.empty()) {
             states_.emplace_back();
-            hot_.emplace_back();
             return static_cast<std::uint32_t>(states_.size() - 1);
         }
         const std::uint32_t slot = free_.back();
         free_.pop_back();
         states_[slot] = State{};
-        hot_[slot] = Hot{};
         return slot;
     }
 
@@ -113,7 +110,7 @@ private:
     bool same_ = false; ///< the last match had the pairs of the one before: last_ is older
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<State> states_;
-    std::vector<Hot> hot_;
+    std::vector<Hot> hot_, next_hot_; ///< by pair; the other one is only ever a buffer
 };
 
 } // namespace raycontact
