@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays from the vertices of one mesh along their inward normals into the other (Hermann et al. 2008; paper
 // section 2.1).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this text is C as well
 
 #define SIDE_DIRECTIONS 4
 #define CASTER_BASIC 0
@@ -59,6 +59,15 @@ DEVICE void find_group(Closest* own, Group* group, const bool opposite, uint sho
     }
 }
 
+DEVICE Hit no_contact(void) {
+    Hit hit;
+    hit.triangle = NONE;
+    hit.distance = 0.0f;
+    hit.facing = 0.0f;
+    hit.sides = 0u;
+    return hit;
+}
+
 // In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
@@ -75,10 +84,7 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
         decided = verdict(&side, UNBOUNDED, shape->tolerance);
         ++sides;
     }
-    Hit hit;
-    hit.triangle = NONE;
-    hit.distance = 0.0f;
-    hit.facing = 0.0f;
+    Hit hit = no_contact();
     hit.sides = sides;
     if (decided > 0) {
         const Packed3 n = normals[shape->normal_first + own->back_triangle];
@@ -121,6 +127,7 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
     }
 }
 
+// A vertex that has left the bounds is no contact, whatever its ray meets.
 KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
@@ -143,9 +150,11 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             traverse_basic(own + r, frame + r, same, shapes + target, blocks);
         }
         for (uint r = 0u; r < few; ++r) {
-            GLOBAL const ShapeHeader* shape = shapes + pairs[rays[i + r].pair].target;
-            hits[i + r] = decide(CASTER_BASIC, source + r, own + r, shape, nodes, blocks, normals);
+            GLOBAL const OrderedPair* pair = pairs + rays[i + r].pair;
+            hits[i + r] = in_bounds(pair, source[r].position)
+                              ? decide(CASTER_BASIC, source + r, own + r, shapes + pair->target, nodes, blocks, normals)
+                              : no_contact();
         }
     }
 }
-// NOLINTEND(modernize-use-using)
+// NOLINTEND(modernize-use-using,modernize-redundant-void-arg)

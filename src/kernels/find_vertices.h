@@ -28,6 +28,24 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     return pack_sixteen(outside);
 }
 
+// Whether a vertex casts, exactly as inside_lanes() has it.
+DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
+    GLOBAL const float* b = pair->bounds;
+    return ((uint)(p[0] >= b[0]) & (uint)(p[0] <= b[3]) & (uint)(p[1] >= b[1]) & (uint)(p[1] <= b[4])
+            & (uint)(p[2] >= b[2]) & (uint)(p[2] <= b[5]))
+           != 0u;
+}
+
+// outside_lanes() of one vertex in the bounds.
+DEVICE bool in_outside_cell(const float* p, GLOBAL const ShapeHeader* RESTRICT target,
+                            GLOBAL const uint* RESTRICT outside_cells) {
+    if (target->grid_size[0] == 0u) return false;
+    uint cell[3];
+    for (int i = 0; i < 3; ++i) cell[i] = (uint)(int)((p[i] - target->grid_low[i]) * target->grid_scale);
+    const uint at = (cell[2] * target->grid_size[1] + cell[1]) * target->grid_size[0] + cell[0];
+    return ((outside_cells[target->grid_first + (at >> 5)] >> (at & 31u)) & 1u) != 0u;
+}
+
 // Of the rest, those in an empty ball outside: the grid of bits lets through whole cells, about one vertex in two of
 // them for nothing, and the rays of those are the longest.
 DEVICE uint cleared_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,

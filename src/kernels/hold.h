@@ -249,14 +249,14 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
     waiting->count = 0u;
 }
 
-// The hits of cast_rays_bvh, bit for bit. before, after: rays held in the last step and now, those of idle pairs left
-// as they are; casts: 1 for each ray cast in full.
+// The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
+// step and now, those of idle pairs left as they are; casts: 1 for each ray cast in full.
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
-                      GLOBAL uint* RESTRICT casts) {
+                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const uint* RESTRICT outside_cells,
+                      GLOBAL const Ray* RESTRICT rays, GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after,
+                      GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
     Group waiting;
     clear_group(&waiting);
     FOR_EACH(i, count) {
@@ -269,19 +269,24 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         const uint target = pairs[ray.pair].target;
         GLOBAL const ShapeHeader* shape = shapes + target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
-        uint known = 0u;
+        const bool inside = in_bounds(pairs + ray.pair, source.position);
+        bool known = false;
         if (!is_idle(holder)) {
             Held held = held_before(holder, before, ray.slot);
-            if (held.safe > 0.0f && moved_by(&held, &source) < held.safe) {
+            if (inside && held.safe > 0.0f && moved_by(&held, &source) < held.safe) {
                 const RayFrame frame = frame_ray(source.position, source.direction);
                 Closest own = nothing_hit(source.reach, shape->tolerance);
-                known = hit_held(&own, &held, &frame, source.reach, shape, blocks);
-                if (known != 0u) hits[i] = decide(CASTER_BVH, &source, &own, shape, nodes, blocks, normals);
+                known = hit_held(&own, &held, &frame, source.reach, shape, blocks) != 0u;
+                if (known) hits[i] = decide(CASTER_BVH, &source, &own, shape, nodes, blocks, normals);
             }
             after[i] = held;
         }
-        casts[i] = 1u - known;
-        if (known == 0u) add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
+        const bool cast = !known && inside && !in_outside_cell(source.position, shape, outside_cells);
+        casts[i] = (uint)cast;
+        if (cast)
+            add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
+        else if (!known)
+            hits[i] = no_contact();
         if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
     if (RAYS_IN_GROUP > 1) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A look at what a pair watches: the blocks that are due are asked of the target's balls and of what is outside it, for
-// which vertices must cast, and until when the block may sleep.
-// NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this text is C as well
+// A look at what a pair watches: the blocks that are due are asked of the target's balls, for which vertices could be
+// in contact, and until when the others may sleep. NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this
+// text is C as well
 
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 #define FAR_CELLS 65536u           // a grid of more words lies beyond the nearer caches
@@ -10,7 +10,6 @@
 DEVICE Look add_looks(Look sum, const Look more) {
     sum.wake = more.wake < sum.wake ? more.wake : sum.wake;
     sum.blocks += more.blocks;
-    sum.inside += more.inside;
     sum.rays += more.rays;
     sum.casting |= more.casting;
     return sum;
@@ -19,50 +18,43 @@ DEVICE Look add_looks(Look sum, const Look more) {
 DEVICE Look nothing_found(void) {
     Look none;
     none.wake = UNBOUNDED;
-    none.blocks = none.inside = none.rays = 0u;
+    none.blocks = none.rays = none.unused = 0u;
     none.casting = 0u;
     return none;
 }
 
-// ask: the balls; else only which of its vertices cast.
-DEVICE Look look_at_block(uint i, const InsideLanes* placed, const bool ask, const Segment segment,
-                          GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT outside_cells,
-                          GLOBAL const uint* RESTRICT clearances, GLOBAL Watch* RESTRICT watches) {
-    GLOBAL Watch* RESTRICT watch = watches + i;
+// What a block casts that is not to be looked at. bit: its place in the segment.
+DEVICE Look known_block(uint lanes, float wake, uint bit) {
     Look found = nothing_found();
-    uint lanes = watch->lanes;
-    found.wake = watch->wake;
-    if (ask) {
-        const SafeLanes asked = safe_lanes(placed, pair, vertices + watch->vertex_block, target, clearances);
-        int unsafe[VERTEX_LANES];
-        float others[VERTEX_LANES];
-        FOR_LANES(k, VERTEX_LANES) {
-            const uint safe = (uint)(asked.safe[k] > segment.margin);
-            unsafe[k] = (int)safe - 1;
-            others[k] = safe != 0u ? asked.safe[k] : UNBOUNDED;
-        }
-        lanes = pack_sixteen(unsafe);
-        watch->lanes = lanes;
-        found.blocks = 1u;
-        float least = least_of_sixteen(others) - segment.margin;
-        // Vertices that cast are asked again after a while whether they still must.
-        const float again = REFRESH_TOLERANCES * target->tolerance;
-        if (lanes != 0u && least > again) least = again;
-        // Never asleep, whichever way the clock was rounded.
-        found.wake = least > 0.0f ? segment.from + least : AWAKE;
-        watch->wake = found.wake;
+    found.rays = bit_count(lanes);
+    found.casting = (ulong)(lanes != 0u) << bit;
+    found.wake = lanes != 0u ? AWAKE : wake;
+    return found;
+}
+
+DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segment,
+                          GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
+                          GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
+                          GLOBAL Watch* RESTRICT watches) {
+    GLOBAL Watch* RESTRICT watch = watches + i;
+    const SafeLanes asked = safe_lanes(placed, pair, vertices + watch->vertex_block, target, clearances);
+    int unsafe[VERTEX_LANES];
+    float others[VERTEX_LANES];
+    FOR_LANES(k, VERTEX_LANES) {
+        const uint safe = (uint)(asked.safe[k] > segment.margin);
+        unsafe[k] = (int)safe - 1;
+        others[k] = safe != 0u ? asked.safe[k] : UNBOUNDED;
     }
-    if (lanes != 0u) {
-        uint cast = lanes & pack_sixteen(placed->inside);
-        found.inside = bit_count(cast);
-        // Where the balls were asked just now, the bits know no more.
-        if (cast != 0u && !ask && target->grid_size[0] != 0u) cast &= ~outside_lanes(placed, target, outside_cells);
-        found.rays = bit_count(cast);
-        watch->cast = cast;
-        found.casting = (ulong)(cast != 0u) << (i - segment.first);
-        found.wake = AWAKE;
-    }
+    const uint lanes = pack_sixteen(unsafe);
+    float least = least_of_sixteen(others) - segment.margin;
+    // Vertices that cast are asked again after a while whether they still must.
+    const float again = REFRESH_TOLERANCES * target->tolerance;
+    if (lanes != 0u && least > again) least = again;
+    watch->lanes = lanes;
+    // Never asleep, whichever way the clock was rounded.
+    watch->wake = least > 0.0f ? segment.from + least : AWAKE;
+    Look found = known_block(lanes, watch->wake, i - segment.first);
+    found.blocks = 1u;
     return found;
 }
 
@@ -80,9 +72,9 @@ DEVICE void send_for_block(GLOBAL const VertexBlock* RESTRICT vertices, uint blo
 
 DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                                GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                                GLOBAL const Segment* RESTRICT segments, GLOBAL Watch* RESTRICT watches,
-                                GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
+                                GLOBAL const uint* RESTRICT clearances, GLOBAL const Segment* RESTRICT segments,
+                                GLOBAL Watch* RESTRICT watches, GLOBAL Look* RESTRICT looks,
+                                GLOBAL uint* RESTRICT rays) {
     for (uint k = 0u; k < count; ++k) {
         WaitingLook* look = waiting + k;
         GLOBAL const OrderedPair* pair = pairs + segments[look->segment].pair;
@@ -93,18 +85,16 @@ DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const O
         const uint s = waiting[k].segment;
         GLOBAL const OrderedPair* pair = pairs + segments[s].pair;
         const WaitingLook* look = waiting + k;
-        looks[s] =
-            add_looks(looks[s], look_at_block(look->watch, &look->placed, true, segments[s], pair,
-                                              shapes + pair->target, vertices, outside_cells, clearances, watches));
+        looks[s] = add_looks(looks[s], look_at_block(look->watch, &look->placed, segments[s], pair,
+                                                     shapes + pair->target, vertices, clearances, watches));
         rays[s] = looks[s].rays;
     }
 }
 
 KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                            GLOBAL const Segment* RESTRICT segments, GLOBAL Watch* RESTRICT watches,
-                            GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
+                            GLOBAL const uint* RESTRICT clearances, GLOBAL const Segment* RESTRICT segments,
+                            GLOBAL Watch* RESTRICT watches, GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
     WaitingLook waiting[LOOKS_TOGETHER];
     uint waits = 0u;
     FOR_EACH(s, count) {
@@ -115,39 +105,34 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         const bool together = LOOKS_TOGETHER > 1 && cells > FAR_CELLS;
         if (s + 4u < count) {
             PREFETCH(watches, segments[s + 4u].first);
-            PREFETCH(watches, segments[s + 4u].first + 4u);
-            PREFETCH(watches, segments[s + 4u].first + 8u);
+            PREFETCH(watches, segments[s + 4u].first + 5u);
+            PREFETCH(watches, segments[s + 4u].first + 10u);
         }
         Look found = nothing_found();
         looks[s] = found;
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
-            const float own = watches[i].wake;
-            const bool ask = own <= segment.now;
-            if (own > segment.now && watches[i].lanes == 0u) {
-                if (own < found.wake) found.wake = own;
+            if (watches[i].wake > segment.now) {
+                found = add_looks(found, known_block(watches[i].lanes, watches[i].wake, i - segment.first));
                 continue;
             }
             const uint block = watches[i].vertex_block;
-            if (together && ask) {
+            if (together) {
                 send_for_block(vertices, block);
                 waiting[waits].segment = s;
                 waiting[waits].watch = i;
                 ++waits;
                 if (waits < LOOKS_TOGETHER) continue;
-                look_together(waiting, waits, pairs, shapes, vertices, outside_cells, clearances, segments, watches,
-                              looks, rays);
+                look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
                 waits = 0u;
                 continue;
             }
             const InsideLanes placed = inside_lanes(pair, vertices + block);
-            found = add_looks(found, look_at_block(i, &placed, ask, segment, pair, target, vertices, outside_cells,
-                                                   clearances, watches));
+            found = add_looks(found, look_at_block(i, &placed, segment, pair, target, vertices, clearances, watches));
         }
         looks[s] = add_looks(looks[s], found);
         rays[s] = looks[s].rays;
     }
     if (LOOKS_TOGETHER > 1)
-        look_together(waiting, waits, pairs, shapes, vertices, outside_cells, clearances, segments, watches, looks,
-                      rays);
+        look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
 }
 // NOLINTEND(modernize-use-using,modernize-redundant-void-arg)

@@ -122,15 +122,14 @@ typedef struct {
 } Followed;
 WIRE_SIZE(Followed, 20);
 
-// A vertex block that its pair watches. lanes: vertices that could be in contact; the others cannot before the pair's
-// clock exceeds `wake`. cast: those of lanes that cast a ray, where the last look says that any does.
+// A vertex block that its pair watches. lanes: vertices that could be in contact, whose rays are decided in each step;
+// the others cannot before the pair's clock exceeds `wake`.
 typedef struct {
     uint vertex_block; // absolute
     float wake;        // metres
     uint lanes;
-    uint cast;
 } Watch;
-WIRE_SIZE(Watch, 16);
+WIRE_SIZE(Watch, 12);
 
 // Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
 // from where on a certificate given now counts. margin: metres of rounding that it must exceed.
@@ -142,14 +141,14 @@ typedef struct {
 } Segment;
 WIRE_SIZE(Segment, 24);
 
-// What looking at a segment found. wake: the least of its watches. blocks: looked at. inside: vertices in the bounds.
-// rays: those that are cast. casting: a bit for each watch that casts any.
+// What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
+// casting: a bit for each watch that has any.
 typedef struct {
+    ulong casting;
     float wake;
     uint blocks;
-    uint inside;
     uint rays;
-    ulong casting;
+    uint unused;
 } Look;
 WIRE_SIZE(Look, 24);
 

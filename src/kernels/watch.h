@@ -21,7 +21,6 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
         watch.vertex_block = cluster.vertex_block;
         watch.wake = safe > 0.0f ? safe : AWAKE;
         watch.lanes = 0u;
-        watch.cast = 0u;
         watches[places[cluster.pair] + (i - firsts[cluster.pair])] = watch;
     }
 }
@@ -35,7 +34,7 @@ KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT se
         uint at = firsts[s];
         for (ulong casting = looks[s].casting; casting != 0u; casting &= casting - 1u) {
             GLOBAL const Watch* RESTRICT watch = watches + first + lowest_bit_of_long(casting);
-            for (uint lanes = watch->cast; lanes != 0u; lanes &= lanes - 1u) {
+            for (uint lanes = watch->lanes; lanes != 0u; lanes &= lanes - 1u) {
                 rays[at].pair = pair;
                 rays[at].slot = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);
                 ++at;

@@ -258,19 +258,17 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     looks_.resize(device, host_segments_.size());
     counts_.resize(device, host_segments_.size());
     launch<KernelId::look_at_watches>(device, host_segments_.size(), device_pairs_, arrays.headers,
-                                      arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, segments_,
-                                      watches_, looks_, counts_);
+                                      arrays.vertex_blocks, arrays.clearances, segments_, watches_, looks_, counts_);
     rays_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
                                        looks_, firsts_, rays_);
     host_looks_.resize(host_segments_.size());
     looks_.read(device, host_looks_);
-    inside_ = blocks_ = 0;
+    blocks_ = 0;
     for (std::size_t s = 0; s < host_segments_.size(); ++s) {
         Due& due = due_[host_segments_[s].pair];
         due.wake = std::min(due.wake, double(host_looks_[s].wake));
         due.rays += host_looks_[s].rays;
-        inside_ += host_looks_[s].inside;
         blocks_ += host_looks_[s].blocks;
     }
 }
@@ -306,7 +304,7 @@ void CertifiedRays::keep(Executor& executor, bool held) {
 
 void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes) {
     find_holders();
-    const bool held = caster != Caster::basic && !std::all_of(host_holders_.begin(), host_holders_.end(), is_idle);
+    const bool held = caster != Caster::basic;
     keep(executor, held);
     if (held) {
         held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
@@ -332,7 +330,7 @@ void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& s
 
 void CertifiedRays::count(StepStats& stats) const {
     stats.vertices += VERTEX_LANES * blocks_;
-    stats.rays += inside_;
+    stats.rays += rays_.size();
     stats.rays_cast += cast_;
     stats.pairs_full += stale_.size();
     stats.pairs_asleep += 2 * open_pairs_ - active_.size() - fast_.size();

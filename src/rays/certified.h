@@ -110,7 +110,7 @@ private:
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
     std::vector<kernels::Holder> host_holders_;
-    std::uint64_t open_pairs_ = 0, inside_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
+    std::uint64_t open_pairs_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;
