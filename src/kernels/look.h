@@ -4,7 +4,6 @@
 // text is C as well
 
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
-#define FAR_CELLS 65536u           // a grid of more words lies beyond the nearer caches
 
 // What several looks found together.
 DEVICE Look add_looks(Look sum, const Look more) {
@@ -58,8 +57,8 @@ DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segme
     return found;
 }
 
-// A block that is to be asked of a large grid: the words of its cells are not near, and of its own lines hardly one.
-// Such looks wait for each other, so that what one reads is under way while others are done.
+// A block that is due. The words of its cells are not near: a grid is large, or the caches went to others since the
+// last step. So looks wait for each other: what one reads is under way while others are done.
 typedef struct {
     uint segment, watch;
     InsideLanes placed;
@@ -99,10 +98,6 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     uint waits = 0u;
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
-        GLOBAL const OrderedPair* pair = pairs + segment.pair;
-        GLOBAL const ShapeHeader* target = shapes + pair->target;
-        const uint cells = target->clearance_size[0] * target->clearance_size[1] * target->clearance_size[2];
-        const bool together = LOOKS_TOGETHER > 1 && cells > FAR_CELLS;
         if (s + 4u < count) {
             PREFETCH(watches, segments[s + 4u].first);
             PREFETCH(watches, segments[s + 4u].first + 5u);
@@ -115,19 +110,13 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
                 found = add_looks(found, known_block(watches[i].lanes, watches[i].wake, i - segment.first));
                 continue;
             }
-            const uint block = watches[i].vertex_block;
-            if (together) {
-                send_for_block(vertices, block);
-                waiting[waits].segment = s;
-                waiting[waits].watch = i;
-                ++waits;
-                if (waits < LOOKS_TOGETHER) continue;
-                look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
-                waits = 0u;
-                continue;
-            }
-            const InsideLanes placed = inside_lanes(pair, vertices + block);
-            found = add_looks(found, look_at_block(i, &placed, segment, pair, target, vertices, clearances, watches));
+            send_for_block(vertices, watches[i].vertex_block);
+            waiting[waits].segment = s;
+            waiting[waits].watch = i;
+            ++waits;
+            if (waits < LOOKS_TOGETHER) continue;
+            look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
+            waits = 0u;
         }
         looks[s] = add_looks(looks[s], found);
         rays[s] = looks[s].rays;
