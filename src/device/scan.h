@@ -12,7 +12,13 @@ public:
     /// hold it.
     kernels::uint run(Device& device, const Array<kernels::uint>& values, Array<kernels::uint>& firsts);
 
+    /// Their sum alone.
+    kernels::uint total(Device& device, const Array<kernels::uint>& values);
+
 private:
+    kernels::uint sum_up(Device& device, const Array<kernels::uint>& values);
+    kernels::uint read_total(Device& device, kernels::uint blocks) const;
+
     Array<kernels::uint> sums_;
 };
 

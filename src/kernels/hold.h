@@ -144,8 +144,10 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, float radius, GLOBAL const 
     }
 }
 
-// The place of a ray among those that its pair held, which ascend by slot; their number if it is not there.
-DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot) {
+// The place of a ray among those that its pair held, which ascend by slot; their number if it is not there. likely: its
+// place among those of this step, mostly the same.
+DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot, uint likely) {
+    if (likely < count && held[likely].slot == slot) return likely;
     uint low = 0u, high = count;
     while (low < high) {
         const uint middle = (low + high) / 2u;
@@ -172,8 +174,8 @@ DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
     return holder->count == 0u && holder->radius <= 0.0f;
 }
 
-DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot) {
-    const uint at = find_held(before + holder->first, holder->count, slot);
+DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot, uint ray) {
+    const uint at = find_held(before + holder->first, holder->count, slot, ray - holder->now_first);
     return at < holder->count ? before[holder->first + at] : nothing_held(slot);
 }
 
@@ -272,7 +274,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         const bool inside = in_bounds(pairs + ray.pair, source.position);
         bool known = false;
         if (!is_idle(holder)) {
-            Held held = held_before(holder, before, ray.slot);
+            Held held = held_before(holder, before, ray.slot, i);
             if (inside && held.safe > 0.0f && moved_by(&held, &source) < held.safe) {
                 const RayFrame frame = frame_ray(source.position, source.direction);
                 Closest own = nothing_hit(source.reach, shape->tolerance);

@@ -163,14 +163,15 @@ typedef struct {
 } Held;
 WIRE_SIZE(Held, 40);
 
-// A pair's rays of the last step. margin: metres of rounding. radius: of the tubes to be sought; 0: none, the pair
-// moves too fast.
+// A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
+// to be sought; 0: none, the pair moves too fast.
 typedef struct {
     uint first, count; // Held
+    uint now_first;
     float margin;
     float radius;
 } Holder;
-WIRE_SIZE(Holder, 16);
+WIRE_SIZE(Holder, 20);
 
 typedef struct {
     uint pair;

@@ -11,8 +11,8 @@
 namespace raycontact {
 
 /// The pairs that were open in the last step, each with its state; others have none. Slots are reused, so memory is
-/// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot what it reads of every
-/// pair in every step, and lies in their order.
+/// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot what it reads of
+/// every pair in every step, and lies in their order.
 template <class State, class Hot>
 class PairTable {
 public:
@@ -21,14 +21,14 @@ public:
     void match(std::span<const Pair> pairs, Closed&& closed) {
         same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
         if (same_) return;
-        next_slots_.clear();
-        next_hot_.clear();
+        next_slots_.resize(pairs.size());
+        next_hot_.resize(pairs.size());
         std::size_t old = 0;
-        for (const Pair& pair : pairs) {
-            while (old < open_.size() && open_[old] < pair) close(old++, closed);
-            const bool known = old < open_.size() && open_[old] == pair;
-            next_slots_.push_back(known ? slots_[old] : take_slot());
-            next_hot_.push_back(known ? hot_[old++] : Hot{});
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            while (old < open_.size() && open_[old] < pairs[i]) close(old++, closed);
+            const bool known = old < open_.size() && open_[old] == pairs[i];
+            next_slots_[i] = known ? slots_[old] : take_slot();
+            next_hot_[i] = known ? hot_[old++] : Hot{};
         }
         while (old < open_.size()) close(old++, closed);
         slots_.swap(next_slots_);

@@ -278,7 +278,7 @@ void CertifiedRays::find_holders() {
     host_holders_.clear();
     std::uint32_t ray = 0;
     for (Due& due : due_) {
-        host_holders_.push_back({due.held_first, due.held_count, due.margin, due.radius});
+        host_holders_.push_back({due.held_first, due.held_count, ray, due.margin, due.radius});
         // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
         due.held_count = is_idle(host_holders_.back()) ? 0 : due.rays;
         due.held_first = ray;

@@ -19,7 +19,7 @@ void HeldRays::cast(Device& device, const ShapeStore::Arrays& shapes, const Arra
     launch<KernelId::hold_rays>(device, rays.size(), pairs, holders_, shapes.headers, shapes.vertex_blocks,
                                 shapes.nodes, shapes.triangle_blocks, shapes.face_normals, shapes.outside_cells, rays,
                                 before_, held_, hits, casts_);
-    cast_in_full_ = scan_.run(device, casts_, offsets_);
+    cast_in_full_ = scan_.total(device, casts_);
 }
 
 } // namespace raycontact

@@ -27,7 +27,7 @@ private:
     Scan scan_;
     Array<kernels::Holder> holders_;
     Array<kernels::Held> held_, before_;
-    Array<kernels::uint> casts_, offsets_;
+    Array<kernels::uint> casts_;
     std::uint64_t cast_in_full_ = 0;
 };
 

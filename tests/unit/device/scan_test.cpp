@@ -20,6 +20,7 @@ TEST(Scan, AgreesWithTheStandardLibrary) {
             Array<kernels::uint> on_device, result;
             on_device.write(*opened.device, values);
             EXPECT_EQ(scan.run(*opened.device, on_device, result), std::accumulate(values.begin(), values.end(), 0u));
+            EXPECT_EQ(scan.total(*opened.device, on_device), std::accumulate(values.begin(), values.end(), 0u));
             if (count > 0) result.read(*opened.device, firsts);
             EXPECT_EQ(firsts, expected);
         }
