@@ -8,12 +8,26 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace raycontact {
 
 namespace {
 using PoseBits = std::array<std::uint64_t, 12>;
+
+constexpr double lost_of_float = 6e-8; // of a length, by rounding its components
+
+void round_to(float (&to)[3], const Vec3& from) {
+    to[0] = static_cast<float>(from.x);
+    to[1] = static_cast<float>(from.y);
+    to[2] = static_cast<float>(from.z);
+}
+
+float distance(const float (&a)[3], const float (&b)[3]) {
+    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return std::sqrt((x * x + y * y) + z * z);
+}
 } // namespace
 
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
@@ -31,17 +45,18 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             // Bits, not values: 0 and -0 are one place, but not one contact.
             body.still = last.known && std::bit_cast<PoseBits>(last.centred) == std::bit_cast<PoseBits>(now);
             if (body.still) {
-                body.shift = {};
-                body.turn = body.lost = 0;
+                body.shift[0] = body.shift[1] = body.shift[2] = body.turn = body.lost = 0;
                 continue;
             }
             const double shear = shear_bound(now);
             const Pose& before = last.known ? last.centred : now;
-            body.shift = now.translation - before.translation;
-            body.lost = 4e-16 * length(body.shift);
-            body.turn = turn_bound(before, now, std::max(shear, last.shear));
-            body.centre = now.translation;
-            body.reach = bodies[i].shape->data().reach;
+            const Vec3 shift = now.translation - before.translation;
+            round_to(body.shift, shift);
+            round_to(body.centre, now.translation);
+            body.lost = static_cast<float>(lost_of_float * length(shift));
+            body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
+            body.reach =
+                static_cast<float>(bodies[i].shape->data().reach + 4 * lost_of_float * length(now.translation));
             last = {now, shear, true};
         }
     });
@@ -49,18 +64,17 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
 
 double Motion::pair_bound(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-    const double still = length(a.shift - b.shift) + (a.lost + b.lost);
-    if (a.turn == 0 && b.turn == 0) return 1.001 * still;
+    const float still = distance(a.shift, b.shift) + (a.lost + b.lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
-    const double apart = length(a.centre - b.centre);
-    const double turned =
+    const float apart = distance(a.centre, b.centre);
+    const float turned =
         std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
-    return 1.001 * (still + turned);
+    return 1.001 * double(still + turned);
 }
 
 double Motion::pair_speed(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-    return length(a.shift - b.shift) + std::max(a.turn * a.reach, b.turn * b.reach);
+    return double(distance(a.shift, b.shift)) + double(std::max(a.turn * a.reach, b.turn * b.reach));
 }
 
 } // namespace raycontact

@@ -17,11 +17,7 @@ public:
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// Asks for what pair_bound() reads; of the first body's the caches know from the pair before.
-    void prefetch(const Pair& pair) const {
-        const auto* bytes = reinterpret_cast<const char*>(&bodies_[pair.second]);
-        __builtin_prefetch(bytes);
-        __builtin_prefetch(bytes + 64);
-    }
+    void prefetch(const Pair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
     /// No less than what any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const Pair& pair) const;
     /// Neither body has moved by a bit since the last step.
@@ -32,13 +28,14 @@ public:
     double pair_shear(const Pair& pair) const { return lasts_[pair.first].shear + lasts_[pair.second].shear + 1e-15; }
 
 private:
-    /// What a pair asks of a body; together in two cache lines.
+    /// What a pair asks of a body. Small, so that those of thousands of bodies stay near: in float, each with what its
+    /// rounding may have taken.
     struct Body {
-        Vec3 centre;
-        Vec3 shift;       ///< of the centre, metres
-        double lost = 0;  ///< what rounding may have taken from it
-        double turn = 0;  ///< turn_bound
-        double reach = 0; ///< of the shape, about its centre
+        float centre[3];
+        float shift[3];  ///< of the centre, metres
+        float lost = 0;  ///< by rounding the shift, metres
+        float turn = 0;  ///< turn_bound
+        float reach = 0; ///< of the shape, about its centre, and what is lost of the centre
         bool still = false;
     };
     struct Last {

@@ -24,11 +24,24 @@ public:
         next_slots_.resize(pairs.size());
         next_hot_.resize(pairs.size());
         std::size_t old = 0;
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-            while (old < open_.size() && open_[old] < pairs[i]) close(old++, closed);
-            const bool known = old < open_.size() && open_[old] == pairs[i];
-            next_slots_[i] = known ? slots_[old] : take_slot();
-            next_hot_[i] = known ? hot_[old++] : Hot{};
+        for (std::size_t i = 0; i < pairs.size();) {
+            // Most pairs stay, in runs.
+            const std::size_t most = std::min(pairs.size() - i, open_.size() - old);
+            std::size_t same = 0;
+            while (same < most && pairs[i + same].first == open_[old + same].first
+                   && pairs[i + same].second == open_[old + same].second)
+                ++same;
+            std::copy_n(slots_.begin() + std::ptrdiff_t(old), same, next_slots_.begin() + std::ptrdiff_t(i));
+            std::copy_n(hot_.begin() + std::ptrdiff_t(old), same, next_hot_.begin() + std::ptrdiff_t(i));
+            i += same;
+            old += same;
+            if (i == pairs.size()) break;
+            if (old < open_.size() && open_[old] < pairs[i]) {
+                close(old++, closed);
+                continue;
+            }
+            next_slots_[i] = take_slot();
+            next_hot_[i++] = Hot{};
         }
         while (old < open_.size()) close(old++, closed);
         slots_.swap(next_slots_);
