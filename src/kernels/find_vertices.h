@@ -36,16 +36,6 @@ DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
            != 0u;
 }
 
-// outside_lanes() of one vertex in the bounds.
-DEVICE bool in_outside_cell(const float* p, GLOBAL const ShapeHeader* RESTRICT target,
-                            GLOBAL const uint* RESTRICT outside_cells) {
-    if (target->grid_size[0] == 0u) return false;
-    uint cell[3];
-    for (int i = 0; i < 3; ++i) cell[i] = (uint)(int)((p[i] - target->grid_low[i]) * target->grid_scale);
-    const uint at = (cell[2] * target->grid_size[1] + cell[1]) * target->grid_size[0] + cell[0];
-    return ((outside_cells[target->grid_first + (at >> 5)] >> (at & 31u)) & 1u) != 0u;
-}
-
 // Of the rest, those in an empty ball outside: the grid of bits lets through whole cells, about one vertex in two of
 // them for nothing, and the rays of those are the longest.
 DEVICE uint cleared_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,

@@ -256,9 +256,9 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const uint* RESTRICT outside_cells,
-                      GLOBAL const Ray* RESTRICT rays, GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after,
-                      GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
+                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
+                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
+                      GLOBAL uint* RESTRICT casts) {
     Group waiting;
     clear_group(&waiting);
     FOR_EACH(i, count) {
@@ -283,7 +283,8 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
             }
             after[i] = held;
         }
-        const bool cast = !known && inside && !in_outside_cell(source.position, shape, outside_cells);
+        // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
+        const bool cast = !known && inside;
         casts[i] = (uint)cast;
         if (cast)
             add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);

@@ -17,8 +17,8 @@ void HeldRays::cast(Device& device, const ShapeStore::Arrays& shapes, const Arra
     casts_.resize(device, rays.size());
     holders_.write(device, holders);
     launch<KernelId::hold_rays>(device, rays.size(), pairs, holders_, shapes.headers, shapes.vertex_blocks,
-                                shapes.nodes, shapes.triangle_blocks, shapes.face_normals, shapes.outside_cells, rays,
-                                before_, held_, hits, casts_);
+                                shapes.nodes, shapes.triangle_blocks, shapes.face_normals, rays, before_, held_, hits,
+                                casts_);
     cast_in_full_ = scan_.total(device, casts_);
 }
 
