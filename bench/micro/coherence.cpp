@@ -93,13 +93,13 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
 
     std::vector<kernels::Holder> holders(wide.size());
     for (std::size_t p = 0; p < wide.size(); ++p)
-        holders[p] = {0, 0, margins[p],
+        holders[p] = {0, 0, 0, margins[p],
                       static_cast<float>(batch.shape->data().diagonal
                                          / (4 * std::sqrt(double(batch.shape->triangles().size()))))};
     seekers_.write(*device_, holders);
     const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
     for (std::size_t i = watched.size(); i-- > 0;) {
-        holders[watched[i].pair].first = static_cast<kernels::uint>(i);
+        holders[watched[i].pair].first = holders[watched[i].pair].now_first = static_cast<kernels::uint>(i);
         ++holders[watched[i].pair].count;
     }
     holders_.write(*device_, holders);
@@ -174,8 +174,7 @@ void Coherence::begin_watches() {
 void Coherence::look_at_watches() {
     const auto& shapes = store_.arrays();
     launch<KernelId::look_at_watches>(*device_, segments_.size(), pairs_, shapes.headers, shapes.vertex_blocks,
-                                      shapes.outside_cells, shapes.clearances, segments_, watches_, looks_,
-                                      segment_rays_);
+                                      shapes.clearances, segments_, watches_, looks_, segment_rays_);
 }
 
 void Coherence::write_watch_rays() {

@@ -10,7 +10,7 @@ typedef unsigned long long ulong;
 #define DEVICE_BATCH DEVICE
 #define GLOBAL
 #define RESTRICT __restrict__
-#define PREFETCH(array, index)
+#define PREFETCH(array, index) ((void)(index))
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
 #define RAYS_AT_ONCE 1

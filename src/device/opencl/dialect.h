@@ -9,7 +9,7 @@
 #define DEVICE_BATCH DEVICE
 #define GLOBAL __global
 #define RESTRICT restrict
-#define PREFETCH(array, index)
+#define PREFETCH(array, index) ((void)(index))
 #define RANGE
 #define FOR_EACH(i, n) for (uint i = (uint)get_global_id(0); i < (n); i += (uint)get_global_size(0))
 #define RAYS_AT_ONCE 1

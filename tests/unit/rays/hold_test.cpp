@@ -87,7 +87,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
         const kernels::prototype::Closest own = kernels::prototype::find_closest(
             0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
-        kernels::Holder holder{0, 0, static_cast<float>(margin), radius};
+        kernels::Holder holder{0, 0, 0, static_cast<float>(margin), radius};
         const kernels::Held held = kernels::prototype::seek_tube(&ray, &own, &holder, &target.header,
                                                                  target.nodes.data(), target.triangle_blocks.data());
         ++counts.rays;
