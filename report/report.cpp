@@ -68,8 +68,9 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          {{"pairs", column(log, [](const StepRow& r) { return r.pairs; })}}},
         {"Rays",
          "rays",
-         "Rays of the rule: vertices inside the other body's bounds, both ways round, among those the method looked "
-         "at, also those known to be outside its mesh.",
+         "Rays of the rule, both ways round: vertices inside the other body's bounds, also those known to be outside "
+         "its "
+         "mesh. By certified only those that it knows no reason to leave alone.",
          {{"rays", column(log, [](const StepRow& r) { return r.rays; })}}},
         {"Contacts",
          "contacts",

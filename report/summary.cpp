@@ -26,7 +26,7 @@ constexpr Known known[] = {
     {"seed", "Seed", "", "of the bodies' first poses"},
     {"pairs_max", "Pairs, most in a step", "pairs", "bodies whose boxes overlap"},
     {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps: the pile at rest"},
-    {"rays", "Rays", "rays", "of the rule, of the vertices the method looked at, in all steps together"},
+    {"rays", "Rays", "rays", "of the rule, less those the method had a reason to leave alone, in all steps together"},
     {"rays_cast", "Rays cast", "rays", "in full; of the others it is known how they end"},
     {"pairs_full", "Pairs in full", "", "ordered pairs looked at in full, each step counted"},
     {"pairs_asleep", "Pairs asleep", "", "ordered pairs of which nothing was looked at, each step counted"},

@@ -72,7 +72,7 @@ public:
     std::string hash() const; ///< ContactHash of all steps so far
     std::uint64_t contacts_total() const;
     std::uint64_t rays_total() const;
-    std::uint64_t rays_cast_total() const; ///< of these, cast; the rest are known to miss
+    std::uint64_t rays_cast_total() const; ///< of these, cast; of the rest it is known how they end
     double ray_length_total() const;
     std::uint64_t pairs_max() const;
     /// Everything a report needs but the summary.

@@ -21,11 +21,13 @@ using Pair = std::pair<BodyId, BodyId>;
 struct StepStats {
     std::uint64_t pairs = 0;    ///< unordered pairs in the narrow phase
     std::uint64_t vertices = 0; ///< vertices tested against bounds, after whole clusters were ruled out
-    /// Rays of the rule, vertices inside the other body's bounds. Another method than `standard` counts those among the
-    /// vertices it looked at, `predictive` in bounds that it widened, and the rays it followed.
+    /// Rays of the rule, vertices inside the other body's bounds. `certified` counts the vertices that it knows no
+    /// reason to leave alone, of pairs too fast for it those in the bounds of blocks that it does not; `iterative` and
+    /// `predictive` those among the vertices they looked at, `predictive` in bounds that it widened, and the rays they
+    /// followed.
     std::uint64_t rays = 0;
     std::uint64_t rays_cast =
-        0; ///< traced through the mesh, along the ray or ahead of it; the rest is known to end nowhere
+        0; ///< traced through the mesh, along the ray or ahead of it; of the rest it is known how they end
     std::uint64_t side_tests =
         0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
     std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: new, fast or far moved ones

@@ -5,10 +5,10 @@
 
 namespace raycontact {
 
-// Leaves the offsets of the blocks, and behind them the total, in sums_. Returns the number of blocks.
+// Of at least one value. Leaves the offsets of the blocks, and behind them the total, in sums_. Returns the number of blocks.
 kernels::uint Scan::sum_up(Device& device, const Array<kernels::uint>& values) {
     const auto count = static_cast<kernels::uint>(values.size());
-    const kernels::uint blocks = (count + SCAN_BLOCK - 1) / SCAN_BLOCK;
+    const kernels::uint blocks = (count - 1) / SCAN_BLOCK + 1;
     sums_.resize(device, blocks + 1);
     launch<KernelId::scan_sums>(device, blocks, count, values, sums_);
     launch<KernelId::scan_offsets>(device, 1, blocks, sums_);

@@ -108,6 +108,7 @@ DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL cons
     }
 }
 
+// Every vertex is in the bounds.
 KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const OrderedPair* RESTRICT pairs,
                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                           GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,

@@ -28,7 +28,7 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     return pack_sixteen(outside);
 }
 
-// Whether a vertex casts, exactly as inside_lanes() has it.
+// Whether a vertex casts, exactly as inside_lanes() has it. p: of its source_ray(), which has the same bits.
 DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
     GLOBAL const float* b = pair->bounds;
     return ((uint)(p[0] >= b[0]) & (uint)(p[0] <= b[3]) & (uint)(p[1] >= b[1]) & (uint)(p[1] <= b[4])

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A look at what a pair watches: the blocks that are due are asked of the target's balls, for which vertices could be
-// in contact, and until when the others may sleep. NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this
-// text is C as well
+// in contact, and until when the others may sleep. The bounds are asked of each ray (hold.h).
+//
+// NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this text is C as well
 
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 

@@ -16,7 +16,8 @@ namespace raycontact {
 namespace {
 using PoseBits = std::array<std::uint64_t, 12>;
 
-constexpr double lost_of_float = 6e-8; // of a length, by rounding its components
+constexpr double lost_of_float = 6e-8;    // of a length, by rounding its components
+constexpr double lost_of_squares = 1e-22; // metres, where they underflow
 
 void round_to(float (&to)[3], const Vec3& from) {
     to[0] = static_cast<float>(from.x);
@@ -33,7 +34,7 @@ float distance(const float (&a)[3], const float (&b)[3]) {
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     bodies_.resize(bodies.size());
     lasts_.resize(bodies.size());
-    executor.run(static_cast<std::uint32_t>(bodies.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+    executor.run(static_cast<std::uint32_t>(bodies.size()), 1024, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             Body& body = bodies_[i];
             Last& last = lasts_[i];
@@ -45,7 +46,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             // Bits, not values: 0 and -0 are one place, but not one contact.
             body.still = last.known && std::bit_cast<PoseBits>(last.centred) == std::bit_cast<PoseBits>(now);
             if (body.still) {
-                body.shift[0] = body.shift[1] = body.shift[2] = body.turn = body.lost = 0;
+                body.shift[0] = body.shift[1] = body.shift[2] = body.turn = body.shift_lost = 0;
                 continue;
             }
             const double shear = shear_bound(now);
@@ -53,10 +54,11 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             const Vec3 shift = now.translation - before.translation;
             round_to(body.shift, shift);
             round_to(body.centre, now.translation);
-            body.lost = static_cast<float>(lost_of_float * length(shift));
+            body.centre_lost = static_cast<float>(lost_of_float * length(now.translation));
+            const double far = length(shift);
+            body.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
             body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
-            body.reach =
-                static_cast<float>(bodies[i].shape->data().reach + 4 * lost_of_float * length(now.translation));
+            body.reach = static_cast<float>(bodies[i].shape->data().reach);
             last = {now, shear, true};
         }
     });
@@ -64,9 +66,9 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
 
 double Motion::pair_bound(const Pair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-    const float still = distance(a.shift, b.shift) + (a.lost + b.lost);
+    const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
-    const float apart = distance(a.centre, b.centre);
+    const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
     const float turned =
         std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
     return 1.001 * double(still + turned);

@@ -16,7 +16,7 @@ public:
     /// Once a step, with every body of the scene.
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
-    /// Asks for what pair_bound() reads; of the first body's the caches know from the pair before.
+    /// Asks for what pair_bound() reads of the second body, its first line; the first's is that of the pair before.
     void prefetch(const Pair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
     /// No less than what any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const Pair& pair) const;
@@ -31,11 +31,12 @@ private:
     /// What a pair asks of a body. Small, so that those of thousands of bodies stay near: in float, each with what its
     /// rounding may have taken.
     struct Body {
-        float centre[3];
-        float shift[3];  ///< of the centre, metres
-        float lost = 0;  ///< by rounding the shift, metres
+        float centre[3]{};
+        float shift[3]{};      ///< of the centre, metres
+        float centre_lost = 0; ///< by rounding, metres
+        float shift_lost = 0;
         float turn = 0;  ///< turn_bound
-        float reach = 0; ///< of the shape, about its centre, and what is lost of the centre
+        float reach = 0; ///< of the shape, about its centre
         bool still = false;
     };
     struct Last {

@@ -7,7 +7,6 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace raycontact {
 
@@ -311,7 +310,8 @@ void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, cons
         cast_ = held_.cast_in_full();
         return;
     }
-    cast_standard(device, caster, shapes.arrays(), device_pairs_, rays_, hits_);
+    // Of the two, only this one asks for the bounds, which a vertex of ours may have left.
+    cast_standard(device, Caster::basic, shapes.arrays(), device_pairs_, rays_, hits_);
     cast_ = rays_.size();
     held_.forget(device);
 }

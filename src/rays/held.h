@@ -9,7 +9,7 @@
 namespace raycontact {
 
 /// The hits of a step's rays, most of them by the one triangle that each is known to meet (docs/certified.md), for the
-/// BVH caster. Bit for bit those of cast_standard().
+/// BVH caster. Bit for bit those of cast_standard() for vertices in the bounds, none for others.
 class HeldRays {
 public:
     /// holders: by pair, each with the range that its rays had in the last call; rays ascend by pair and slot.
