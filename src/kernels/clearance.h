@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far points can move before they could be in contact: a clearance grid keeps of each cell a ball without surface
 // (docs/certified.md).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
 
 typedef struct {
     float safe[VERTEX_LANES]; // metres a vertex can move before it could be in contact; may be negative
@@ -139,4 +139,4 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
                          ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
            - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
 }
-// NOLINTEND(modernize-use-using)
+// NOLINTEND(modernize-use-using,modernize-loop-convert)
