@@ -69,8 +69,7 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
         {"Rays",
          "rays",
          "Rays of the rule, both ways round: vertices inside the other body's bounds, also those known to be outside "
-         "its "
-         "mesh. By certified only those that it knows no reason to leave alone.",
+         "its mesh. By certified only those that it knows no reason to leave alone.",
          {{"rays", column(log, [](const StepRow& r) { return r.rays; })}}},
         {"Contacts",
          "contacts",

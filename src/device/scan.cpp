@@ -5,7 +5,8 @@
 
 namespace raycontact {
 
-// Of at least one value. Leaves the offsets of the blocks, and behind them the total, in sums_. Returns the number of blocks.
+// Of at least one value. Leaves the offsets of the blocks, and behind them the total, in sums_. Returns the number of
+// blocks.
 kernels::uint Scan::sum_up(Device& device, const Array<kernels::uint>& values) {
     const auto count = static_cast<kernels::uint>(values.size());
     const kernels::uint blocks = (count - 1) / SCAN_BLOCK + 1;

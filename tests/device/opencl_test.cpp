@@ -35,7 +35,7 @@ std::unique_ptr<Device> open_exact(const OpenClInfo& device) {
 }
 
 const Work& work() {
-    static const Work made = make_work(60);
+    static const Work made = make_work(60, true);
     return made;
 }
 
@@ -128,7 +128,7 @@ TEST(opencl, contraction_is_noticed) {
 TEST(small, leaves_the_same_bytes) {
     const std::vector<OpenClInfo> exact = exact_devices(), all = opencl_devices();
     ASSERT_FALSE(all.empty());
-    const Work little = make_work(2);
+    const Work little = make_work(2, false);
     const Outcome outcome = run_pipeline(*open_exact(exact.empty() ? all[0] : exact[0]), little);
     const Outcome on_cpu = run_on_cpu(little);
     EXPECT_GT(on_cpu.contacts.size(), 0u);
@@ -139,7 +139,7 @@ TEST(small, leaves_the_same_bytes) {
 TEST(opencl, many_rays_leave_the_same_hits) {
     const std::vector<OpenClInfo> devices = exact_devices();
     ASSERT_FALSE(devices.empty());
-    const Work many = make_work(1200);
+    const Work many = make_work(1200, true);
     const auto timed = [&](Device& device, const char* name) {
         ShapeStore store(device);
         for (const auto& shape : many.shapes) store.add(shape);

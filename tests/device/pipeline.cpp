@@ -91,7 +91,7 @@ void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& w
 
 } // namespace
 
-Work make_work(std::size_t random_pairs) {
+Work make_work(std::size_t random_pairs, bool fine) {
     using namespace reference;
     Work work;
     for (const Mesh& mesh : {bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8),
@@ -115,9 +115,8 @@ Work make_work(std::size_t random_pairs) {
         bodies.push_back(place(work, grid_box, beside));
         bodies.push_back(place(work, 1, Pose{}));
     }
-    // Of more vertex blocks than a bit each names, and than a segment of watches holds. The little work, for an
-    // interpreter that would take ten minutes for them, goes without.
-    if (random_pairs >= 60) {
+    // Of more vertex blocks than a bit each names, and than a segment of watches holds.
+    if (fine) {
         work.shapes.push_back(Shape::make(bumpy_octahedron_mesh(25)));
         for (const std::size_t partner : {grid_box + 1, grid_box + 1, grid_box + 1, std::size_t{0}}) {
             Pose beside = random.rotation();

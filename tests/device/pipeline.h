@@ -19,8 +19,9 @@ struct Work {
     std::vector<PlacedBody> bodies; ///< 2 i and 2 i + 1 are those of pairs 2 i and 2 i + 1
 };
 
-/// Random placements, and boxes on a common grid whose rays run along faces and through edges.
-Work make_work(std::size_t random_pairs);
+/// Random placements, and boxes on a common grid whose rays run along faces and through edges. fine: also pairs
+/// of some fine meshes, which an interpreter takes many minutes for.
+Work make_work(std::size_t random_pairs, bool fine);
 
 /// What the narrow phase's kernels made of some work.
 struct Outcome {
