@@ -83,7 +83,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     for (kernels::uint p = 0; p < wide.size(); ++p)
         for (kernels::uint done = 0; done < counts[p]; done += SEGMENT_WATCHES)
             segments.push_back(
-                {p, firsts[p] + done, std::min(SEGMENT_WATCHES, counts[p] - done), UNBOUNDED, 0, margins[p]});
+                {p, firsts[p] + done, std::min(SEGMENT_WATCHES, counts[p] - done), UNBOUNDED, 0, margins[p], 0});
     segments_.write(*device_, segments);
     watches_.resize(*device_, clusters.size());
     looks_.resize(*device_, segments.size());
@@ -178,8 +178,8 @@ void Coherence::look_at_watches() {
 }
 
 void Coherence::write_watch_rays() {
-    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, segment_firsts_,
-                                       watch_rays_);
+    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, rays_,
+                                       segment_firsts_, watch_rays_);
 }
 
 void Coherence::hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before,

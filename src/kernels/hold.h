@@ -1,148 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that need not be cast again (docs/certified.md): around a ray, up to a little behind what it met, lies a tube
-// that no other triangle enters. Until a point of the ray has moved by its radius, that one triangle alone decides.
+// Rays that need not be cast again (docs/certified.md): what is known of a ray lasts until a point of it has moved as
+// far as its tube (tube.h) is wide. Either one triangle alone can be met, or all that are near can only be met from
+// inside, and then one at most is.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
 #define LIMIT_TOLERANCES 4.0f
-
-typedef struct {
-    float origin[3];
-    float along[3], u[3], v[3]; // unit vectors, square to each other
-    float length;
-    float box[6]; // around the tube: lower x y z, upper x y z
-} Tube;
-
-// The triangle nearest to the tube's axis, and how far the axis is from every other.
-typedef struct {
-    float least, second;
-    uint slot; // TRIANGLE_LANES * block + lane
-} Neighbours;
-
-DEVICE Tube tube_of(const SourceRay* ray, float length, float radius) {
-    Tube tube;
-    const float* d = ray->direction;
-    // Rotations are rigid to 1e-4 only: not quite of unit length, and distances count in lengths of it.
-    const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
-    for (int i = 0; i < 3; ++i) {
-        tube.origin[i] = ray->position[i];
-        tube.along[i] = d[i] / size;
-    }
-    tube.length = length * size;
-    const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
-    const int least = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
-    const int next = least == 2 ? 0 : least + 1, last = next == 2 ? 0 : next + 1;
-    const float side = 1.0f / root_of(tube.along[next] * tube.along[next] + tube.along[last] * tube.along[last]);
-    tube.u[least] = 0.0f;
-    tube.u[next] = -(tube.along[last] * side);
-    tube.u[last] = tube.along[next] * side;
-    for (int i = 0; i < 3; ++i) {
-        const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-        tube.v[i] = tube.along[j] * tube.u[k] - tube.along[k] * tube.u[j];
-        const float end = tube.origin[i] + tube.length * tube.along[i];
-        tube.box[i] = (tube.origin[i] < end ? tube.origin[i] : end) - radius;
-        tube.box[3 + i] = (tube.origin[i] > end ? tube.origin[i] : end) + radius;
-    }
-    return tube;
-}
-
-// How far the origin is from a triangle of the plane along the normal of its edge from a to b; c is the third corner.
-DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv) {
-    const float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
-    const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
-    const float edge = (nu * au + nv * av) * scale, third = (nu * cu + nv * cv) * scale;
-    const float low = edge < third ? edge : third, high = edge > third ? edge : third;
-    return low > -high ? low : -high;
-}
-
-// No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
-// seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
-DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index) {
-    float apart[TRIANGLE_LANES];
-    int nearer[TRIANGLE_LANES];
-    const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
-    const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
-    const float px = tube->u[0], py = tube->u[1], pz = tube->u[2];
-    const float qx = tube->v[0], qy = tube->v[1], qz = tube->v[2];
-    const float length = tube->length, bound = found->second;
-    FOR_LANES(k, TRIANGLE_LANES) {
-        const float ax = block->corner[0][k] - ox, ay = block->corner[1][k] - oy, az = block->corner[2][k] - oz;
-        const float bx = block->corner[3][k] - ox, by = block->corner[4][k] - oy, bz = block->corner[5][k] - oz;
-        const float cx = block->corner[6][k] - ox, cy = block->corner[7][k] - oy, cz = block->corner[8][k] - oz;
-        const float as = (dx * ax + dy * ay) + dz * az, bs = (dx * bx + dy * by) + dz * bz;
-        const float cs = (dx * cx + dy * cy) + dz * cz;
-        const float au = (px * ax + py * ay) + pz * az, av = (qx * ax + qy * ay) + qz * az;
-        const float bu = (px * bx + py * by) + pz * bz, bv = (qx * bx + qy * by) + qz * bz;
-        const float cu = (px * cx + py * cy) + pz * cz, cv = (qx * cx + qy * cy) + qz * cz;
-        const float first_ab = as < bs ? as : bs, last_ab = as > bs ? as : bs;
-        const float first = first_ab < cs ? first_ab : cs, last = last_ab > cs ? last_ab : cs;
-        const float beyond = first - length, behind = -last;
-        float best = beyond > behind ? beyond : behind;
-        const float gap_ab = edge_gap(au, av, bu, bv, cu, cv), gap_bc = edge_gap(bu, bv, cu, cv, au, av);
-        const float gap_ca = edge_gap(cu, cv, au, av, bu, bv);
-        best = gap_ab > best ? gap_ab : best;
-        best = gap_bc > best ? gap_bc : best;
-        best = gap_ca > best ? gap_ca : best;
-        // The plane's normal, in the frame of the axis.
-        const float pu = (bv - av) * (cs - as) - (bs - as) * (cv - av);
-        const float pv = (bs - as) * (cu - au) - (bu - au) * (cs - as);
-        const float ps = (bu - au) * (cv - av) - (bv - av) * (cu - au);
-        const float n2 = (pu * pu + pv * pv) + ps * ps;
-        const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
-        const float ah = (pu * au + pv * av) + ps * as, bh = (pu * bu + pv * bv) + ps * bs;
-        const float ch = (pu * cu + pv * cv) + ps * cs, end = ps * length;
-        const float low_ab = ah < bh ? ah : bh, high_ab = ah > bh ? ah : bh;
-        const float low = low_ab < ch ? low_ab : ch, high = high_ab > ch ? high_ab : ch;
-        const float above = low - (end > 0.0f ? end : 0.0f), below = (end < 0.0f ? end : 0.0f) - high;
-        const float gap = (above > below ? above : below) * scale;
-        best = gap > best ? gap : best;
-        apart[k] = best;
-        nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
-    }
-    for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
-        const uint lane = lowest_bit(left);
-        if (apart[lane] < found->least) {
-            found->second = found->least;
-            found->least = apart[lane];
-            found->slot = TRIANGLE_LANES * index + lane;
-        } else if (apart[lane] < found->second) {
-            found->second = apart[lane];
-        }
-    }
-}
-
-// Of all triangles within `radius` of the tube's axis.
-DEVICE_CALL Neighbours search_tube(const Tube* tube, float radius, GLOBAL const ShapeHeader* RESTRICT shape,
-                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    Neighbours found;
-    found.least = radius;
-    found.second = radius;
-    found.slot = NONE;
-    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
-    ulong trail = 0u;
-    uint at = 0u;
-    uint children = children_in(tube->box, tree);
-    for (;;) {
-        while (children != 0u) {
-            const uint lane = lowest_bit(children);
-            const uint child = tree[at].child[lane];
-            children &= children - 1u;
-            if ((child & LEAF) != 0u) {
-                const uint index = child & ~LEAF;
-                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index);
-            } else {
-                trail = (trail << NODE_LANES) | (ulong)children;
-                at = child;
-                children = children_in(tube->box, tree + at);
-            }
-        }
-        if (at == 0u) return found;
-        at = tree[at].parent;
-        children = (uint)(trail & 0xffffu);
-        trail >>= NODE_LANES;
-    }
-}
+#define EDGE_TOLERANCES 4.0f
+#define MOST_TURN 0.5f // of a direction, of the cosine by which triangles face it
 
 // The place of a ray among those that its pair held, which ascend by slot; their number if it is not there. likely: its
 // place among those of this step, mostly the same.
@@ -164,7 +30,7 @@ DEVICE Held nothing_held(uint slot) {
     held.slot = slot;
     held.triangle = NONE;
     held.safe = 0.0f;
-    held.limit = 0.0f;
+    held.limit = held.back = held.turn = 0.0f;
     for (int i = 0; i < 3; ++i) held.position[i] = held.direction[i] = 0.0f;
     return held;
 }
@@ -191,9 +57,44 @@ DEVICE float moved_by(const Held* held, const SourceRay* ray) {
     return root_of(start > end ? start : end);
 }
 
+// Whether no part of the ray has left its tube, and if that takes it, whether triangles there still face alike.
+DEVICE bool is_in_tube(const Held* held, const SourceRay* ray) {
+    float turned = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float change = ray->direction[i] - held->direction[i];
+        turned += change * change;
+    }
+    return moved_by(held, ray) < held->safe && (held->turn <= 0.0f || turned <= held->turn * held->turn);
+}
+
+// Where all that is near can only be left, the ray leaves it once at most (docs/certified.md): the triangle that was
+// met is all there is, if the ray's line still passes through it, and by no edge that rounding could move it across.
+DEVICE uint hit_leaving(Closest* closest, const Held* held, const RayFrame* frame,
+                        GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES;
+    const uint lane = held->triangle % TRIANGLE_LANES;
+    const Corners at = corners_of(frame, block, lane);
+    const Edges e = edges_of(at.x[0], at.y[0], at.z[0], at.x[1], at.y[1], at.z[1], at.x[2], at.y[2], at.z[2],
+                             frame->shear[0], frame->shear[1]);
+    float x[3], y[3];
+    for (int c = 0; c < 3; ++c) {
+        x[c] = at.x[c] - frame->shear[0] * at.z[c];
+        y[c] = at.y[c] - frame->shear[1] * at.z[c];
+    }
+    const float near = EDGE_TOLERANCES * shape->tolerance;
+    if (!(e.u < -near * (magnitude_of(x[2] - x[1]) + magnitude_of(y[2] - y[1]))
+          && e.v < -near * (magnitude_of(x[0] - x[2]) + magnitude_of(y[0] - y[2]))
+          && e.w < -near * (magnitude_of(x[1] - x[0]) + magnitude_of(y[1] - y[0]))))
+        return 0u;
+    const float t = distance_of(e, at.z[0], at.z[1], at.z[2], frame->shear[2]);
+    take(closest, t, true, block->triangle[lane], shape->tolerance);
+    return (uint)(t >= -held->back) & (uint)(t + LIMIT_TOLERANCES * shape->tolerance <= held->limit);
+}
+
 // Whether the one triangle still decides, and if so what it says.
 DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, float reach,
                      GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    if (held->turn > 0.0f) return hit_leaving(closest, held, frame, shape, blocks);
     if (held->triangle != NONE)
         hit_lane(closest, frame, blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES,
                  held->triangle % TRIANGLE_LANES, shape->tolerance, false);
@@ -204,7 +105,7 @@ DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, 
 // What is known of a ray from now on, where it had to be cast.
 DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
     Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
@@ -213,13 +114,20 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     const float met = own->back < own->front ? own->back : own->front;
     const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
     if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
-    const Tube tube = tube_of(ray, end, holder->radius);
-    const Neighbours found = search_tube(&tube, holder->radius, shape, nodes, blocks);
-    const float safe = found.second - holder->margin;
+    // A vertex that nothing was met from may be a little outside, so what it left lies behind.
+    const float back = shape->outward != 0u && met >= UNBOUNDED ? 0.5f * holder->radius : 0.0f;
+    const Tube tube = tube_of(ray, back, end, holder->radius);
+    const Neighbours found = search_tube(&tube, shape->outward, shape, nodes, blocks, normals);
+    float safe = found.second - holder->margin;
+    const float leaving = holder->radius - MOST_TURN * back - holder->margin;
+    const bool leaves = found.facing > LEAST_FACING && found.least_of_axis <= 0.0f && leaving > safe;
+    if (leaves) safe = leaving;
     if (safe > WORTH_HOLDING * holder->radius) {
         held.safe = safe;
         held.limit = end;
-        held.triangle = found.slot;
+        held.triangle = leaves ? found.slot_of_axis : found.slot;
+        held.back = leaves ? back : 0.0f;
+        held.turn = leaves ? MOST_TURN * found.facing : 0.0f;
     } else {
         held.limit = WAIT_STEPS;
     }
@@ -244,7 +152,7 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
         const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
         const uint slot = held.slot;
         held.limit = waits;
-        if (!(waits > 0.0f)) held = seek_tube(&source, own + r, holder, shape, nodes, blocks);
+        if (!(waits > 0.0f)) held = seek_tube(&source, own + r, holder, shape, nodes, blocks, normals);
         held.slot = slot;
         after[at] = held;
     }
@@ -275,7 +183,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         bool known = false;
         if (!is_idle(holder)) {
             Held held = held_before(holder, before, ray.slot, i);
-            if (inside && held.safe > 0.0f && moved_by(&held, &source) < held.safe) {
+            if (inside && held.safe > 0.0f && is_in_tube(&held, &source)) {
                 const RayFrame frame = frame_ray(source.position, source.direction);
                 Closest own = nothing_hit(source.reach, shape->tolerance);
                 known = hit_held(&own, &held, &frame, source.reach, shape, blocks) != 0u;

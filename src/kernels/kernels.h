@@ -26,6 +26,9 @@
 #include "kernels/look.h"
 
 #include "kernels/cast_rays.h"
+
+#include "kernels/tube.h"
+
 #include "kernels/hold.h"
 
 #include "kernels/follow.h"

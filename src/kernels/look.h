@@ -28,7 +28,7 @@ DEVICE Look known_block(uint lanes, float wake, uint bit) {
     Look found = nothing_found();
     found.rays = bit_count(lanes);
     found.casting = (ulong)(lanes != 0u) << bit;
-    found.wake = lanes != 0u ? AWAKE : wake;
+    found.wake = wake;
     return found;
 }
 
@@ -119,6 +119,7 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
             waits = 0u;
         }
+        found.rays += segment.rays;
         looks[s] = add_looks(looks[s], found);
         rays[s] = looks[s].rays;
     }

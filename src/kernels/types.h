@@ -132,14 +132,16 @@ typedef struct {
 WIRE_SIZE(Watch, 12);
 
 // Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
-// from where on a certificate given now counts. margin: metres of rounding that it must exceed.
+// from where on a certificate given now counts. margin: metres of rounding that it must exceed. rays: not 0 where none
+// of the pair's watches is due; then its rays are as many of the last step's, from `first` on.
 typedef struct {
     uint pair;
     uint first, count;
     float now, from;
     float margin;
+    uint rays;
 } Segment;
-WIRE_SIZE(Segment, 24);
+WIRE_SIZE(Segment, 28);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
 // casting: a bit for each watch that has any.
@@ -152,16 +154,19 @@ typedef struct {
 } Look;
 WIRE_SIZE(Look, 24);
 
-// A ray that one triangle decides, or none, while no point of it has moved by `safe`.
+// A ray that one triangle decides, or none, while no point of it has moved by `safe`. turn: not 0 where the triangles
+// around it face alike, so that the ray meets one of them at most while its direction has changed by no more.
 typedef struct {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near
     float safe;        // metres; 0: it is cast in every step
     float limit;       // metres along the ray: where its tube ends; of one without, steps until it is sought again
+    float back;        // metres before the ray's origin, where its tube begins
+    float turn;        // in lengths of the direction
     float position[3]; // when the tube was sought
     float direction[3];
 } Held;
-WIRE_SIZE(Held, 40);
+WIRE_SIZE(Held, 48);
 
 // A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
 // to be sought; 0: none, the pair moves too fast.

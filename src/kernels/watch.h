@@ -2,7 +2,7 @@
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
 // once the pair has moved as far as its nearest vertex was from touching (look.h).
 
-#define AWAKE (-1.0f) // of Watch.wake: to be looked at in every step
+#define AWAKE (-1.0f) // of Watch.wake: to be looked at in the next step
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
@@ -25,13 +25,18 @@ KERNEL void begin_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT p
     }
 }
 
-// looks: of this step.
+// looks: of this step; before: the rays of the last one.
 KERNEL void write_watch_rays(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
                              GLOBAL const Watch* RESTRICT watches, GLOBAL const Look* RESTRICT looks,
-                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
+                             GLOBAL const Ray* RESTRICT before, GLOBAL const uint* RESTRICT firsts,
+                             GLOBAL Ray* RESTRICT rays) {
     FOR_EACH(s, count) {
         const uint pair = segments[s].pair, first = segments[s].first;
         uint at = firsts[s];
+        for (uint i = 0u; i < segments[s].rays; ++i) {
+            rays[at + i].pair = pair;
+            rays[at + i].slot = before[first + i].slot;
+        }
         for (ulong casting = looks[s].casting; casting != 0u; casting &= casting - 1u) {
             GLOBAL const Watch* RESTRICT watch = watches + first + lowest_bit_of_long(casting);
             for (uint lanes = watch->lanes; lanes != 0u; lanes &= lanes - 1u) {

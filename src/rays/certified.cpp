@@ -31,12 +31,12 @@ constexpr double fastest = 0.006;
 // The reference pose is moved once the pair is this far from it, of the smaller size.
 constexpr double trembling = 0.001;
 // How fast a pair may be for tubes to be sought, of their radius a step.
-constexpr double slow = 0.25;
+constexpr double slow = 0.15;
 
-// How wide a tube is sought around a ray: other triangles are about this near, so that a wider one only takes longer to
-// find.
+// How wide a tube is sought around a ray: within the length of a triangle the surface mostly faces one way, farther off
+// there are only more triangles to be asked.
 double tube_radius(double size, const PlacedBody& target) {
-    return std::min(size / 128, target.shape->data().grain / 4);
+    return std::min(size / 128, target.shape->data().grain);
 }
 
 // Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
@@ -50,6 +50,13 @@ bool is_idle(const kernels::Holder& holder) {
 }
 
 } // namespace
+
+// Where they lay is not known any more: the watches have to be asked again.
+void CertifiedRays::forget_rays(Watched& own) {
+    if (own.ray_count == 0) return;
+    own.ray_count = 0;
+    own.wake = -1;
+}
 
 void CertifiedRays::clear() {
     table_.clear();
@@ -74,9 +81,9 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
     std::array<double, 2> moved{0, 0};
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
-    bool look[2] = {}, list[2] = {};
+    bool look[2] = {}, list[2] = {}, due[2] = {};
     if (table_.hot(i).still)
-        for (Watched& own : state.watched) own.held_count = 0;
+        for (Watched& own : state.watched) forget_rays(own);
     double slack = 1e300;
     for (std::size_t d = 0; d < 2; ++d) {
         const Watched& own = state.watched[d];
@@ -84,13 +91,15 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
         list[d] = fresh || !(clock < own.expiry);
         look[d] = list[d] || !(clock < own.wake);
-        if (!look[d]) slack = std::min(slack, std::min(own.wake, own.expiry) - clock);
+        due[d] = look[d] || own.ray_count > 0;
+        if (!look[d]) slack = std::min(slack, own.ray_count > 0 ? 0 : std::min(own.wake, own.expiry) - clock);
     }
     table_.hot(i) = {slack, true, false};
-    if (!(look[0] || look[1])) return;
+    if (!(due[0] || due[1])) return;
 
     if (list[0] || list[1]) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-    const bool move = list[0] || list[1] || !(std::max(moved[0], moved[1]) < trembling * size);
+    const bool looks = look[0] || look[1];
+    const bool move = list[0] || list[1] || (looks && !(std::max(moved[0], moved[1]) < trembling * size));
     if (move) state.reference = now;
     for (std::uint32_t d = 0; d < 2; ++d) {
         Watched& own = state.watched[d];
@@ -103,20 +112,23 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
             slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
         }
-        if (!look[d]) continue;
+        if (!due[d]) continue;
         slice.ordered.push_back(2 * i + d);
-        Due& due = slice.due.emplace_back();
-        due.now = static_cast<float>(own.clock + moved[d]);
-        due.from = static_cast<float>(own.clock - moved[d]);
-        due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
+        Due& found = slice.due.emplace_back();
+        found.own = &own;
+        found.look = look[d];
+        found.now = static_cast<float>(own.clock + moved[d]);
+        found.from = static_cast<float>(own.clock - moved[d]);
+        found.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
         const double radius = tube_radius(size, *body[1 - d]);
-        due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-        due.longest = longest_clock(*body[1 - d]);
-        due.expiry = own.expiry;
-        due.first = own.first;
-        due.count = own.count;
-        due.held_first = own.held_first;
-        due.held_count = own.held_count;
+        found.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+        found.longest = longest_clock(*body[1 - d]);
+        found.expiry = own.expiry;
+        found.first = own.first;
+        found.count = own.count;
+        found.ray_first = own.ray_first;
+        found.ray_count = own.ray_count;
+        found.held = own.held;
         order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
     }
 }
@@ -168,13 +180,17 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
 // What the slices found, in the order of the pairs.
 void CertifiedRays::gather(Executor& executor) {
     stale_.clear();
+    stale_dues_.clear();
     fast_.clear();
     still_.clear();
     std::size_t due_count = 0;
     for (Slice& slice : std::span(slices_).first(slice_count_)) {
         slice.first = due_count;
         due_count += slice.due.size();
-        for (const std::uint32_t i : slice.stale) stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
+        for (const std::uint32_t i : slice.stale) {
+            stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
+            stale_dues_.push_back(&slice.due[i]);
+        }
         for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).lists) close(table_.state(i));
             table_.hot(i) = {};
@@ -183,13 +199,11 @@ void CertifiedRays::gather(Executor& executor) {
         for (const std::uint32_t i : slice.still) still_.insert(still_.end(), {2 * i, 2 * i + 1});
     }
     active_.resize(due_count);
-    due_.resize(due_count);
     host_pairs_.resize(due_count);
     executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             const Slice& slice = slices_[s];
             const auto at = static_cast<std::ptrdiff_t>(slice.first);
-            std::copy(slice.due.begin(), slice.due.end(), due_.begin() + at);
             std::copy(slice.ordered.begin(), slice.ordered.end(), active_.begin() + at);
             std::copy(slice.pairs.begin(), slice.pairs.end(), host_pairs_.begin() + at);
         }
@@ -204,7 +218,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     stale_margins_.resize(stale_.size());
     horizons_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        const Due& due = due_[stale_[i]];
+        const Due& due = *stale_dues_[i];
         wide_pairs_[i] = host_pairs_[stale_[i]];
         stale_margins_[i] = due.margin;
         horizons_[i] = static_cast<float>(due.expiry) + due.margin;
@@ -220,8 +234,8 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        Due& due = due_[stale_[i]];
-        Watched& own = watched(active_[stale_[i]]);
+        Due& due = *stale_dues_[i];
+        Watched& own = *due.own;
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
         const RangePool::Range range = pool_.take(host_counts_[i]);
@@ -245,12 +259,16 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
     host_segments_.clear();
-    for (std::uint32_t i = 0; i < due_.size(); ++i) {
-        Due& due = due_[i];
-        due.wake = due.expiry;
-        for (std::uint32_t done = 0; done < due.count; done += SEGMENT_WATCHES)
-            host_segments_.push_back(
-                {i, due.first + done, std::min(SEGMENT_WATCHES, due.count - done), due.now, due.from, due.margin});
+    for (Slice& slice : std::span(slices_).first(slice_count_)) {
+        slice.segment = host_segments_.size();
+        auto i = static_cast<std::uint32_t>(slice.first);
+        for (const Due& due : slice.due) {
+            if (!due.look) host_segments_.push_back({i, due.ray_first, 0, 0, 0, 0, due.ray_count});
+            for (std::uint32_t done = 0; due.look && done < due.count; done += SEGMENT_WATCHES)
+                host_segments_.push_back({i, due.first + done, std::min(SEGMENT_WATCHES, due.count - done), due.now,
+                                          due.from, due.margin, 0});
+            ++i;
+        }
     }
     device_pairs_.write(device, host_pairs_);
     segments_.write(device, host_segments_);
@@ -258,53 +276,66 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     counts_.resize(device, host_segments_.size());
     launch<KernelId::look_at_watches>(device, host_segments_.size(), device_pairs_, arrays.headers,
                                       arrays.vertex_blocks, arrays.clearances, segments_, watches_, looks_, counts_);
+    std::swap(rays_, last_rays_);
+    if (last_rays_.size() == 0) last_rays_.resize(device, 1); // an argument is never nothing
     rays_.resize(device, scan_.run(device, counts_, firsts_));
     launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
-                                       looks_, firsts_, rays_);
+                                       looks_, last_rays_, firsts_, rays_);
     host_looks_.resize(host_segments_.size());
+    host_firsts_.resize(host_segments_.size());
     looks_.read(device, host_looks_);
-    blocks_ = 0;
-    for (std::size_t s = 0; s < host_segments_.size(); ++s) {
-        Due& due = due_[host_segments_[s].pair];
-        due.wake = std::min(due.wake, double(host_looks_[s].wake));
-        due.rays += host_looks_[s].rays;
-        blocks_ += host_looks_[s].blocks;
-    }
+    firsts_.read(device, host_firsts_);
 }
 
-// Where every ray of the last step lies, by pair, and how wide a tube this step may seek.
-void CertifiedRays::find_holders() {
-    host_holders_.clear();
-    std::uint32_t ray = 0;
-    for (Due& due : due_) {
-        host_holders_.push_back({due.held_first, due.held_count, ray, due.margin, due.radius});
-        // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
-        due.held_count = is_idle(host_holders_.back()) ? 0 : due.rays;
-        due.held_first = ray;
-        ray += due.rays;
-    }
-}
-
-// What the pairs keep of this step; held: rays, too. The directions of a pair, which share its slack, are in one slice.
-void CertifiedRays::keep(Executor& executor, bool held) {
+// What the pairs keep of this step, and what their rays are told of the last: where each lay, and how wide a tube may
+// be sought. held: something will be known of them afterwards.
+void CertifiedRays::settle(Executor& executor, bool held) {
+    host_holders_.resize(active_.size());
     executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
-        const std::size_t last = slices_[end - 1].first + slices_[end - 1].due.size();
-        for (std::size_t i = slices_[begin].first; i < last; ++i) {
-            const Due& due = due_[i];
-            Watched& own = watched(active_[i]);
-            own.wake = due.wake;
-            own.held_first = due.held_first;
-            own.held_count = held ? due.held_count : 0;
-            double& slack = table_.hot(active_[i] / 2).metres; // of the other direction, if it need not be looked at
-            slack = std::min(slack, due.wake - double(due.now));
+        for (std::uint32_t s = begin; s < end; ++s) {
+            Slice& slice = slices_[s];
+            std::size_t segment = slice.segment;
+            auto i = static_cast<std::uint32_t>(slice.first);
+            slice.blocks = 0;
+            for (const Due& due : slice.due) {
+                const Found found = add_up(i, segment, slice.blocks);
+                settle_one(i++, due, found, held);
+            }
         }
     });
 }
 
+// What was found in the segments of the i-th direction, of which the next is `segment`; it goes on to what follows.
+CertifiedRays::Found CertifiedRays::add_up(std::uint32_t i, std::size_t& segment, std::uint64_t& blocks) const {
+    Found found;
+    if (segment < host_segments_.size()) found.ray_first = host_firsts_[segment];
+    for (; segment < host_segments_.size() && host_segments_[segment].pair == i; ++segment) {
+        const kernels::Look& look = host_looks_[segment];
+        found.wake = std::min(found.wake, double(look.wake));
+        found.rays += look.rays;
+        blocks += look.blocks;
+    }
+    return found;
+}
+
+void CertifiedRays::settle_one(std::uint32_t i, const Due& due, const Found& found, bool held) {
+    kernels::Holder& holder = host_holders_[i];
+    holder = {due.ray_first, due.held ? due.ray_count : 0, found.ray_first, due.margin, due.radius};
+    Watched& own = *due.own;
+    own.ray_first = found.ray_first;
+    // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
+    own.held = held && !is_idle(holder);
+    if (!due.look) return;
+    own.wake = std::min(found.wake, due.expiry);
+    own.ray_count = found.rays;
+    // Of the other direction, if that need not be looked at; the two are in one slice.
+    double& slack = table_.hot(active_[i] / 2).metres;
+    slack = std::min(slack, found.rays > 0 ? 0 : own.wake - double(due.now));
+}
+
 void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes) {
-    find_holders();
     const bool held = caster != Caster::basic;
-    keep(executor, held);
+    settle(executor, held);
     if (held) {
         held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
         cast_ = held_.cast_in_full();
@@ -329,12 +360,13 @@ void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& s
 }
 
 void CertifiedRays::count(StepStats& stats) const {
-    stats.vertices += VERTEX_LANES * blocks_;
+    for (const Slice& slice : std::span(slices_).first(slice_count_)) stats.vertices += VERTEX_LANES * slice.blocks;
     stats.rays += rays_.size();
     stats.rays_cast += cast_;
     stats.pairs_full += stale_.size();
     stats.pairs_asleep += 2 * open_pairs_ - active_.size() - fast_.size();
-    stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch) + held_.bytes();
+    stats.pair_bytes +=
+        table_.bytes() + pool_.in_use() * sizeof(kernels::Watch) + rays_.size() * sizeof(kernels::Ray) + held_.bytes();
 }
 
 } // namespace raycontact

@@ -48,10 +48,11 @@ private:
     /// the pair's reference pose on.
     struct Watched {
         double clock = 0;   ///< at the reference pose
-        double wake = 0;    ///< nothing need be looked at before the clock reaches this
+        double wake = 0;    ///< no watch need be looked at before the clock reaches this
         double expiry = -1; ///< a new list is due when the clock reaches this; below 0: at once
         std::uint32_t first = 0, count = 0, capacity = 0; ///< of watches_
-        std::uint32_t held_first = 0, held_count = 0;     ///< of the rays of the last step
+        std::uint32_t ray_first = 0, ray_count = 0; ///< of the last step; they are cast in each in which the pair moves
+        bool held = false;                          ///< what was found out about them lies there, too
     };
     struct PairState {
         PairPlace reference;
@@ -60,15 +61,21 @@ private:
     };
     /// A direction that is due, and what its look finds.
     struct Due {
+        Watched* own = nullptr;
         /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about
         /// it, and what is seen from beside it holds for that much less.
         float now = 0, from = 0;
         float margin = 0, radius = 0; ///< of rounding; of tubes
         double longest = 0;           ///< metres that a new list may last
-        double expiry = 0, wake = 0;  ///< of Watched, as what follows
+        double expiry = 0;            ///< of Watched, as what follows
         std::uint32_t first = 0, count = 0;
-        std::uint32_t held_first = 0, held_count = 0; ///< in the last step; from find_holders() on in this one
-        std::uint32_t rays = 0;                       ///< of this step
+        std::uint32_t ray_first = 0, ray_count = 0; ///< of Watched
+        bool look = false;                          ///< not at its rays alone
+        bool held = false;                          ///< of Watched
+    };
+    struct Found {
+        double wake = 1e300; ///< the least of the watches that were looked at
+        std::uint32_t ray_first = 0, rays = 0;
     };
     /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due.
     struct Slice {
@@ -76,7 +83,9 @@ private:
         std::vector<std::uint32_t> ordered;
         std::vector<kernels::OrderedPair> pairs;
         std::vector<std::uint32_t> stale, fast, still;
-        std::size_t first = 0; ///< of due, in due_
+        std::size_t first = 0;    ///< of due, in active_
+        std::size_t segment = 0;  ///< its first
+        std::uint64_t blocks = 0; ///< looked at
     };
 
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
@@ -86,10 +95,11 @@ private:
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
                    std::optional<double> threshold, Slice& slice);
     void gather(Executor& executor);
-    void find_holders();
-    void keep(Executor& executor, bool held);
+    void settle(Executor& executor, bool held);
+    Found add_up(std::uint32_t i, std::size_t& segment, std::uint64_t& blocks) const;
+    void settle_one(std::uint32_t i, const Due& due, const Found& found, bool held);
     void close(PairState& state);
-    Watched& watched(std::uint32_t ordered) { return table_.state(ordered / 2).watched[ordered % 2]; }
+    static void forget_rays(Watched& own);
 
     struct Slack {
         double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
@@ -102,15 +112,15 @@ private:
     Scan scan_;
     std::vector<Slice> slices_;                                ///< only ever more
     std::uint32_t slice_count_ = 0;                            ///< of this step
-    std::vector<Due> due_;                                     ///< by active_
     std::vector<std::uint32_t> active_, stale_, fast_, still_; ///< ordered pairs; stale_ are places in active_
+    std::vector<Due*> stale_dues_;                             ///< of stale_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
-    std::vector<kernels::uint> host_counts_, places_;
+    std::vector<kernels::uint> host_counts_, host_firsts_, places_;
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::Look> host_looks_;
     std::vector<kernels::Holder> host_holders_;
-    std::uint64_t open_pairs_ = 0, blocks_ = 0, cast_ = 0, packed_ = 0;
+    std::uint64_t open_pairs_ = 0, cast_ = 0, packed_ = 0;
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<kernels::uint> counts_, firsts_, device_places_;
@@ -119,7 +129,7 @@ private:
     Array<kernels::Watch> watches_;
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
-    Array<kernels::Ray> rays_;
+    Array<kernels::Ray> rays_, last_rays_;
     HeldRays held_;
     Array<kernels::Hit> hits_;
 };

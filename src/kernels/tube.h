@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The neighbourhood of a ray, up to a little behind what it met: which triangle is nearest, how far all others are, and
+// whether all of them face alike.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
+
+#define LEAST_FACING 0.125f // cosine, below which triangles do not count as facing alike
+
+typedef struct {
+    float origin[3];
+    float along[3], u[3], v[3]; // unit vectors, square to each other
+    float length;
+    float back; // of it, before the ray's origin
+    float radius;
+    float box[6]; // around the tube: lower x y z, upper x y z
+} Tube;
+
+// The triangle nearest to the ray, and how far the ray is from every other; the one nearest to the whole axis, and how
+// all in the tube face. Slots: TRIANGLE_LANES * block + lane.
+typedef struct {
+    float least, second;
+    uint slot;
+    float least_of_axis;
+    uint slot_of_axis;
+    float facing; // the least cosine of the axis and an outward normal
+} Neighbours;
+
+// From `back` before the ray's origin on, to `end`: in lengths of its direction.
+DEVICE Tube tube_of(const SourceRay* ray, float back, float end, float radius) {
+    Tube tube;
+    tube.radius = radius;
+    const float* d = ray->direction;
+    // Rotations are rigid to 1e-4 only: not quite of unit length, and distances count in lengths of it.
+    const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+    for (int i = 0; i < 3; ++i) {
+        tube.origin[i] = ray->position[i] - back * d[i];
+        tube.along[i] = d[i] / size;
+    }
+    tube.length = (back + end) * size;
+    tube.back = back * size;
+    const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
+    const int least = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
+    const int next = least == 2 ? 0 : least + 1, last = next == 2 ? 0 : next + 1;
+    const float side = 1.0f / root_of(tube.along[next] * tube.along[next] + tube.along[last] * tube.along[last]);
+    tube.u[least] = 0.0f;
+    tube.u[next] = -(tube.along[last] * side);
+    tube.u[last] = tube.along[next] * side;
+    for (int i = 0; i < 3; ++i) {
+        const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
+        tube.v[i] = tube.along[j] * tube.u[k] - tube.along[k] * tube.u[j];
+        const float last_point = tube.origin[i] + tube.length * tube.along[i];
+        tube.box[i] = (tube.origin[i] < last_point ? tube.origin[i] : last_point) - radius;
+        tube.box[3 + i] = (tube.origin[i] > last_point ? tube.origin[i] : last_point) + radius;
+    }
+    return tube;
+}
+
+// How far the origin is from a triangle of the plane along the normal of its edge from a to b; c is the third corner.
+DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv) {
+    const float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
+    const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+    const float edge = (nu * au + nv * av) * scale, third = (nu * cu + nv * cv) * scale;
+    const float low = edge < third ? edge : third, high = edge > third ? edge : third;
+    return low > -high ? low : -high;
+}
+
+// No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
+// seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
+DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index,
+                          GLOBAL const Packed3* RESTRICT normals) {
+    float apart[TRIANGLE_LANES], before[TRIANGLE_LANES];
+    int nearer[TRIANGLE_LANES];
+    const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
+    const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
+    const float px = tube->u[0], py = tube->u[1], pz = tube->u[2];
+    const float qx = tube->v[0], qy = tube->v[1], qz = tube->v[2];
+    const float length = tube->length, bound = found->facing > LEAST_FACING ? tube->radius : found->second;
+    FOR_LANES(k, TRIANGLE_LANES) {
+        const float ax = block->corner[0][k] - ox, ay = block->corner[1][k] - oy, az = block->corner[2][k] - oz;
+        const float bx = block->corner[3][k] - ox, by = block->corner[4][k] - oy, bz = block->corner[5][k] - oz;
+        const float cx = block->corner[6][k] - ox, cy = block->corner[7][k] - oy, cz = block->corner[8][k] - oz;
+        const float as = (dx * ax + dy * ay) + dz * az, bs = (dx * bx + dy * by) + dz * bz;
+        const float cs = (dx * cx + dy * cy) + dz * cz;
+        const float au = (px * ax + py * ay) + pz * az, av = (qx * ax + qy * ay) + qz * az;
+        const float bu = (px * bx + py * by) + pz * bz, bv = (qx * bx + qy * by) + qz * bz;
+        const float cu = (px * cx + py * cy) + pz * cz, cv = (qx * cx + qy * cy) + qz * cz;
+        const float first_ab = as < bs ? as : bs, last_ab = as > bs ? as : bs;
+        const float first = first_ab < cs ? first_ab : cs, last = last_ab > cs ? last_ab : cs;
+        const float beyond = first - length, behind = -last;
+        float best = beyond > behind ? beyond : behind;
+        const float gap_ab = edge_gap(au, av, bu, bv, cu, cv), gap_bc = edge_gap(bu, bv, cu, cv, au, av);
+        const float gap_ca = edge_gap(cu, cv, au, av, bu, bv);
+        best = gap_ab > best ? gap_ab : best;
+        best = gap_bc > best ? gap_bc : best;
+        best = gap_ca > best ? gap_ca : best;
+        // The plane's normal, in the frame of the axis.
+        const float pu = (bv - av) * (cs - as) - (bs - as) * (cv - av);
+        const float pv = (bs - as) * (cu - au) - (bu - au) * (cs - as);
+        const float ps = (bu - au) * (cv - av) - (bv - av) * (cu - au);
+        const float n2 = (pu * pu + pv * pv) + ps * ps;
+        const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
+        const float ah = (pu * au + pv * av) + ps * as, bh = (pu * bu + pv * bv) + ps * bs;
+        const float ch = (pu * cu + pv * cv) + ps * cs, end = ps * length;
+        const float low_ab = ah < bh ? ah : bh, high_ab = ah > bh ? ah : bh;
+        const float low = low_ab < ch ? low_ab : ch, high = high_ab > ch ? high_ab : ch;
+        const float above = low - (end > 0.0f ? end : 0.0f), below = (end < 0.0f ? end : 0.0f) - high;
+        const float gap = (above > below ? above : below) * scale;
+        best = gap > best ? gap : best;
+        apart[k] = best;
+        before[k] = tube->back - last;
+        nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
+    }
+    for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
+        const uint lane = lowest_bit(left);
+        const Packed3 normal = normals[block->triangle[lane]];
+        const float facing = (dx * normal.x + dy * normal.y) + dz * normal.z;
+        found->facing = facing < found->facing ? facing : found->facing;
+        if (apart[lane] < found->least_of_axis) {
+            found->least_of_axis = apart[lane];
+            found->slot_of_axis = TRIANGLE_LANES * index + lane;
+        }
+        const float off = apart[lane] > before[lane] ? apart[lane] : before[lane];
+        if (off < found->least) {
+            found->second = found->least;
+            found->least = off;
+            found->slot = TRIANGLE_LANES * index + lane;
+        } else if (off < found->second) {
+            found->second = off;
+        }
+    }
+}
+
+// Of all triangles in the tube. faced: whether `facing` is asked for.
+DEVICE_CALL Neighbours search_tube(const Tube* tube, uint faced, GLOBAL const ShapeHeader* RESTRICT shape,
+                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
+                                   GLOBAL const Packed3* RESTRICT normals) {
+    Neighbours found;
+    found.least = found.second = found.least_of_axis = tube->radius;
+    found.slot = found.slot_of_axis = NONE;
+    found.facing = faced != 0u ? 1.0f : 0.0f;
+    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
+    ulong trail = 0u;
+    uint at = 0u;
+    uint children = children_in(tube->box, tree);
+    for (;;) {
+        while (children != 0u) {
+            const uint lane = lowest_bit(children);
+            const uint child = tree[at].child[lane];
+            children &= children - 1u;
+            if ((child & LEAF) != 0u) {
+                const uint index = child & ~LEAF;
+                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index,
+                              normals + shape->normal_first);
+            } else {
+                trail = (trail << NODE_LANES) | (ulong)children;
+                at = child;
+                children = children_in(tube->box, tree + at);
+            }
+        }
+        if (at == 0u) return found;
+        at = tree[at].parent;
+        children = (uint)(trail & 0xffffu);
+        trail >>= NODE_LANES;
+    }
+}
+
+// NOLINTEND(modernize-use-using)
