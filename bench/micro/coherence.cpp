@@ -94,8 +94,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     std::vector<kernels::Holder> holders(wide.size());
     for (std::size_t p = 0; p < wide.size(); ++p)
         holders[p] = {0, 0, 0, margins[p],
-                      static_cast<float>(batch.shape->data().diagonal
-                                         / (4 * std::sqrt(double(batch.shape->triangles().size()))))};
+                      static_cast<float>(std::min(batch.shape->data().diagonal / 128, batch.shape->data().grain))};
     seekers_.write(*device_, holders);
     const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
     for (std::size_t i = watched.size(); i-- > 0;) {
@@ -178,8 +177,8 @@ void Coherence::look_at_watches() {
 }
 
 void Coherence::write_watch_rays() {
-    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, rays_,
-                                       segment_firsts_, watch_rays_);
+    launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, rays_, segment_firsts_,
+                                       watch_rays_);
 }
 
 void Coherence::hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before,

@@ -31,7 +31,7 @@ struct StepStats {
     std::uint64_t side_tests =
         0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
     std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: new, fast or far moved ones
-    std::uint64_t pairs_asleep = 0; ///< ordered pairs of which nothing was looked at: too far, or neither body moved
+    std::uint64_t pairs_asleep = 0; ///< ordered pairs of which nothing was asked: too far, or neither body moved
     std::uint64_t walks = 0;        ///< rays followed from last step's triangle (iterative, predictive)
     std::uint64_t walks_lost = 0;   ///< of these, how many ended nowhere
     std::uint64_t walk_casts = 0;   ///< of those, how many were cast in full instead

@@ -8,7 +8,7 @@
 #define WORTH_HOLDING 0.02f // of the radius sought
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
-#define MOST_TURN 0.5f // of a direction, of the cosine by which triangles face it
+#define MOST_TURN 0.5f // of the least cosine: how far the direction may turn; so `back` moves by half of it at most
 
 // The place of a ray among those that its pair held, which ascend by slot; their number if it is not there. likely: its
 // place among those of this step, mostly the same.
@@ -67,6 +67,21 @@ DEVICE bool is_in_tube(const Held* held, const SourceRay* ray) {
     return moved_by(held, ray) < held->safe && (held->turn <= 0.0f || turned <= held->turn * held->turn);
 }
 
+// Corners of a triangle relative to the ray's origin, axes as in its frame.
+typedef struct {
+    float x[3], y[3], z[3];
+} Corners;
+
+DEVICE Corners corners_of(const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane) {
+    Corners at;
+    for (int c = 0; c < 3; ++c) {
+        at.x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
+        at.y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
+        at.z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+    }
+    return at;
+}
+
 // Where all that is near can only be left, the ray leaves it once at most (docs/certified.md): the triangle that was
 // met is all there is, if the ray's line still passes through it, and by no edge that rounding could move it across.
 DEVICE uint hit_leaving(Closest* closest, const Held* held, const RayFrame* frame,
@@ -91,7 +106,7 @@ DEVICE uint hit_leaving(Closest* closest, const Held* held, const RayFrame* fram
     return (uint)(t >= -held->back) & (uint)(t + LIMIT_TOLERANCES * shape->tolerance <= held->limit);
 }
 
-// Whether the one triangle still decides, and if so what it says.
+// Whether its triangle still decides, and if so what that says.
 DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, float reach,
                      GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
     if (held->turn > 0.0f) return hit_leaving(closest, held, frame, shape, blocks);

@@ -99,7 +99,7 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     uint waits = 0u;
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
-        if (s + 4u < count) {
+        if (s + 4u < count && segments[s + 4u].rays == 0u) {
             PREFETCH(watches, segments[s + 4u].first);
             PREFETCH(watches, segments[s + 4u].first + 5u);
             PREFETCH(watches, segments[s + 4u].first + 10u);

@@ -130,21 +130,6 @@ DEVICE void take(Closest* closest, float t, bool back, uint triangle, float tole
     consider(closest, t, back, triangle, tolerance);
 }
 
-// Corners of a triangle relative to the ray's origin, axes as in its frame.
-typedef struct {
-    float x[3], y[3], z[3];
-} Corners;
-
-DEVICE Corners corners_of(const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane) {
-    Corners at;
-    for (int c = 0; c < 3; ++c) {
-        at.x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
-        at.y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
-        at.z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
-    }
-    return at;
-}
-
 // One lane again, closely.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
                      float tolerance, const bool near) {

@@ -38,10 +38,10 @@ DEVICE Tube tube_of(const SourceRay* ray, float back, float end, float radius) {
     tube.length = (back + end) * size;
     tube.back = back * size;
     const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
-    const int least = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
-    const int next = least == 2 ? 0 : least + 1, last = next == 2 ? 0 : next + 1;
+    const int across = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
+    const int next = across == 2 ? 0 : across + 1, last = next == 2 ? 0 : next + 1;
     const float side = 1.0f / root_of(tube.along[next] * tube.along[next] + tube.along[last] * tube.along[last]);
-    tube.u[least] = 0.0f;
+    tube.u[across] = 0.0f;
     tube.u[next] = -(tube.along[last] * side);
     tube.u[last] = tube.along[next] * side;
     for (int i = 0; i < 3; ++i) {
@@ -67,7 +67,7 @@ DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv
 // seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
 DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index,
                           GLOBAL const Packed3* RESTRICT normals) {
-    float apart[TRIANGLE_LANES], before[TRIANGLE_LANES];
+    float apart[TRIANGLE_LANES], off_start[TRIANGLE_LANES];
     int nearer[TRIANGLE_LANES];
     const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
     const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
@@ -106,7 +106,7 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
         const float gap = (above > below ? above : below) * scale;
         best = gap > best ? gap : best;
         apart[k] = best;
-        before[k] = tube->back - last;
+        off_start[k] = tube->back - last;
         nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
     }
     for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
@@ -118,7 +118,7 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
             found->least_of_axis = apart[lane];
             found->slot_of_axis = TRIANGLE_LANES * index + lane;
         }
-        const float off = apart[lane] > before[lane] ? apart[lane] : before[lane];
+        const float off = apart[lane] > off_start[lane] ? apart[lane] : off_start[lane];
         if (off < found->least) {
             found->second = found->least;
             found->least = off;

@@ -133,7 +133,7 @@ WIRE_SIZE(Watch, 12);
 
 // Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
 // from where on a certificate given now counts. margin: metres of rounding that it must exceed. rays: not 0 where none
-// of the pair's watches is due; then its rays are as many of the last step's, from `first` on.
+// of its watches is due; then its rays are as many of the last step's, from `first` on.
 typedef struct {
     uint pair;
     uint first, count;
@@ -155,14 +155,15 @@ typedef struct {
 WIRE_SIZE(Look, 24);
 
 // A ray that one triangle decides, or none, while no point of it has moved by `safe`. turn: not 0 where the triangles
-// around it face alike, so that the ray meets one of them at most while its direction has changed by no more.
+// around it can only be left, so that it meets one of them at most; then its direction may change by no more than that.
+// Lengths along the ray count in lengths of its direction.
 typedef struct {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near
     float safe;        // metres; 0: it is cast in every step
-    float limit;       // metres along the ray: where its tube ends; of one without, steps until it is sought again
-    float back;        // metres before the ray's origin, where its tube begins
-    float turn;        // in lengths of the direction
+    float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
+    float back;        // before the ray's origin: where its tube begins
+    float turn;        // length of the change
     float position[3]; // when the tube was sought
     float direction[3];
 } Held;

@@ -12,7 +12,8 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint32_t slice_size = 128; // pairs
+constexpr std::uint32_t slice_size = 128;                              // pairs
+constexpr std::uint32_t segment_rays = SEGMENT_WATCHES * VERTEX_LANES; // as many as its watches could have
 static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::Look::casting), "a bit for each watch of a segment");
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
@@ -263,7 +264,9 @@ void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
         slice.segment = host_segments_.size();
         auto i = static_cast<std::uint32_t>(slice.first);
         for (const Due& due : slice.due) {
-            if (!due.look) host_segments_.push_back({i, due.ray_first, 0, 0, 0, 0, due.ray_count});
+            for (std::uint32_t done = 0; !due.look && done < due.ray_count; done += segment_rays)
+                host_segments_.push_back(
+                    {i, due.ray_first + done, 0, 0, 0, 0, std::min(segment_rays, due.ray_count - done)});
             for (std::uint32_t done = 0; due.look && done < due.count; done += SEGMENT_WATCHES)
                 host_segments_.push_back({i, due.first + done, std::min(SEGMENT_WATCHES, due.count - done), due.now,
                                           due.from, due.margin, 0});

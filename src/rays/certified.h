@@ -51,15 +51,15 @@ private:
         double wake = 0;    ///< no watch need be looked at before the clock reaches this
         double expiry = -1; ///< a new list is due when the clock reaches this; below 0: at once
         std::uint32_t first = 0, count = 0, capacity = 0; ///< of watches_
-        std::uint32_t ray_first = 0, ray_count = 0; ///< of the last step; they are cast in each in which the pair moves
-        bool held = false;                          ///< what was found out about them lies there, too
+        std::uint32_t ray_first = 0, ray_count = 0;       ///< of the last step; decided in each in which the pair moves
+        bool held = false;                                ///< what was found out about them lies there, too
     };
     struct PairState {
         PairPlace reference;
         double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
         Watched watched[2];
     };
-    /// A direction that is due, and what its look finds.
+    /// A direction that is due.
     struct Due {
         Watched* own = nullptr;
         /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about
@@ -70,11 +70,11 @@ private:
         double expiry = 0;            ///< of Watched, as what follows
         std::uint32_t first = 0, count = 0;
         std::uint32_t ray_first = 0, ray_count = 0; ///< of Watched
-        bool look = false;                          ///< not at its rays alone
+        bool look = false;                          ///< at its watches; else its rays are repeated
         bool held = false;                          ///< of Watched
     };
     struct Found {
-        double wake = 1e300; ///< the least of the watches that were looked at
+        double wake = 1e300; ///< the least of its watches
         std::uint32_t ray_first = 0, rays = 0;
     };
     /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due.

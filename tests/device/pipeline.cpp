@@ -35,13 +35,13 @@ std::vector<Pair> whole_pairs(std::size_t first, std::size_t last) {
     return pairs;
 }
 
-// Three steps: where the bodies are, a little farther, and so far that what was kept has run out.
+// Four steps: where the bodies are, hardly farther, a little farther, and so far that what was kept has run out.
 template <class Step>
-void three_steps(const Work& work, Step step) {
+void four_steps(const Work& work, Step step) {
     Executor executor(1);
     std::vector<PlacedBody> bodies = work.bodies;
     Motion motion;
-    for (const double by : {0.0, 0.004, 0.1}) {
+    for (const double by : {0.0, 1e-6, 0.004, 0.1}) {
         for (std::size_t i = 0; i < bodies.size(); i += 2) {
             bodies[i].pose.translation.x += by;
             bodies[i].centred.translation.x += by;
@@ -51,14 +51,14 @@ void three_steps(const Work& work, Step step) {
     }
 }
 
-// A first look, a look at blocks that woke up, and new lists in the place of old ones.
+// A first look, rays repeated, a look at blocks that woke up, and new lists in the place of old ones.
 void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
                    std::size_t last, Outcome& outcome) {
     const std::vector<Pair> pairs = whole_pairs(first, last);
     CertifiedRays certified;
     Gather gather;
     Array<kernels::Hit> hits;
-    three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
+    four_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
         certified.cast(tracing, executor, Caster::bvh, store);
         std::vector<kernels::LocalContact> contacts;
@@ -81,7 +81,7 @@ void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& w
         settings.displacement_threshold = 0.05;
         CoherentRays coherent;
         Gather gather;
-        three_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool) {
+        four_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool) {
             coherent.follow(tracing, executor, store, bodies, pairs, motion, settings);
             std::vector<kernels::LocalContact> contacts;
             gather.run(tracing, store.arrays(), coherent.pairs(), coherent.rays(), coherent.hits(), contacts);

@@ -230,6 +230,44 @@ TEST(certified, bodies_that_stand_still) {
     EXPECT_GT(free_contacts, 1000u);
 }
 
+// Bodies that tremble by less than any block could wake up for: their rays are those of the step before, and no vertex
+// is asked.
+TEST(certified, rays_that_are_repeated) {
+    Counts counts;
+    std::uint64_t repeated = 0, contacts = 0;
+    for (std::uint64_t i = 0; i < 20; ++i) {
+        Random random(first_seed() + 850000 + i);
+        Triplet triplet(some_settings(random), 0.05, "repeated " + std::to_string(i));
+        const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (int k = 0; k < 10; ++k) shapes.push_back(stock[random.below(static_cast<std::uint32_t>(stock.size()))]);
+        const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
+        for (std::size_t b = 0; b < shapes.size(); ++b)
+            triplet.each([&](Scene& scene) { scene.add(shapes[b], homes[b]); });
+        for (int step = 0; step < 60; ++step) {
+            const double far = step % 20 == 19 ? 1e-2 : 1e-7; // what is kept runs out now and then
+            for (BodyId b = 0; b < shapes.size(); ++b) {
+                if (random.below(20) == 0) continue;
+                Pose pose = homes[b];
+                pose.translation = pose.translation + far * random.in_ball();
+                triplet.each([&](Scene& scene) { scene.set_pose(b, pose); });
+            }
+            triplet.step(counts);
+            triplet.each([&](Scene& scene) {
+                if (scene.settings().method != Method::certified || scene.stats().vertices > 0) return;
+                repeated += scene.stats().rays > 0 ? 1 : 0;
+                contacts += scene.contacts().size();
+            });
+        }
+        ++counts.episodes;
+    }
+    report("repeated rays", counts, 1e4);
+    std::printf("[ counts   ] %llu steps of repeated rays, %llu contacts in them\n",
+                static_cast<unsigned long long>(repeated), static_cast<unsigned long long>(contacts));
+    EXPECT_GT(repeated, 200u);
+    EXPECT_GT(contacts, 1000u);
+}
+
 // Shapes that go take others to new places in the store while pairs of those are asleep.
 TEST(certified, packed_shapes) {
     Counts counts;

@@ -95,10 +95,12 @@ void examine_alone(const kernels::Held& held, const ShapeData& target, const Sol
 
 // Of one whose triangles face alike: whether they do, by no less than what the direction may still change.
 void examine_leaving(const kernels::Held& held, const ShapeData& target, const Solid& solid,
-                     std::span<const Solid> alone, double radius, Counts& counts) {
+                     std::span<const Solid> alone, double radius, double margin, Counts& counts) {
     EXPECT_NE(target.header.outward, 0u) << "of what may be wound twice, two triangles can be left";
     const Vec3 p = vec(held.position), d = vec(held.direction);
     ++counts.leaving;
+    counts.most_over =
+        std::max(counts.most_over, (double(held.safe) + 0.5 * double(held.back) + margin - radius) / margin);
     for (std::size_t i = 0; i < alone.size(); ++i) {
         if (length(solid.face_normals[i]) < 0.5) continue;
         if (distance_to_segment(alone[i], p - double(held.back) * d, p + double(held.limit) * d, radius) < radius
@@ -129,7 +131,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         ++counts.tubes;
         const Vec3 from = vec(ray.position), to = from + double(held.limit) * vec(ray.direction);
         if (held.turn > 0)
-            examine_leaving(held, target, solid, alone, radius, counts);
+            examine_leaving(held, target, solid, alone, radius, margin, counts);
         else
             examine_alone(held, target, solid, alone, radius, margin, counts);
 
