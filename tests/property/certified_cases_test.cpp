@@ -239,8 +239,8 @@ TEST(certified, rays_that_are_repeated) {
         Random random(first_seed() + 850000 + i);
         Triplet triplet(some_settings(random), 0.05, "repeated " + std::to_string(i));
         const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
-        std::vector<std::shared_ptr<const Shape>> shapes;
-        for (int k = 0; k < 10; ++k) shapes.push_back(stock[random.below(static_cast<std::uint32_t>(stock.size()))]);
+        std::vector<std::shared_ptr<const Shape>> shapes(10);
+        for (auto& shape : shapes) shape = stock[random.below(static_cast<std::uint32_t>(stock.size()))];
         const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
         for (std::size_t b = 0; b < shapes.size(); ++b)
             triplet.each([&](Scene& scene) { scene.add(shapes[b], homes[b]); });
