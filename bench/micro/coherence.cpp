@@ -4,6 +4,7 @@
 #include "bench/micro/copy.h"
 #include "device/cpu/device.h"
 #include "pairs/rounding.h"
+#include "rays/held.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
     std::vector<kernels::Holder> holders(wide.size());
     for (std::size_t p = 0; p < wide.size(); ++p)
         holders[p] = {0, 0, 0, margins[p],
-                      static_cast<float>(std::min(batch.shape->data().diagonal / 128, batch.shape->data().grain))};
+                      static_cast<float>(HeldRays::tube_radius(batch.shape->data().diagonal, batch.shape->data()))};
     seekers_.write(*device_, holders);
     const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
     for (std::size_t i = watched.size(); i-- > 0;) {
@@ -176,6 +177,7 @@ void Coherence::look_at_watches() {
                                       shapes.clearances, segments_, watches_, looks_, segment_rays_);
 }
 
+// None is repeated, so that any rays will do as those of the last step.
 void Coherence::write_watch_rays() {
     launch<KernelId::write_watch_rays>(*device_, segments_.size(), segments_, watches_, looks_, rays_, segment_firsts_,
                                        watch_rays_);

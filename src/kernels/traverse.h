@@ -110,31 +110,55 @@ DEVICE uint children_in(const float* box, GLOBAL const Node* RESTRICT node) {
 
 // Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
+typedef struct {
+    ulong trail;
+    uint at, children; // a node, and those of its children still to visit, a bit each
+} Descent;
+
+DEVICE Descent begin_descent(uint children) {
+    Descent way;
+    way.trail = 0u;
+    way.at = 0u;
+    way.children = children;
+    return way;
+}
+
+// The next child, a node or a leaf, taken from those to visit.
+DEVICE uint next_child(Descent* way, GLOBAL const Node* RESTRICT tree) {
+    const uint child = tree[way->at].child[lowest_bit(way->children)];
+    way->children &= way->children - 1u;
+    return child;
+}
+
+DEVICE void go_down(Descent* way, uint child, uint children) {
+    way->trail = (way->trail << NODE_LANES) | (ulong)way->children;
+    way->at = child;
+    way->children = children;
+}
+
+DEVICE void go_up(Descent* way, GLOBAL const Node* RESTRICT tree) {
+    way->at = tree[way->at].parent;
+    way->children = (uint)(way->trail & 0xffffu);
+    way->trail >>= NODE_LANES;
+}
+
 DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
                                  GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
-    ulong trail = 0u;
-    uint at = 0u;
-    uint children = hit_children(ray, tree, closest.limit, shape->tolerance);
+    Descent way = begin_descent(hit_children(ray, tree, closest.limit, shape->tolerance));
     for (;;) {
-        while (children != 0u) {
-            const uint lane = lowest_bit(children);
-            const uint child = tree[at].child[lane];
-            children &= children - 1u;
+        while (way.children != 0u) {
+            const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
                 GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + (child & ~LEAF);
                 const uint lanes = hit_block(&closest, ray, block, shape->tolerance, true);
                 hit_lanes(&closest, ray, block, lanes, shape->tolerance, true);
             } else {
-                trail = (trail << NODE_LANES) | (ulong)children;
-                at = child;
-                children = hit_children(ray, tree + at, closest.limit, shape->tolerance);
+                go_down(&way, child, hit_children(ray, tree + child, closest.limit, shape->tolerance));
             }
         }
-        if (at == 0u) return closest;
-        at = tree[at].parent;
-        children = (uint)(trail & 0xffffu);
-        trail >>= NODE_LANES;
+        if (way.at == 0u) return closest;
+        go_up(&way, tree);
     }
 }

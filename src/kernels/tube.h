@@ -111,9 +111,11 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
     }
     for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
         const uint lane = lowest_bit(left);
-        const Packed3 normal = normals[block->triangle[lane]];
-        const float facing = (dx * normal.x + dy * normal.y) + dz * normal.z;
-        found->facing = facing < found->facing ? facing : found->facing;
+        if (found->facing > LEAST_FACING) {
+            const Packed3 normal = normals[block->triangle[lane]];
+            const float facing = (dx * normal.x + dy * normal.y) + dz * normal.z;
+            found->facing = facing < found->facing ? facing : found->facing;
+        }
         if (apart[lane] < found->least_of_axis) {
             found->least_of_axis = apart[lane];
             found->slot_of_axis = TRIANGLE_LANES * index + lane;
@@ -138,29 +140,20 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, uint faced, GLOBAL const Sh
     found.slot = found.slot_of_axis = NONE;
     found.facing = faced != 0u ? 1.0f : 0.0f;
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
-    ulong trail = 0u;
-    uint at = 0u;
-    uint children = children_in(tube->box, tree);
+    Descent way = begin_descent(children_in(tube->box, tree));
     for (;;) {
-        while (children != 0u) {
-            const uint lane = lowest_bit(children);
-            const uint child = tree[at].child[lane];
-            children &= children - 1u;
+        while (way.children != 0u) {
+            const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
                 const uint index = child & ~LEAF;
                 nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index,
                               normals + shape->normal_first);
             } else {
-                trail = (trail << NODE_LANES) | (ulong)children;
-                at = child;
-                children = children_in(tube->box, tree + at);
+                go_down(&way, child, children_in(tube->box, tree + child));
             }
         }
-        if (at == 0u) return found;
-        at = tree[at].parent;
-        children = (uint)(trail & 0xffffu);
-        trail >>= NODE_LANES;
+        if (way.at == 0u) return found;
+        go_up(&way, tree);
     }
 }
-
 // NOLINTEND(modernize-use-using)

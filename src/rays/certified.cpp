@@ -34,12 +34,6 @@ constexpr double trembling = 0.001;
 // How fast a pair may be for tubes to be sought, of their radius a step.
 constexpr double slow = 0.15;
 
-// How wide a tube is sought around a ray: within the length of a triangle the surface mostly faces one way, farther off
-// there are only more triangles to be asked.
-double tube_radius(double size, const PlacedBody& target) {
-    return std::min(size / 128, target.shape->data().grain);
-}
-
 // Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
 double longest_clock(const PlacedBody& target) {
     return 8 * target.shape->data().diagonal;
@@ -82,7 +76,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
     std::array<double, 2> moved{0, 0};
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
-    bool look[2] = {}, list[2] = {}, due[2] = {};
+    bool look[2] = {}, list[2] = {}, asks[2] = {};
     if (table_.hot(i).still)
         for (Watched& own : state.watched) forget_rays(own);
     double slack = 1e300;
@@ -92,11 +86,11 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
         list[d] = fresh || !(clock < own.expiry);
         look[d] = list[d] || !(clock < own.wake);
-        due[d] = look[d] || own.ray_count > 0;
+        asks[d] = look[d] || own.ray_count > 0;
         if (!look[d]) slack = std::min(slack, own.ray_count > 0 ? 0 : std::min(own.wake, own.expiry) - clock);
     }
     table_.hot(i) = {slack, true, false};
-    if (!(due[0] || due[1])) return;
+    if (!(asks[0] || asks[1])) return;
 
     if (list[0] || list[1]) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
     const bool looks = look[0] || look[1];
@@ -113,23 +107,23 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
             slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
         }
-        if (!due[d]) continue;
+        if (!asks[d]) continue;
         slice.ordered.push_back(2 * i + d);
-        Due& found = slice.due.emplace_back();
-        found.own = &own;
-        found.look = look[d];
-        found.now = static_cast<float>(own.clock + moved[d]);
-        found.from = static_cast<float>(own.clock - moved[d]);
-        found.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
-        const double radius = tube_radius(size, *body[1 - d]);
-        found.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-        found.longest = longest_clock(*body[1 - d]);
-        found.expiry = own.expiry;
-        found.first = own.first;
-        found.count = own.count;
-        found.ray_first = own.ray_first;
-        found.ray_count = own.ray_count;
-        found.held = own.held;
+        Due& due = slice.due.emplace_back();
+        due.own = &own;
+        due.look = look[d];
+        due.now = static_cast<float>(own.clock + moved[d]);
+        due.from = static_cast<float>(own.clock - moved[d]);
+        due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
+        const double radius = HeldRays::tube_radius(size, body[1 - d]->shape->data());
+        due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+        due.longest = longest_clock(*body[1 - d]);
+        due.expiry = own.expiry;
+        due.first = own.first;
+        due.count = own.count;
+        due.ray_first = own.ray_first;
+        due.ray_count = own.ray_count;
+        due.held = own.held;
         order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
     }
 }
@@ -181,17 +175,13 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
 // What the slices found, in the order of the pairs.
 void CertifiedRays::gather(Executor& executor) {
     stale_.clear();
-    stale_dues_.clear();
     fast_.clear();
     still_.clear();
     std::size_t due_count = 0;
     for (Slice& slice : std::span(slices_).first(slice_count_)) {
         slice.first = due_count;
         due_count += slice.due.size();
-        for (const std::uint32_t i : slice.stale) {
-            stale_.push_back(static_cast<std::uint32_t>(slice.first + i));
-            stale_dues_.push_back(&slice.due[i]);
-        }
+        for (const std::uint32_t i : slice.stale) stale_.push_back({&slice.due[i], slice.first + i});
         for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).lists) close(table_.state(i));
             table_.hot(i) = {};
@@ -219,8 +209,8 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     stale_margins_.resize(stale_.size());
     horizons_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        const Due& due = *stale_dues_[i];
-        wide_pairs_[i] = host_pairs_[stale_[i]];
+        const Due& due = *stale_[i].due;
+        wide_pairs_[i] = host_pairs_[stale_[i].at];
         stale_margins_[i] = due.margin;
         horizons_[i] = static_cast<float>(due.expiry) + due.margin;
         widen(wide_pairs_[i], horizons_[i]);
@@ -235,7 +225,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        Due& due = *stale_dues_[i];
+        Due& due = *stale_[i].due;
         Watched& own = *due.own;
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
@@ -301,7 +291,8 @@ void CertifiedRays::settle(Executor& executor, bool held) {
             auto i = static_cast<std::uint32_t>(slice.first);
             slice.blocks = 0;
             for (const Due& due : slice.due) {
-                const Found found = add_up(i, segment, slice.blocks);
+                const Found found = add_up(i, segment);
+                slice.blocks += found.blocks;
                 settle_one(i++, due, found, held);
             }
         }
@@ -309,14 +300,14 @@ void CertifiedRays::settle(Executor& executor, bool held) {
 }
 
 // What was found in the segments of the i-th direction, of which the next is `segment`; it goes on to what follows.
-CertifiedRays::Found CertifiedRays::add_up(std::uint32_t i, std::size_t& segment, std::uint64_t& blocks) const {
+CertifiedRays::Found CertifiedRays::add_up(std::uint32_t i, std::size_t& segment) const {
     Found found;
     if (segment < host_segments_.size()) found.ray_first = host_firsts_[segment];
     for (; segment < host_segments_.size() && host_segments_[segment].pair == i; ++segment) {
         const kernels::Look& look = host_looks_[segment];
         found.wake = std::min(found.wake, double(look.wake));
         found.rays += look.rays;
-        blocks += look.blocks;
+        found.blocks += look.blocks;
     }
     return found;
 }

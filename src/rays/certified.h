@@ -76,6 +76,12 @@ private:
     struct Found {
         double wake = 1e300; ///< the least of its watches
         std::uint32_t ray_first = 0, rays = 0;
+        std::uint32_t blocks = 0; ///< looked at
+    };
+    /// A direction that needs a new list, and its place in active_.
+    struct Stale {
+        Due* due;
+        std::size_t at;
     };
     /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due.
     struct Slice {
@@ -96,7 +102,7 @@ private:
                    std::optional<double> threshold, Slice& slice);
     void gather(Executor& executor);
     void settle(Executor& executor, bool held);
-    Found add_up(std::uint32_t i, std::size_t& segment, std::uint64_t& blocks) const;
+    Found add_up(std::uint32_t i, std::size_t& segment) const;
     void settle_one(std::uint32_t i, const Due& due, const Found& found, bool held);
     void close(PairState& state);
     static void forget_rays(Watched& own);
@@ -110,10 +116,10 @@ private:
     PairTable<PairState, Slack> table_;
     RangePool pool_;
     Scan scan_;
-    std::vector<Slice> slices_;                                ///< only ever more
-    std::uint32_t slice_count_ = 0;                            ///< of this step
-    std::vector<std::uint32_t> active_, stale_, fast_, still_; ///< ordered pairs; stale_ are places in active_
-    std::vector<Due*> stale_dues_;                             ///< of stale_
+    std::vector<Slice> slices_;     ///< only ever more
+    std::uint32_t slice_count_ = 0; ///< of this step
+    std::vector<Stale> stale_;
+    std::vector<std::uint32_t> active_, fast_, still_; ///< ordered pairs
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
     std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
     std::vector<kernels::uint> host_counts_, host_firsts_, places_;
