@@ -20,6 +20,13 @@ using namespace raycontact::reference;
 
 namespace {
 
+std::vector<std::shared_ptr<const Shape>> some_shapes(Kind kind, std::size_t count, Random& random) {
+    const auto& stock = crowd_shapes(kind, 1);
+    std::vector<std::shared_ptr<const Shape>> shapes(count);
+    for (auto& shape : shapes) shape = stock[random.below(static_cast<std::uint32_t>(stock.size()))];
+    return shapes;
+}
+
 // One vertex straight at one face, where nothing is left over: the body flies or swings, or the face does, slowly or
 // fast, as far as the vertex just goes in, and back. Distances to boxes are exact, so that a clock slow by a hundredth
 // would be caught.
@@ -168,12 +175,7 @@ TEST(certified, bodies_that_stand_still) {
         if (large) settings.threads = 2;
         Triplet triplet(settings, thresholds[random.below(std::size(thresholds))],
                         "standing still " + std::to_string(i));
-        const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
-        std::vector<std::shared_ptr<const Shape>> shapes;
-        const std::size_t most = large ? 40 : 16;
-        shapes.reserve(most);
-        for (std::size_t k = 0; k < most; ++k)
-            shapes.push_back(stock[random.below(static_cast<std::uint32_t>(stock.size()))]);
+        const auto shapes = some_shapes(i % 4 == 3 ? Kind::open : Kind::concave, large ? 40 : 16, random);
         const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
         std::vector<std::pair<BodyId, Mover>> bodies;
         std::size_t next = 0;
@@ -238,9 +240,7 @@ TEST(certified, rays_that_are_repeated) {
     for (std::uint64_t i = 0; i < 20; ++i) {
         Random random(first_seed() + 850000 + i);
         Triplet triplet(some_settings(random), 0.05, "repeated " + std::to_string(i));
-        const auto& stock = crowd_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 1);
-        std::vector<std::shared_ptr<const Shape>> shapes(10);
-        for (auto& shape : shapes) shape = stock[random.below(static_cast<std::uint32_t>(stock.size()))];
+        const auto shapes = some_shapes(i % 4 == 3 ? Kind::open : Kind::concave, 10, random);
         const std::vector<Pose> homes = touching_poses(shapes, 0.1, random);
         for (std::size_t b = 0; b < shapes.size(); ++b)
             triplet.each([&](Scene& scene) { scene.add(shapes[b], homes[b]); });
