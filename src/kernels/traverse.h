@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two casters (paper section 5.1). Both give the same hit: the boxes hold every one that counts.
+// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 DEVICE Closest nothing_hit(float reach, float tolerance) {
     Closest closest;
@@ -162,3 +163,4 @@ DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const 
         go_up(&way, tree);
     }
 }
+// NOLINTEND(modernize-use-using)
