@@ -6,8 +6,6 @@
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
-#define LIMIT_TOLERANCES 4.0f
-#define EDGE_TOLERANCES 4.0f
 #define MOST_TURN 0.5f // of the least cosine: how far the direction may turn; so `back` moves by half of it at most
 
 // The place of a ray among those that its pair held, which ascend by slot; their number if it is not there. likely: its
@@ -43,78 +41,6 @@ DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
 DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot, uint ray) {
     const uint at = find_held(before + holder->first, holder->count, slot, ray - holder->now_first);
     return at < holder->count ? before[holder->first + at] : nothing_held(slot);
-}
-
-// How far a point of the ray, up to its limit, has moved at most: as far as either end.
-DEVICE float moved_by(const Held* held, const SourceRay* ray) {
-    float start = 0.0f, end = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        const float shift = ray->position[i] - held->position[i];
-        const float far = shift + held->limit * (ray->direction[i] - held->direction[i]);
-        start += shift * shift;
-        end += far * far;
-    }
-    return root_of(start > end ? start : end);
-}
-
-// Whether no part of the ray has left its tube, and if that takes it, whether triangles there still face alike.
-DEVICE bool is_in_tube(const Held* held, const SourceRay* ray) {
-    float turned = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        const float change = ray->direction[i] - held->direction[i];
-        turned += change * change;
-    }
-    return moved_by(held, ray) < held->safe && (held->turn <= 0.0f || turned <= held->turn * held->turn);
-}
-
-// Corners of a triangle relative to the ray's origin, axes as in its frame.
-typedef struct {
-    float x[3], y[3], z[3];
-} Corners;
-
-DEVICE Corners corners_of(const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane) {
-    Corners at;
-    for (int c = 0; c < 3; ++c) {
-        at.x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
-        at.y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
-        at.z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
-    }
-    return at;
-}
-
-// Where all that is near can only be left, the ray leaves it once at most (docs/certified.md): the triangle that was
-// met is all there is, if the ray's line still passes through it, and by no edge that rounding could move it across.
-DEVICE uint hit_leaving(Closest* closest, const Held* held, const RayFrame* frame,
-                        GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES;
-    const uint lane = held->triangle % TRIANGLE_LANES;
-    const Corners at = corners_of(frame, block, lane);
-    const Edges e = edges_of(at.x[0], at.y[0], at.z[0], at.x[1], at.y[1], at.z[1], at.x[2], at.y[2], at.z[2],
-                             frame->shear[0], frame->shear[1]);
-    float x[3], y[3];
-    for (int c = 0; c < 3; ++c) {
-        x[c] = at.x[c] - frame->shear[0] * at.z[c];
-        y[c] = at.y[c] - frame->shear[1] * at.z[c];
-    }
-    const float near = EDGE_TOLERANCES * shape->tolerance;
-    if (!(e.u < -near * (magnitude_of(x[2] - x[1]) + magnitude_of(y[2] - y[1]))
-          && e.v < -near * (magnitude_of(x[0] - x[2]) + magnitude_of(y[0] - y[2]))
-          && e.w < -near * (magnitude_of(x[1] - x[0]) + magnitude_of(y[1] - y[0]))))
-        return 0u;
-    const float t = distance_of(e, at.z[0], at.z[1], at.z[2], frame->shear[2]);
-    take(closest, t, true, block->triangle[lane], shape->tolerance);
-    return (uint)(t >= -held->back) & (uint)(t + LIMIT_TOLERANCES * shape->tolerance <= held->limit);
-}
-
-// Whether its triangle still decides, and if so what that says.
-DEVICE uint hit_held(Closest* closest, const Held* held, const RayFrame* frame, float reach,
-                     GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    if (held->turn > 0.0f) return hit_leaving(closest, held, frame, shape, blocks);
-    if (held->triangle != NONE)
-        hit_lane(closest, frame, blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES,
-                 held->triangle % TRIANGLE_LANES, shape->tolerance, false);
-    const float met = closest->back < closest->front ? closest->back : closest->front;
-    return (uint)(met + LIMIT_TOLERANCES * shape->tolerance <= held->limit) | (uint)(held->limit >= reach);
 }
 
 // What is known of a ray from now on, where it had to be cast.
@@ -174,6 +100,29 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
     waiting->count = 0u;
 }
 
+// The rays of a group whose tube does not decide them any more are cast.
+DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Holder* RESTRICT holders,
+                              GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
+                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
+                              GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
+    fetch_triangles(group, shapes, blocks, normals);
+    ask_held(group);
+    for (uint r = 0u; r < group->count; ++r) {
+        const uint at = group->at[r];
+        casts[at] = group->is_known[r] ^ 1u;
+        if (group->is_known[r] != 0u) {
+            hits[at] = held_hit(group, r, shapes, normals);
+            continue;
+        }
+        const SourceRay source = held_ray(group, r);
+        add_ray(waiting, at, &source, source.reach, group->pair[r], group->target[r], shapes);
+        // A group of one is cast by the caller, so that all rays are cast in one place there.
+        if (RAYS_IN_GROUP > 1 && is_full(waiting))
+            cast_waiting(waiting, holders, shapes, nodes, blocks, normals, after, hits);
+    }
+    group->count = 0u;
+}
+
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
 // step and now, those of idle pairs left as they are; casts: 1 for each ray cast in full.
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
@@ -183,7 +132,9 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                       GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
                       GLOBAL uint* RESTRICT casts) {
     Group waiting;
+    HeldGroup group;
     clear_group(&waiting);
+    clear_held(&group);
     FOR_EACH(i, count) {
         const Ray ray = rays[i];
         if (i + 8u < count) {
@@ -192,29 +143,30 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         }
         GLOBAL const Holder* holder = holders + ray.pair;
         const uint target = pairs[ray.pair].target;
-        GLOBAL const ShapeHeader* shape = shapes + target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
-        bool known = false;
+        bool held = false;
         if (!is_idle(holder)) {
-            Held held = held_before(holder, before, ray.slot, i);
-            if (inside && held.safe > 0.0f && is_in_tube(&held, &source)) {
-                const RayFrame frame = frame_ray(source.position, source.direction);
-                Closest own = nothing_hit(source.reach, shape->tolerance);
-                known = hit_held(&own, &held, &frame, source.reach, shape, blocks) != 0u;
-                if (known) hits[i] = decide(CASTER_BVH, &source, &own, shape, nodes, blocks, normals);
-            }
-            after[i] = held;
+            const Held known = held_before(holder, before, ray.slot, i);
+            after[i] = known;
+            held = inside && known.safe > 0.0f;
+            if (held) add_held(&group, i, &source, &known, ray.pair, target, shapes + target, blocks);
         }
-        // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
-        const bool cast = !known && inside;
-        casts[i] = (uint)cast;
-        if (cast)
-            add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
-        else if (!known)
-            hits[i] = no_contact();
+        if (!held) {
+            // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
+            casts[i] = (uint)inside;
+            if (inside)
+                add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
+            else
+                hits[i] = no_contact();
+        }
+        if (is_full_of_held(&group))
+            decide_held(&group, &waiting, holders, shapes, nodes, blocks, normals, after, hits, casts);
         if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
-    if (RAYS_IN_GROUP > 1) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
+    if (RAYS_IN_GROUP > 1) {
+        decide_held(&group, &waiting, holders, shapes, nodes, blocks, normals, after, hits, casts);
+        cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
+    }
 }
 // NOLINTEND(modernize-use-using)

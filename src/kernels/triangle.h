@@ -102,17 +102,19 @@ typedef struct {
     float u, v, w;
 } Edges;
 
-// Corners relative to the ray's origin, axes as in its frame.
-DEVICE Edges edges_of(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz,
-                      float shear_x, float shear_y) {
-    const float x0 = ax - shear_x * az, y0 = ay - shear_y * az;
-    const float x1 = bx - shear_x * bz, y1 = by - shear_y * bz;
-    const float x2 = cx - shear_x * cz, y2 = cy - shear_y * cz;
+DEVICE Edges edges_of_sheared(float x0, float y0, float x1, float y1, float x2, float y2) {
     Edges edges;
     edges.u = cross_accurate(x2, y1, y2, x1);
     edges.v = cross_accurate(x0, y2, y0, x2);
     edges.w = cross_accurate(x1, y0, y1, x0);
     return edges;
+}
+
+// Corners relative to the ray's origin, axes as in its frame.
+DEVICE Edges edges_of(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz,
+                      float shear_x, float shear_y) {
+    return edges_of_sheared(ax - shear_x * az, ay - shear_y * az, bx - shear_x * bz, by - shear_y * bz,
+                            cx - shear_x * cz, cy - shear_y * cz);
 }
 
 DEVICE float area_of(const Edges edges) {

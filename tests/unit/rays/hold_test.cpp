@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <gtest/gtest.h>
+#include <optional>
 
 namespace raycontact {
 namespace {
@@ -74,6 +75,7 @@ struct Counts {
     double said = 0, true_ones = 0;
     // Tubes whose triangles face alike, what they decided, and triangles in them that do not.
     std::uint64_t leaving = 0, left = 0, missed = 0, askew = 0;
+    std::uint64_t aimed = 0, aimed_known = 0; ///< rays in them at the limits of what is known
 };
 
 // Of a tube that one triangle decides: how wide it could have been.
@@ -109,6 +111,62 @@ void examine_leaving(const kernels::Held& held, const ShapeData& target, const S
     }
 }
 
+// What is said of a ray that has moved, if it is known; in some lane of a group.
+std::optional<kernels::Hit> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
+                                const ShapeData& target, std::uint32_t lane) {
+    kernels::prototype::HeldGroup group;
+    kernels::prototype::clear_held(&group);
+    for (std::uint32_t i = 0; i <= lane; ++i)
+        kernels::prototype::add_held(&group, 0, &moved, &held, 0, 0, &target.header, target.triangle_blocks.data());
+    kernels::prototype::fetch_triangles(&group, &target.header, target.triangle_blocks.data(),
+                                        target.face_normals.data());
+    kernels::prototype::ask_held(&group);
+    if (group.is_known[lane] == 0) return std::nullopt;
+    return kernels::prototype::held_hit(&group, lane, &target.header, target.face_normals.data());
+}
+
+kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
+    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
+    const kernels::prototype::Closest met = kernels::prototype::find_closest(
+        0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
+    return kernels::prototype::decide(CASTER_BVH, &ray, &met, &target.header, target.nodes.data(),
+                                      target.triangle_blocks.data(), target.face_normals.data());
+}
+
+bool differ(const kernels::Hit& said, const kernels::Hit& truth) {
+    return said.triangle != truth.triangle || said.distance != truth.distance || said.facing != truth.facing
+           || said.sides != truth.sides;
+}
+
+// A ray of a leaving tube, moved so that some tolerances decide: through a point that near one of the triangle's edges,
+// or so that it meets it that near one of the tube's ends, or turned by nearly all that is allowed.
+kernels::prototype::SourceRay aim(const kernels::Held& held, const ShapeData& target, double reach, Random& random) {
+    const kernels::TriangleBlock& block = target.triangle_blocks[held.triangle / TRIANGLE_LANES];
+    const std::uint32_t lane = held.triangle % TRIANGLE_LANES, first = random.below(3);
+    Vec3 corner[3];
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t k = 3 * ((first + c) % 3);
+        corner[c] = {block.corner[k][lane], block.corner[k + 1][lane], block.corner[k + 2][lane]};
+    }
+    const double tolerance = double(target.header.tolerance);
+    // The point of the edge that is nearest to where the ray met its plane, or any.
+    const Vec3 along = corner[1] - corner[0], across = corner[2] - corner[0];
+    const Vec3 normal = cross(along, across), d = vec(held.direction), p = vec(held.position);
+    const double t = dot(corner[0] - p, normal) / dot(d, normal);
+    const Vec3 met = p + t * d;
+    const double s =
+        random.below(4) > 0 ? std::clamp(dot(met - corner[0], along) / dot(along, along), 0.0, 1.0) : random.uniform();
+    const Vec3 inward = cross(normal, along);
+    const Vec3 edge = corner[0] + s * along + (random.uniform(-12, 12) * tolerance / length(inward)) * inward;
+    const bool at_edge = random.below(2) == 0;
+    const Vec3 through = at_edge ? edge : met;
+    const double turned = random.below(2) == 0 ? random.uniform(0.99, 1.01) : random.uniform();
+    const Vec3 now = d + (turned * double(held.turn)) * random.direction();
+    const double ends[3] = {t, double(held.limit), -double(held.back)};
+    const double from = ends[at_edge ? 0 : random.below(3)] + random.uniform(-12, 12) * tolerance;
+    return prototype_ray(through - from * now, now, reach);
+}
+
 void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
     const ShapeData& target = shape.data();
     const Solid solid = make_surface(shape);
@@ -139,28 +197,23 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         for (int turn = 0; turn < 3; ++turn) {
             const double far = 0.999 * double(held.safe) * random.uniform();
             const Vec3 start = from + far * random.direction(), end = to + far * random.direction();
-            kernels::prototype::SourceRay moved =
+            const kernels::prototype::SourceRay moved =
                 prototype_ray(start, (1 / double(held.limit)) * (end - start), double(ray.reach));
-            if (!kernels::prototype::is_in_tube(&held, &moved)) continue;
-            const kernels::prototype::RayFrame view = kernels::prototype::frame_ray(moved.position, moved.direction);
-            kernels::prototype::Closest closest = kernels::prototype::nothing_hit(moved.reach, target.header.tolerance);
-            if (kernels::prototype::hit_held(&closest, &held, &view, moved.reach, &target.header,
-                                             target.triangle_blocks.data())
-                == 0)
-                continue;
+            const auto said = ask(moved, held, target, random.below(RAYS_IN_GROUP));
+            if (!said) continue;
+            const kernels::Hit truth = cast(moved, target);
             ++counts.held;
-            const auto decide = [&](const kernels::prototype::Closest& met) {
-                return kernels::prototype::decide(CASTER_BVH, &moved, &met, &target.header, target.nodes.data(),
-                                                  target.triangle_blocks.data(), target.face_normals.data());
-            };
-            const kernels::Hit said = decide(closest);
-            const kernels::Hit truth = decide(kernels::prototype::find_closest(
-                0, &view, moved.reach, &target.header, target.nodes.data(), target.triangle_blocks.data()));
             counts.contacts += truth.triangle != NONE;
             if (held.turn > 0) ++(truth.triangle != NONE ? counts.left : counts.missed);
-            if (said.triangle != truth.triangle || said.distance != truth.distance || said.facing != truth.facing
-                || said.sides != truth.sides)
-                ++counts.wrong;
+            counts.wrong += differ(*said, truth);
+        }
+        for (int i = 0; i < 40 && held.turn > 0; ++i) {
+            const kernels::prototype::SourceRay moved = aim(held, target, double(ray.reach), random);
+            const auto said = ask(moved, held, target, random.below(RAYS_IN_GROUP));
+            ++counts.aimed;
+            if (!said) continue;
+            ++counts.aimed_known;
+            counts.wrong += differ(*said, cast(moved, target));
         }
     }
 }
@@ -175,12 +228,13 @@ TEST(Hold, DecidesAsACastDoes) {
         std::printf(
             "[ counts   ] %s: %llu rays, %llu tubes, %.3f of their true radius, over it by %.3f margins at most; "
             "%llu moved rays decided, %llu of them contacts, %llu wrong; %llu tubes that can only be left decided %llu "
-            "contacts and %llu others\n",
+            "contacts and %llu others; at their limits %llu of %llu rays were known\n",
             name_of(kind), static_cast<unsigned long long>(counts.rays), static_cast<unsigned long long>(counts.tubes),
             counts.said / counts.true_ones, counts.most_over, static_cast<unsigned long long>(counts.held),
             static_cast<unsigned long long>(counts.contacts), static_cast<unsigned long long>(counts.wrong),
             static_cast<unsigned long long>(counts.leaving), static_cast<unsigned long long>(counts.left),
-            static_cast<unsigned long long>(counts.missed));
+            static_cast<unsigned long long>(counts.missed), static_cast<unsigned long long>(counts.aimed_known),
+            static_cast<unsigned long long>(counts.aimed));
         EXPECT_LT(counts.most_over, 0.5);
         EXPECT_EQ(counts.wrong, 0u);
         EXPECT_GT(counts.tubes, counts.rays / 10);
@@ -191,6 +245,8 @@ TEST(Hold, DecidesAsACastDoes) {
         EXPECT_GT(counts.leaving, 50u);
         EXPECT_GT(counts.left, 50u);
         EXPECT_GT(counts.missed, 20u);
+        EXPECT_GT(counts.aimed_known, counts.aimed / 20);
+        EXPECT_LT(counts.aimed_known, counts.aimed / 2);
     }
 }
 
