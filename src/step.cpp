@@ -22,8 +22,8 @@ void NarrowPhase::forget() {
 
 template <class Rays>
 void NarrowPhase::take(const Rays& rays, std::span<const std::uint32_t> which, StepStats& stats) {
-    stats.side_tests += gather_.run(device(), shapes_.arrays(), rays.pairs(), rays.rays(), rays.hits(), found_);
-    local_.add(found_, rays.ordered(), which);
+    stats.side_tests += gather_.run(device(), shapes_.arrays(), rays.pairs(), rays.rays(), rays.hits());
+    local_.add(gather_.contacts(device()), rays.ordered(), which);
     rays.count(stats);
 }
 

@@ -54,7 +54,6 @@ private:
     CertifiedRays certified_;
     CoherentRays coherent_;
     Gather gather_;
-    std::vector<kernels::LocalContact> found_; ///< by one method
     LocalContacts local_;                      ///< by all; kept until the next step has asked for them
     std::vector<kernels::LocalContact> still_; ///< of the last step, still true
     Placer placer_;

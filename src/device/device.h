@@ -18,6 +18,8 @@ class Buffer {
 public:
     virtual ~Buffer() = default;
     virtual std::size_t bytes() const = 0;
+    /// Where the host may read and write it while no launch is under way; null where it cannot.
+    virtual void* host() { return nullptr; }
 };
 
 /// One kernel argument: a buffer, or a 32-bit scalar.

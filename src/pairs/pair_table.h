@@ -10,6 +10,10 @@
 
 namespace raycontact {
 
+/// What a step asks of a pair's state: its first state_head bytes, a cache line, or all of it.
+enum class Wanted : std::uint8_t { nothing, head, all };
+constexpr std::size_t state_head = 64;
+
 /// The pairs that were open in the last step, each with its state; others have none. Slots are reused, so memory is
 /// proportional to the most pairs ever open at once. State is what a method keeps for a pair; Hot what it reads of
 /// every pair in every step, and lies in their order.
@@ -57,13 +61,14 @@ public:
     State& state(std::size_t i) { return states_[slots_[i]]; }
     Hot& hot(std::size_t i) { return hot_[i]; }
 
-    /// ask(i) for each pair of [begin, end) of which asleep(i, hot) is false. By handfuls, so that the states of some
-    /// are on their way while others are asked: between two steps a solver has used the caches. prefetch(i), ahead
-    /// of both: what asleep reads beside hot.
-    template <class Prefetch, class Asleep, class Ask>
-    void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Asleep&& asleep, Ask&& ask) {
+    /// ask(i, wanted) for each pair of [begin, end) of which wants(i, hot), a Wanted, is not `nothing`. By handfuls, so
+    /// that the states of some are on their way while others are asked: between two steps a solver has used the caches.
+    /// prefetch(i), ahead of both: what wants() reads beside hot.
+    template <class Prefetch, class Wants, class Ask>
+    void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Wants&& wants, Ask&& ask) {
         constexpr std::uint32_t handful = 32, ahead = 8;
         std::uint32_t awake[handful];
+        Wanted wanted[handful];
         const auto send_for = [&](std::uint32_t i) {
             if (i < end) prefetch(i);
         };
@@ -72,11 +77,12 @@ public:
             std::uint32_t count = 0;
             for (std::uint32_t i = first; i < std::min(first + handful, end); ++i) {
                 send_for(i + ahead);
-                if (asleep(i, hot(i))) continue;
+                wanted[count] = wants(i, hot(i));
+                if (wanted[count] == Wanted::nothing) continue;
+                prefetch_state(i, wanted[count] == Wanted::head ? state_head : sizeof(State));
                 awake[count++] = i;
-                prefetch_state(i);
             }
-            for (std::uint32_t k = 0; k < count; ++k) ask(awake[k]);
+            for (std::uint32_t k = 0; k < count; ++k) ask(awake[k], wanted[k]);
         }
     }
 
@@ -97,9 +103,9 @@ public:
     }
 
 private:
-    void prefetch_state(std::size_t i) const {
+    void prefetch_state(std::size_t i, std::size_t size) const {
         const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
-        for (std::size_t at = 0; at < sizeof(State); at += 64) __builtin_prefetch(bytes + at);
+        for (std::size_t at = 0; at < size; at += 64) __builtin_prefetch(bytes + at);
     }
 
     template <class Closed>

@@ -39,6 +39,15 @@ double longest_clock(const PlacedBody& target) {
     return 8 * target.shape->data().diagonal;
 }
 
+// A direction's segments are of its watches, where they are looked at, else of its rays.
+constexpr std::uint32_t segment_size(bool look) {
+    return look ? SEGMENT_WATCHES : segment_rays;
+}
+std::size_t segments_of(bool look, std::uint32_t watches, std::uint32_t rays) {
+    const std::uint32_t most = segment_size(look);
+    return ((look ? watches : rays) + most - 1) / most;
+}
+
 // As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
 bool is_idle(const kernels::Holder& holder) {
     return holder.count == 0 && holder.radius <= 0;
@@ -47,10 +56,12 @@ bool is_idle(const kernels::Holder& holder) {
 } // namespace
 
 // Where they lay is not known any more: the watches have to be asked again.
-void CertifiedRays::forget_rays(Watched& own) {
-    if (own.ray_count == 0) return;
-    own.ray_count = 0;
-    own.wake = -1;
+void CertifiedRays::forget_rays(PairState& state) {
+    for (std::size_t d = 0; d < 2; ++d) {
+        if (state.rays[d].count == 0) continue;
+        state.rays[d].count = 0;
+        state.watched[d].wake = -1;
+    }
 }
 
 void CertifiedRays::clear() {
@@ -63,37 +74,64 @@ void CertifiedRays::close(PairState& state) {
         pool_.give_back({own.first, own.capacity});
         own = {};
     }
+    state.rays[0] = state.rays[1] = {};
+}
+
+// Of one direction in this step, all but what a look at its watches takes.
+CertifiedRays::Due& CertifiedRays::add_due(std::uint32_t ordered, const PlacedBody& source, const PlacedBody& target,
+                                           double speed, const PairPlace& now, Slice& slice) {
+    const std::size_t d = ordered % 2;
+    PairState& state = table_.state(ordered / 2);
+    slice.ordered.push_back(ordered);
+    Due& due = slice.due.emplace_back();
+    due.own = &state.watched[d];
+    due.rays = &state.rays[d];
+    due.last = state.rays[d];
+    due.margin = static_cast<float>(rounding_margin(source, target));
+    const double radius = HeldRays::tube_radius(size_of(source, target), target.shape->data());
+    due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+    order_pair(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
+    return due;
+}
+
+// By the cheap bound nothing of the pair needs to be looked at, but it has rays.
+void CertifiedRays::repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear,
+                                double speed, Slice& slice) {
+    const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
+    const PairPlace now = place_pair(body[0]->centred, body[1]->centred, shear);
+    for (std::uint32_t d = 0; d < 2; ++d)
+        if (table_.state(i).rays[d].count > 0) add_due(2 * i + d, *body[d], *body[1 - d], speed, now, slice);
 }
 
 // Decides for one pair, in double, what must be looked at.
-void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair,
-                              const Motion& motion, std::optional<double> threshold, Slice& slice) {
+void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear,
+                              double speed, std::optional<double> threshold, Slice& slice) {
     PairState& state = table_.state(i);
     const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
-    const double size = size_of(*body[0], *body[1]), speed = motion.pair_speed(pair);
+    const double size = size_of(*body[0], *body[1]);
     const bool fresh = state.watched[0].expiry < 0;
-    const PairPlace now = place_pair(body[0]->centred, body[1]->centred, motion.pair_shear(pair));
+    const PairPlace now = place_pair(body[0]->centred, body[1]->centred, shear);
     std::array<double, 2> moved{0, 0};
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
-    bool look[2] = {}, list[2] = {}, asks[2] = {};
-    if (table_.hot(i).still)
-        for (Watched& own : state.watched) forget_rays(own);
-    double slack = 1e300;
+    bool look[2] = {}, list[2] = {};
+    if (table_.hot(i).still) forget_rays(state);
+    Slack hot{1e300, true, false, false};
     for (std::size_t d = 0; d < 2; ++d) {
         const Watched& own = state.watched[d];
         const double clock = own.clock + moved[d];
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
         list[d] = fresh || !(clock < own.expiry);
         look[d] = list[d] || !(clock < own.wake);
-        asks[d] = look[d] || own.ray_count > 0;
-        if (!look[d]) slack = std::min(slack, own.ray_count > 0 ? 0 : std::min(own.wake, own.expiry) - clock);
+        if (look[d]) continue;
+        hot.metres = std::min(hot.metres, std::min(own.wake, own.expiry) - clock);
+        hot.casts = hot.casts || state.rays[d].count > 0;
     }
-    table_.hot(i) = {slack, true, false};
-    if (!(asks[0] || asks[1])) return;
+    table_.hot(i) = hot;
+    const bool looks = look[0] || look[1];
+    if (!looks && !hot.casts) return;
 
     if (list[0] || list[1]) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-    const bool looks = look[0] || look[1];
     const bool move = list[0] || list[1] || (looks && !(std::max(moved[0], moved[1]) < trembling * size));
     if (move) state.reference = now;
     for (std::uint32_t d = 0; d < 2; ++d) {
@@ -107,24 +145,15 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
             own.expiry = threshold ? std::min(*threshold, longest_clock(*body[1 - d])) : look_ahead(size, state.speed);
             slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
         }
-        if (!asks[d]) continue;
-        slice.ordered.push_back(2 * i + d);
-        Due& due = slice.due.emplace_back();
-        due.own = &own;
+        if (!look[d] && state.rays[d].count == 0) continue;
+        Due& due = add_due(2 * i + d, *body[d], *body[1 - d], speed, now, slice);
         due.look = look[d];
         due.now = static_cast<float>(own.clock + moved[d]);
         due.from = static_cast<float>(own.clock - moved[d]);
-        due.margin = static_cast<float>(rounding_margin(*body[d], *body[1 - d]));
-        const double radius = HeldRays::tube_radius(size, body[1 - d]->shape->data());
-        due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
         due.longest = longest_clock(*body[1 - d]);
         due.expiry = own.expiry;
         due.first = own.first;
-        due.count = own.count;
-        due.ray_first = own.ray_first;
-        due.ray_count = own.ray_count;
-        due.held = own.held;
-        order_pair(*body[d], *body[1 - d], d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
+        due.count = list[d] ? 0 : own.count; // until there is a new list
     }
 }
 
@@ -151,37 +180,46 @@ void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodi
             slice.stale.clear();
             slice.fast.clear();
             slice.still.clear();
-            const auto asleep = [&](std::uint32_t i, Slack& slack) {
+            const auto wants = [&](std::uint32_t i, Slack& slack) {
                 slack.metres -= motion.pair_bound(pairs[i]);
-                if (slack.metres > 0) return true;
+                const bool sleeps = slack.metres > 0;
+                if (sleeps && !slack.casts) return Wanted::nothing;
                 if (slack.lists && motion.is_still(pairs[i])) {
                     slack.still = true;
                     slice.still.push_back(i);
-                    return true;
+                    return Wanted::nothing;
                 }
-                const double size = size_of(bodies[pairs[i].first], bodies[pairs[i].second]);
-                if (threshold || !(motion.pair_speed(pairs[i]) > fastest * size)) return false;
-                slice.fast.push_back(i);
-                return true;
+                const auto* placed = reinterpret_cast<const char*>(&bodies[pairs[i].second].centred);
+                __builtin_prefetch(placed);
+                __builtin_prefetch(placed + 64);
+                return sleeps && !slack.still ? Wanted::head : Wanted::all;
             };
             const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
-            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), prefetch, asleep,
-                        [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, threshold, slice); });
+            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), prefetch, wants,
+                        [&](std::uint32_t i, Wanted wanted) {
+                            const Pair& pair = pairs[i];
+                            const double speed = motion.pair_speed(pair);
+                            if (wanted == Wanted::head)
+                                repeat_pair(i, bodies, pair, motion.pair_shear(pair), speed, slice);
+                            else if (!threshold && speed > fastest * size_of(bodies[pair.first], bodies[pair.second]))
+                                slice.fast.push_back(i);
+                            else
+                                wake_pair(i, bodies, pair, motion.pair_shear(pair), speed, threshold, slice);
+                        });
+            slice.segments = 0;
+            for (const Due& due : slice.due) slice.segments += segments_of(due.look, due.count, due.last.count);
         }
     });
-    gather(executor);
+    list_stale();
 }
 
-// What the slices found, in the order of the pairs.
-void CertifiedRays::gather(Executor& executor) {
+// What the slices found that is to be done before the rest, in the order of the pairs.
+void CertifiedRays::list_stale() {
     stale_.clear();
     fast_.clear();
     still_.clear();
-    std::size_t due_count = 0;
     for (Slice& slice : std::span(slices_).first(slice_count_)) {
-        slice.first = due_count;
-        due_count += slice.due.size();
-        for (const std::uint32_t i : slice.stale) stale_.push_back({&slice.due[i], slice.first + i});
+        for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
         for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).lists) close(table_.state(i));
             table_.hot(i) = {};
@@ -189,16 +227,43 @@ void CertifiedRays::gather(Executor& executor) {
         }
         for (const std::uint32_t i : slice.still) still_.insert(still_.end(), {2 * i, 2 * i + 1});
     }
+}
+
+// What is due, in the order of the pairs, and the segments that are to be looked at or repeated.
+void CertifiedRays::gather(Device& device, Executor& executor) {
+    std::size_t due_count = 0, segment_count = 0;
+    for (Slice& slice : std::span(slices_).first(slice_count_)) {
+        slice.first = due_count;
+        slice.segment_first = segment_count;
+        due_count += slice.due.size();
+        segment_count += slice.segments;
+    }
     active_.resize(due_count);
-    host_pairs_.resize(due_count);
+    const auto pairs = pairs_.fill(device, due_count);
+    const auto segments = segments_.fill(device, segment_count);
     executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             const Slice& slice = slices_[s];
             const auto at = static_cast<std::ptrdiff_t>(slice.first);
             std::copy(slice.ordered.begin(), slice.ordered.end(), active_.begin() + at);
-            std::copy(slice.pairs.begin(), slice.pairs.end(), host_pairs_.begin() + at);
+            std::copy(slice.pairs.begin(), slice.pairs.end(), pairs.begin() + at);
+            auto i = static_cast<std::uint32_t>(slice.first);
+            std::size_t next = slice.segment_first;
+            for (const Due& due : slice.due) {
+                const std::uint32_t all = due.look ? due.count : due.last.count;
+                const std::uint32_t most = segment_size(due.look);
+                for (std::uint32_t done = 0; done < all; done += most) {
+                    const std::uint32_t some = std::min(most, all - done);
+                    segments[next++] =
+                        due.look ? kernels::Segment{i, due.first + done, some, due.now, due.from, due.margin, 0}
+                                 : kernels::Segment{i, due.last.first + done, 0, 0, 0, 0, some};
+                }
+                ++i;
+            }
         }
     });
+    pairs_.send(device);
+    segments_.send(device);
 }
 
 // The blocks of each stale pair that reach into its bounds widened by what the list is to last, and could be in contact
@@ -209,8 +274,8 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     stale_margins_.resize(stale_.size());
     horizons_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        const Due& due = *stale_[i].due;
-        wide_pairs_[i] = host_pairs_[stale_[i].at];
+        const Due& due = stale_[i].due();
+        wide_pairs_[i] = stale_[i].slice->pairs[stale_[i].at];
         stale_margins_[i] = due.margin;
         horizons_[i] = static_cast<float>(due.expiry) + due.margin;
         widen(wide_pairs_[i], horizons_[i]);
@@ -225,7 +290,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
     places_.resize(stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
-        Due& due = *stale_[i].due;
+        Due& due = stale_[i].due();
         Watched& own = *due.own;
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
@@ -233,6 +298,7 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
         places_[i] = due.first = own.first = range.first;
         own.capacity = range.capacity;
         due.count = own.count = host_counts_[i];
+        stale_[i].slice->segments += segments_of(true, due.count, 0);
         if (own.count == 0) { // nothing to look at for longer than was asked
             const double clear = 0.99999 * double(host_clears_[i]) - double(stale_margins_[i]);
             due.expiry = own.expiry = std::max(own.expiry, std::min(clear, due.longest));
@@ -249,94 +315,73 @@ void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
 
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
-    host_segments_.clear();
-    for (Slice& slice : std::span(slices_).first(slice_count_)) {
-        slice.segment = host_segments_.size();
-        auto i = static_cast<std::uint32_t>(slice.first);
-        for (const Due& due : slice.due) {
-            for (std::uint32_t done = 0; !due.look && done < due.ray_count; done += segment_rays)
-                host_segments_.push_back(
-                    {i, due.ray_first + done, 0, 0, 0, 0, std::min(segment_rays, due.ray_count - done)});
-            for (std::uint32_t done = 0; due.look && done < due.count; done += SEGMENT_WATCHES)
-                host_segments_.push_back({i, due.first + done, std::min(SEGMENT_WATCHES, due.count - done), due.now,
-                                          due.from, due.margin, 0});
-            ++i;
-        }
-    }
-    device_pairs_.write(device, host_pairs_);
-    segments_.write(device, host_segments_);
-    looks_.resize(device, host_segments_.size());
-    counts_.resize(device, host_segments_.size());
-    launch<KernelId::look_at_watches>(device, host_segments_.size(), device_pairs_, arrays.headers,
-                                      arrays.vertex_blocks, arrays.clearances, segments_, watches_, looks_, counts_);
+    const std::size_t count = segments_.size();
+    looks_.resize(device, count);
+    counts_.resize(device, count);
+    launch<KernelId::look_at_watches>(device, count, pairs_.array(), arrays.headers, arrays.vertex_blocks,
+                                      arrays.clearances, segments_.array(), watches_, looks_.array(), counts_);
     std::swap(rays_, last_rays_);
     if (last_rays_.size() == 0) last_rays_.resize(device, 1); // an argument is never nothing
-    rays_.resize(device, scan_.run(device, counts_, firsts_));
-    launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? host_segments_.size() : 0, segments_, watches_,
-                                       looks_, last_rays_, firsts_, rays_);
-    host_looks_.resize(host_segments_.size());
-    host_firsts_.resize(host_segments_.size());
-    looks_.read(device, host_looks_);
-    firsts_.read(device, host_firsts_);
+    rays_.resize(device, scan_.run(device, counts_, firsts_.array()));
+    launch<KernelId::write_watch_rays>(device, rays_.size() > 0 ? count : 0, segments_.array(), watches_,
+                                       looks_.array(), last_rays_, firsts_.array(), rays_);
 }
 
 // What the pairs keep of this step, and what their rays are told of the last: where each lay, and how wide a tube may
 // be sought. held: something will be known of them afterwards.
-void CertifiedRays::settle(Executor& executor, bool held) {
-    host_holders_.resize(active_.size());
+void CertifiedRays::settle(Device& device, Executor& executor, bool held) {
+    const auto holders = holders_.fill(device, active_.size());
+    const auto looks = looks_.read(device);
+    const auto firsts = firsts_.read(device);
     executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             Slice& slice = slices_[s];
-            std::size_t segment = slice.segment;
-            auto i = static_cast<std::uint32_t>(slice.first);
+            std::size_t segment = slice.segment_first;
             slice.blocks = 0;
-            for (const Due& due : slice.due) {
-                const Found found = add_up(i, segment);
+            for (std::size_t i = 0; i < slice.due.size(); ++i) {
+                const Due& due = slice.due[i];
+                Found found;
+                if (segment < looks.size()) found.ray_first = firsts[segment];
+                const std::size_t own = segments_of(due.look, due.count, due.last.count);
+                for (const kernels::Look& look : looks.subspan(segment, own)) {
+                    found.wake = std::min(found.wake, double(look.wake));
+                    found.rays += look.rays;
+                    found.blocks += look.blocks;
+                }
+                segment += own;
                 slice.blocks += found.blocks;
-                settle_one(i++, due, found, held);
+                settle_one(slice.ordered[i], due, found, held, holders[slice.first + i]);
             }
         }
     });
+    holders_.send(device);
 }
 
-// What was found in the segments of the i-th direction, of which the next is `segment`; it goes on to what follows.
-CertifiedRays::Found CertifiedRays::add_up(std::uint32_t i, std::size_t& segment) const {
-    Found found;
-    if (segment < host_segments_.size()) found.ray_first = host_firsts_[segment];
-    for (; segment < host_segments_.size() && host_segments_[segment].pair == i; ++segment) {
-        const kernels::Look& look = host_looks_[segment];
-        found.wake = std::min(found.wake, double(look.wake));
-        found.rays += look.rays;
-        found.blocks += look.blocks;
-    }
-    return found;
-}
-
-void CertifiedRays::settle_one(std::uint32_t i, const Due& due, const Found& found, bool held) {
-    kernels::Holder& holder = host_holders_[i];
-    holder = {due.ray_first, due.held ? due.ray_count : 0, found.ray_first, due.margin, due.radius};
-    Watched& own = *due.own;
-    own.ray_first = found.ray_first;
+void CertifiedRays::settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held,
+                               kernels::Holder& holder) {
+    holder = {due.last.first, due.last.held ? due.last.count : 0, found.ray_first, due.margin, due.radius};
+    due.rays->first = found.ray_first;
     // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
-    own.held = held && !is_idle(holder);
+    due.rays->held = held && !is_idle(holder);
     if (!due.look) return;
-    own.wake = std::min(found.wake, due.expiry);
-    own.ray_count = found.rays;
-    // Of the other direction, if that need not be looked at; the two are in one slice.
-    double& slack = table_.hot(active_[i] / 2).metres;
-    slack = std::min(slack, found.rays > 0 ? 0 : own.wake - double(due.now));
+    due.rays->count = found.rays;
+    due.own->wake = std::min(found.wake, due.expiry);
+    // The two directions of a pair are in one slice.
+    Slack& slack = table_.hot(ordered / 2);
+    slack.metres = std::min(slack.metres, due.own->wake - double(due.now));
+    slack.casts = slack.casts || found.rays > 0;
 }
 
 void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, const ShapeStore& shapes) {
     const bool held = caster != Caster::basic;
-    settle(executor, held);
+    settle(device, executor, held);
     if (held) {
-        held_.cast(device, shapes.arrays(), device_pairs_, rays_, host_holders_, hits_);
+        held_.cast(device, shapes.arrays(), pairs_.array(), rays_, holders_.array(), hits_);
         cast_ = held_.cast_in_full();
         return;
     }
     // Of the two, only this one asks for the bounds, which a vertex of ours may have left.
-    cast_standard(device, Caster::basic, shapes.arrays(), device_pairs_, rays_, hits_);
+    cast_standard(device, Caster::basic, shapes.arrays(), pairs_.array(), rays_, hits_);
     cast_ = rays_.size();
     held_.forget(device);
 }
@@ -350,6 +395,7 @@ void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& s
     table_.match(pairs, [this](PairState& state) { close(state); });
     wake_up(executor, bodies, pairs, motion, threshold);
     make_lists(device, shapes);
+    gather(device, executor);
     look(device, shapes);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/staged.h"
 #include "pairs/displacement.h"
 #include "pairs/motion.h"
 #include "pairs/pair_table.h"
@@ -25,7 +26,7 @@ public:
               std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold);
     void clear();
 
-    const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
+    const Array<kernels::OrderedPair>& pairs() const { return pairs_.array(); }
     const Array<kernels::Ray>& rays() const { return rays_; }
     /// What `standard` finds for these rays, most of them without being cast; basic: all of them cast. Once after each
     /// fill(): what that has found is kept here.
@@ -51,17 +52,23 @@ private:
         double wake = 0;    ///< no watch need be looked at before the clock reaches this
         double expiry = -1; ///< a new list is due when the clock reaches this; below 0: at once
         std::uint32_t first = 0, count = 0, capacity = 0; ///< of watches_
-        std::uint32_t ray_first = 0, ray_count = 0;       ///< of the last step; decided in each in which the pair moves
-        bool held = false;                                ///< what was found out about them lies there, too
     };
-    struct PairState {
-        PairPlace reference;
-        double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
+    /// The rays of one direction, of the last step; decided in each in which the pair moves.
+    struct Cast {
+        std::uint32_t first = 0, count = 0;
+        bool held = false; ///< what was found out about them lies there, too
+    };
+    struct alignas(state_head) PairState {
+        Cast rays[2]; ///< first: all that a pair is asked for that only repeats them
         Watched watched[2];
+        double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
+        PairPlace reference;
     };
+    static_assert(sizeof(PairState::rays) <= state_head);
     /// A direction that is due.
     struct Due {
         Watched* own = nullptr;
+        Cast* rays = nullptr;
         /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about
         /// it, and what is seen from beside it holds for that much less.
         float now = 0, from = 0;
@@ -69,48 +76,54 @@ private:
         double longest = 0;           ///< metres that a new list may last
         double expiry = 0;            ///< of Watched, as what follows
         std::uint32_t first = 0, count = 0;
-        std::uint32_t ray_first = 0, ray_count = 0; ///< of Watched
-        bool look = false;                          ///< at its watches; else its rays are repeated
-        bool held = false;                          ///< of Watched
+        Cast last;         ///< *rays, before this step
+        bool look = false; ///< at its watches; else its rays are repeated
     };
     struct Found {
         double wake = 1e300; ///< the least of its watches
         std::uint32_t ray_first = 0, rays = 0;
         std::uint32_t blocks = 0; ///< looked at
     };
-    /// A direction that needs a new list, and its place in active_.
-    struct Stale {
-        Due* due;
-        std::size_t at;
-    };
-    /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due.
+    /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due of those
+    /// that need a new list.
     struct Slice {
         std::vector<Due> due;
         std::vector<std::uint32_t> ordered;
         std::vector<kernels::OrderedPair> pairs;
         std::vector<std::uint32_t> stale, fast, still;
-        std::size_t first = 0;    ///< of due, in active_
-        std::size_t segment = 0;  ///< its first
+        std::size_t first = 0;         ///< of due, in active_
+        std::size_t segment_first = 0; ///< of theirs
+        std::size_t segments = 0;
         std::uint64_t blocks = 0; ///< looked at
+    };
+    struct Stale {
+        Slice* slice;
+        std::uint32_t at; ///< in due
+        Due& due() const { return slice->due[at]; }
     };
 
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  const Motion& motion, std::optional<double> threshold);
     void make_lists(Device& device, const ShapeStore& shapes);
     void look(Device& device, const ShapeStore& shapes);
-    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
+    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
                    std::optional<double> threshold, Slice& slice);
-    void gather(Executor& executor);
-    void settle(Executor& executor, bool held);
-    Found add_up(std::uint32_t i, std::size_t& segment) const;
-    void settle_one(std::uint32_t i, const Due& due, const Found& found, bool held);
+    void list_stale();
+    void gather(Device& device, Executor& executor);
+    void settle(Device& device, Executor& executor, bool held);
+    void settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held, kernels::Holder& holder);
     void close(PairState& state);
-    static void forget_rays(Watched& own);
+    void repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
+                     Slice& slice);
+    Due& add_due(std::uint32_t ordered, const PlacedBody& source, const PlacedBody& target, double speed,
+                 const PairPlace& now, Slice& slice);
+    static void forget_rays(PairState& state);
 
     struct Slack {
         double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
         bool lists = false; ///< there is something to be given back
         bool still = false; ///< it did not move in the last step, which kept no rays of it
+        bool casts = false; ///< it has rays, to be decided in each step in which it moves
     };
 
     PairTable<PairState, Slack> table_;
@@ -120,21 +133,21 @@ private:
     std::uint32_t slice_count_ = 0; ///< of this step
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> active_, fast_, still_; ///< ordered pairs
-    std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
+    std::vector<kernels::OrderedPair> wide_pairs_;
     std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
-    std::vector<kernels::uint> host_counts_, host_firsts_, places_;
-    std::vector<kernels::Segment> host_segments_;
-    std::vector<kernels::Look> host_looks_;
-    std::vector<kernels::Holder> host_holders_;
+    std::vector<kernels::uint> host_counts_, places_;
     std::uint64_t open_pairs_ = 0, cast_ = 0, packed_ = 0;
 
-    Array<kernels::OrderedPair> device_pairs_, device_wide_;
-    Array<kernels::uint> counts_, firsts_, device_places_;
+    Staged<kernels::OrderedPair> pairs_;
+    Staged<kernels::Segment> segments_;
+    Staged<kernels::Look> looks_;
+    Staged<kernels::uint> firsts_;
+    Staged<kernels::Holder> holders_;
+    Array<kernels::OrderedPair> device_wide_;
+    Array<kernels::uint> counts_, device_places_;
     Array<float> device_margins_, device_horizons_;
     BlockFinder finder_;
     Array<kernels::Watch> watches_;
-    Array<kernels::Segment> segments_;
-    Array<kernels::Look> looks_;
     Array<kernels::Ray> rays_, last_rays_;
     HeldRays held_;
     Array<kernels::Hit> hits_;

@@ -85,14 +85,14 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     const bool predictive = settings.method == Method::predictive;
     turns_.resize(pairs.size());
     executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        const auto asleep = [&](std::uint32_t i, Hot& hot) {
+        const auto wants = [&](std::uint32_t i, Hot& hot) {
             turns_[i] = Turn::follow;
             hot.slack -= motion.pair_bound(pairs[i]);
-            return hot.slack >= 0;
+            return hot.slack >= 0 ? Wanted::nothing : Wanted::all;
         };
         const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
-        table_.sift(begin, end, prefetch, asleep,
-                    [&](std::uint32_t i) { wake_pair(i, bodies, pairs[i], motion, settings); });
+        table_.sift(begin, end, prefetch, wants,
+                    [&](std::uint32_t i, Wanted) { wake_pair(i, bodies, pairs[i], motion, settings); });
     });
 
     active_.clear();

@@ -16,7 +16,7 @@ class HeldRays {
 public:
     /// holders: by pair, each with the range that its rays had in the last call; rays ascend by pair and slot.
     void cast(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
-              const Array<kernels::Ray>& rays, std::span<const kernels::Holder> holders, Array<kernels::Hit>& hits);
+              const Array<kernels::Ray>& rays, const Array<kernels::Holder>& holders, Array<kernels::Hit>& hits);
 
     /// Metres around a ray that are searched for what it could meet: within the length of a triangle the surface mostly
     /// faces one way, farther off there are only more triangles to be asked. size: of the pair's smaller body, metres.
@@ -31,7 +31,6 @@ public:
 
 private:
     Scan scan_;
-    Array<kernels::Holder> holders_;
     Array<kernels::Held> held_, before_;
     Array<kernels::uint> casts_;
     std::uint64_t cast_in_full_ = 0;

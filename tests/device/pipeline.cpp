@@ -61,9 +61,10 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
     four_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
         certified.cast(tracing, executor, Caster::bvh, store);
-        std::vector<kernels::LocalContact> contacts;
-        gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), certified.hits(), contacts);
+        gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), certified.hits());
+        const auto found = gather.contacts(tracing);
         if (!begin) return;
+        std::vector<kernels::LocalContact> contacts(found.begin(), found.end());
         for (kernels::LocalContact& contact : contacts)
             contact.pair = certified.ordered()[contact.pair] + static_cast<kernels::uint>(2 * ((first + 1) / 2));
         outcome.watched = contacts;
@@ -83,8 +84,7 @@ void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& w
         Gather gather;
         four_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool) {
             coherent.follow(tracing, executor, store, bodies, pairs, motion, settings);
-            std::vector<kernels::LocalContact> contacts;
-            gather.run(tracing, store.arrays(), coherent.pairs(), coherent.rays(), coherent.hits(), contacts);
+            gather.run(tracing, store.arrays(), coherent.pairs(), coherent.rays(), coherent.hits());
         });
     }
 }
@@ -146,7 +146,9 @@ Outcome run_pipeline(Device& device, const Work& work, std::size_t first, std::s
 
     Outcome outcome;
     Gather gather;
-    outcome.side_tests = gather.run(tracing, store.arrays(), pairs, queue.rays(), hits, outcome.contacts);
+    outcome.side_tests = gather.run(tracing, store.arrays(), pairs, queue.rays(), hits);
+    const auto found = gather.contacts(tracing);
+    outcome.contacts.assign(found.begin(), found.end());
     for (kernels::LocalContact& contact : outcome.contacts) contact.pair += static_cast<kernels::uint>(first);
     outcome.rays = queue.rays().size();
     run_certified(tracing, store, work, first, last, outcome);

@@ -23,6 +23,7 @@ public:
     HostBuffer(const HostBuffer&) = delete;
     HostBuffer& operator=(const HostBuffer&) = delete;
     std::size_t bytes() const override { return bytes_; }
+    void* host() override { return data_; }
     std::byte* data() const { return static_cast<std::byte*>(data_); }
 
 private:

@@ -75,6 +75,33 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     EXPECT_EQ(table.state(0).mark, 0.0);
 }
 
+TEST(PairTable, AsksOfThePairsThatWantItInTheirOrder) {
+    PairTable<State, Hot> table;
+    std::vector<Pair> pairs;
+    for (BodyId i = 0; i < 500; ++i) pairs.emplace_back(i, i + 1);
+    table.match(pairs, [](State&) {});
+    Random random(3);
+    std::vector<Wanted> wanted(pairs.size());
+    for (Wanted& each : wanted) each = static_cast<Wanted>(random.below(3));
+    for (const auto& [begin, end] : {Pair{0, 500}, Pair{7, 130}, Pair{499, 500}, Pair{40, 40}}) {
+        std::vector<std::pair<std::uint32_t, Wanted>> asked, expected;
+        std::vector<int> sent_for(pairs.size()), looked_at(pairs.size());
+        for (std::uint32_t i = begin; i < end; ++i)
+            if (wanted[i] != Wanted::nothing) expected.emplace_back(i, wanted[i]);
+        table.sift(
+            begin, end, [&](std::uint32_t i) { ++sent_for[i]; },
+            [&](std::uint32_t i, Hot& hot) {
+                EXPECT_EQ(&hot, &table.hot(i));
+                EXPECT_EQ(sent_for[i], 1);
+                ++looked_at[i];
+                return wanted[i];
+            },
+            [&](std::uint32_t i, Wanted of) { asked.emplace_back(i, of); });
+        EXPECT_EQ(asked, expected);
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(looked_at[i], i >= begin && i < end ? 1 : 0);
+    }
+}
+
 TEST(RangePool, RangesNeverOverlapAndAreUsedAgain) {
     Random random(2);
     RangePool pool;
