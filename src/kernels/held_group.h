@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what is known of a ray still decides it (docs/certified.md), asked of a group of rays together, a lane each:
 // nearly every ray at rest is decided so. On a GPU a group is one ray.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
@@ -180,4 +180,4 @@ DEVICE Hit held_hit(const HeldGroup* group, uint r, GLOBAL const ShapeHeader* RE
     }
     return hit;
 }
-// NOLINTEND(modernize-use-using)
+// NOLINTEND(modernize-use-using,modernize-loop-convert)
