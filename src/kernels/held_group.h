@@ -6,35 +6,25 @@
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
 
-// A ray in each lane, and what was held of it.
+// Rays, and what was held of each.
 typedef struct {
-    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
-    float reach[RAYS_IN_GROUP], tolerance[RAYS_IN_GROUP];
-    float held_position[3][RAYS_IN_GROUP], held_direction[3][RAYS_IN_GROUP];
+    Group rays;
+    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP], back[RAYS_IN_GROUP], turn[RAYS_IN_GROUP];
     uint triangle_slot[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
     float corner[9][RAYS_IN_GROUP];    // [3 * corner + axis]
-    uint pair[RAYS_IN_GROUP], target[RAYS_IN_GROUP];
-    uint at[RAYS_IN_GROUP]; // whose ray it is
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    uint count;
 } HeldGroup;
 
 // Lanes without a ray, or without a triangle, are asked with the others.
 DEVICE void clear_held(HeldGroup* group) {
-    group->count = 0u;
-    for (int i = 0; i < 3; ++i) {
-        FOR_LANES(r, RAYS_IN_GROUP) {
-            group->position[i][r] = group->held_position[i][r] = 0.0f;
-            group->direction[i][r] = group->held_direction[i][r] = 0.0f;
-        }
-    }
+    clear_group(&group->rays);
+    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
-        group->reach[r] = group->tolerance[r] = group->safe[r] = group->limit[r] = 0.0f;
-        group->back[r] = group->turn[r] = 0.0f;
+        group->rays.reach[r] = group->safe[r] = group->limit[r] = group->back[r] = group->turn[r] = 0.0f;
         group->triangle_slot[r] = group->triangle[r] = NONE;
     }
 }
@@ -46,46 +36,34 @@ DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint l
 }
 
 DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held, uint pair, uint target,
-                     GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
-    const uint r = group->count;
+                     GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+    const uint r = group->rays.count;
+    add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
     for (int i = 0; i < 3; ++i) {
-        group->position[i][r] = ray->position[i];
-        group->direction[i][r] = ray->direction[i];
-        group->held_position[i][r] = held->position[i];
-        group->held_direction[i][r] = held->direction[i];
+        group->position[i][r] = held->position[i];
+        group->direction[i][r] = held->direction[i];
     }
-    group->reach[r] = ray->reach;
-    group->tolerance[r] = shape->tolerance;
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
     group->back[r] = held->back;
     group->turn[r] = held->turn;
     group->triangle_slot[r] = held->triangle;
     if (held->triangle != NONE)
-        send_for_triangle(blocks + shape->triangle_block_first + held->triangle / TRIANGLE_LANES,
+        send_for_triangle(blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES,
                           held->triangle % TRIANGLE_LANES);
-    group->pair[r] = pair;
-    group->target[r] = target;
-    group->at[r] = at;
-    group->count = r + 1u;
-}
-
-DEVICE bool is_full_of_held(const HeldGroup* group) {
-    return group->count == RAYS_IN_GROUP;
 }
 
 // What add_held() has sent for.
 DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
                             GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
-    for (uint r = 0u; r < group->count; ++r) {
+    for (uint r = 0u; r < group->rays.count; ++r) {
         const uint slot = group->triangle_slot[r];
         if (slot == NONE) continue;
-        GLOBAL const ShapeHeader* shape = shapes + group->target[r];
-        GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
+        GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
         const uint lane = slot % TRIANGLE_LANES;
         for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
         group->triangle[r] = block->triangle[lane];
-        PREFETCH(normals, shape->normal_first + group->triangle[r]);
+        PREFETCH(normals, shapes[group->rays.target[r]].normal_first + group->triangle[r]);
     }
 }
 
@@ -94,14 +72,15 @@ DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT
 // can only be left, the ray leaves it once at most: by the triangle that was met, if the ray's line still passes
 // through it, and by no edge that rounding could move it across.
 DEVICE void ask_held(HeldGroup* group) {
+    Group* rays = &group->rays;
+    frame_group(rays, false);
     FOR_LANES(r, RAYS_IN_GROUP) {
-        const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
-        const float dx = group->direction[0][r], dy = group->direction[1][r], dz = group->direction[2][r];
+        const float px = rays->position[0][r], py = rays->position[1][r], pz = rays->position[2][r];
         const float limit = group->limit[r], turn = group->turn[r];
-        const float x = px - group->held_position[0][r], y = py - group->held_position[1][r];
-        const float z = pz - group->held_position[2][r];
-        const float turned_x = dx - group->held_direction[0][r], turned_y = dy - group->held_direction[1][r];
-        const float turned_z = dz - group->held_direction[2][r];
+        const float x = px - group->position[0][r], y = py - group->position[1][r], z = pz - group->position[2][r];
+        const float turned_x = rays->direction[0][r] - group->direction[0][r];
+        const float turned_y = rays->direction[1][r] - group->direction[1][r];
+        const float turned_z = rays->direction[2][r] - group->direction[2][r];
         const float far_x = x + limit * turned_x, far_y = y + limit * turned_y, far_z = z + limit * turned_z;
         const float start = (x * x + y * y) + z * z, end = (far_x * far_x + far_y * far_y) + far_z * far_z;
         const float turned = (turned_x * turned_x + turned_y * turned_y) + turned_z * turned_z;
@@ -109,26 +88,23 @@ DEVICE void ask_held(HeldGroup* group) {
         const uint in_tube = (uint)(root_of(start > end ? start : end) < group->safe[r])
                              & ((leaves ^ 1u) | (uint)(turned <= turn * turn));
 
-        const uint axis = largest_axis(dx, dy, dz);
-        const float along = component(axis, dx, dy, dz), shear_z = safe_inverse(along);
-        const Axes axes = axes_of(axis, along, false);
-        const float shear_x = component(axes.x, dx, dy, dz) * shear_z;
-        const float shear_y = component(axes.y, dx, dy, dz) * shear_z;
+        const uint to_x = rays->axis[0][r], to_y = rays->axis[1][r], to_z = rays->axis[2][r];
+        const float shear_x = rays->shear[0][r], shear_y = rays->shear[1][r], shear_z = rays->shear[2][r];
         const float ax = group->corner[0][r] - px, ay = group->corner[1][r] - py, az = group->corner[2][r] - pz;
         const float bx = group->corner[3][r] - px, by = group->corner[4][r] - py, bz = group->corner[5][r] - pz;
         const float cx = group->corner[6][r] - px, cy = group->corner[7][r] - py, cz = group->corner[8][r] - pz;
-        const float z0 = component(axes.z, ax, ay, az), z1 = component(axes.z, bx, by, bz);
-        const float z2 = component(axes.z, cx, cy, cz);
-        const float x0 = component(axes.x, ax, ay, az) - shear_x * z0;
-        const float y0 = component(axes.y, ax, ay, az) - shear_y * z0;
-        const float x1 = component(axes.x, bx, by, bz) - shear_x * z1;
-        const float y1 = component(axes.y, bx, by, bz) - shear_y * z1;
-        const float x2 = component(axes.x, cx, cy, cz) - shear_x * z2;
-        const float y2 = component(axes.y, cx, cy, cz) - shear_y * z2;
+        const float z0 = component(to_z, ax, ay, az), z1 = component(to_z, bx, by, bz);
+        const float z2 = component(to_z, cx, cy, cz);
+        const float x0 = component(to_x, ax, ay, az) - shear_x * z0;
+        const float y0 = component(to_y, ax, ay, az) - shear_y * z0;
+        const float x1 = component(to_x, bx, by, bz) - shear_x * z1;
+        const float y1 = component(to_y, bx, by, bz) - shear_y * z1;
+        const float x2 = component(to_x, cx, cy, cz) - shear_x * z2;
+        const float y2 = component(to_y, cx, cy, cz) - shear_y * z2;
         const Edges e = edges_of_sheared(x0, y0, x1, y1, x2, y2);
         const float t = distance_of(e, z0, z1, z2, shear_z);
 
-        const float tolerance = group->tolerance[r], reach = group->reach[r];
+        const float tolerance = rays->tolerance[r], reach = rays->reach[r];
         const float least = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED; // as of nothing_hit()
         const float t0 = z0 * shear_z, t1 = z1 * shear_z, t2 = z2 * shear_z;
         const float beyond = least + tolerance, behind = -2.0f * tolerance;
@@ -158,25 +134,16 @@ DEVICE void ask_held(HeldGroup* group) {
     }
 }
 
-DEVICE SourceRay held_ray(const HeldGroup* group, uint r) {
-    SourceRay ray;
-    for (int i = 0; i < 3; ++i) {
-        ray.position[i] = group->position[i][r];
-        ray.direction[i] = group->direction[i][r];
-    }
-    ray.reach = group->reach[r];
-    return ray;
-}
-
 // As decide() would have it: of one triangle there is nothing to tell apart, so no other direction is asked.
 DEVICE Hit held_hit(const HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
                     GLOBAL const Packed3* RESTRICT normals) {
     Hit hit = no_contact();
     if (group->is_hit[r] != 0u) {
-        const Packed3 n = normals[shapes[group->target[r]].normal_first + group->triangle[r]];
+        const Packed3 n = normals[shapes[group->rays.target[r]].normal_first + group->triangle[r]];
         hit.triangle = group->triangle[r];
         hit.distance = group->distance[r];
-        hit.facing = (group->direction[0][r] * n.x + group->direction[1][r] * n.y) + group->direction[2][r] * n.z;
+        const SourceRay ray = ray_of(&group->rays, r);
+        hit.facing = (ray.direction[0] * n.x + ray.direction[1] * n.y) + ray.direction[2] * n.z;
     }
     return hit;
 }

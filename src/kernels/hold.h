@@ -107,20 +107,20 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
                               GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
     fetch_triangles(group, shapes, blocks, normals);
     ask_held(group);
-    for (uint r = 0u; r < group->count; ++r) {
-        const uint at = group->at[r];
+    for (uint r = 0u; r < group->rays.count; ++r) {
+        const uint at = group->rays.at[r];
         casts[at] = group->is_known[r] ^ 1u;
         if (group->is_known[r] != 0u) {
             hits[at] = held_hit(group, r, shapes, normals);
             continue;
         }
-        const SourceRay source = held_ray(group, r);
-        add_ray(waiting, at, &source, source.reach, group->pair[r], group->target[r], shapes);
+        const SourceRay source = ray_of(&group->rays, r);
+        add_ray(waiting, at, &source, source.reach, group->rays.pair[r], group->rays.target[r], shapes);
         // A group of one is cast by the caller, so that all rays are cast in one place there.
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
             cast_waiting(waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }
-    group->count = 0u;
+    group->rays.count = 0u;
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
@@ -150,7 +150,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
             const Held known = held_before(holder, before, ray.slot, i);
             after[i] = known;
             held = inside && known.safe > 0.0f;
-            if (held) add_held(&group, i, &source, &known, ray.pair, target, shapes + target, blocks);
+            if (held) add_held(&group, i, &source, &known, ray.pair, target, shapes, blocks);
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
@@ -160,7 +160,7 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
             else
                 hits[i] = no_contact();
         }
-        if (is_full_of_held(&group))
+        if (is_full(&group.rays))
             decide_held(&group, &waiting, holders, shapes, nodes, blocks, normals, after, hits, casts);
         if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
     }

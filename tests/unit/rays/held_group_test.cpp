@@ -162,13 +162,13 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&group, i, &asked.ray, &asked.held, 0, asked.target, &ground.shapes[asked.target],
+                    add_held(&group, i, &asked.ray, &asked.held, 0, asked.target, ground.shapes.data(),
                              ground.blocks.data());
                 }
                 fetch_triangles(&group, ground.shapes.data(), ground.blocks.data(), ground.normals.data());
                 ask_held(&group);
                 for (std::uint32_t i = 0; i < count; ++i) compare(all[i], group, i, ground, counts);
-                group.count = 0;
+                group.rays.count = 0;
             }
         }
         std::printf("[ counts   ] %llu rays, %llu known, of them %llu that can only leave, %llu hits, %llu wrong\n",
