@@ -24,6 +24,11 @@ void round_to(float (&to)[3], const Vec3& from) {
     to[1] = static_cast<float>(from.y);
     to[2] = static_cast<float>(from.z);
 }
+
+float distance(const float (&a)[3], const float (&b)[3]) {
+    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return std::sqrt((x * x + y * y) + z * z);
+}
 } // namespace
 
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
@@ -57,6 +62,16 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             last = {now, shear, true};
         }
     });
+}
+
+double Motion::pair_bound(const Pair& pair) const {
+    const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
+    const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
+    // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
+    const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
+    const float turned =
+        std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
+    return 1.001 * double(still + turned);
 }
 
 double Motion::pair_speed(const Pair& pair) const {

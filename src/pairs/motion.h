@@ -4,7 +4,6 @@
 #include "executor/executor.h"
 #include "pairs/ordered_pairs.h"
 
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -19,18 +18,8 @@ public:
 
     /// Asks for what pair_bound() reads of the second body, its first line; the first's is that of the pair before.
     void prefetch(const Pair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
-    /// No less than what any vertex of either body moved in the frame of the other, metres. Here, where callers can see
-    /// it: thousands of pairs a step are asked.
-    float pair_bound(const Pair& pair) const {
-        const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
-        const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
-        // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the
-        // thousandth.
-        const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
-        const float first = a.turn * a.reach + b.turn * (apart + a.reach);
-        const float second = b.turn * b.reach + a.turn * (apart + b.reach);
-        return 1.001F * (still + (first < second ? second : first));
-    }
+    /// No less than what any vertex of either body moved in the frame of the other, metres.
+    double pair_bound(const Pair& pair) const;
     /// Neither body has moved by a bit since the last step.
     bool is_still(const Pair& pair) const { return bodies_[pair.first].still && bodies_[pair.second].still; }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
@@ -39,10 +28,6 @@ public:
     double pair_shear(const Pair& pair) const { return lasts_[pair.first].shear + lasts_[pair.second].shear + 1e-15; }
 
 private:
-    static float distance(const float (&a)[3], const float (&b)[3]) {
-        const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-        return std::sqrt((x * x + y * y) + z * z);
-    }
     /// What a pair asks of a body. Small, so that those of thousands of bodies stay near: in float, each with what its
     /// rounding may have taken.
     struct Body {

@@ -105,7 +105,7 @@ public:
 private:
     void prefetch_state(std::size_t i, std::size_t size) const {
         const char* bytes = reinterpret_cast<const char*>(&states_[slots_[i]]);
-        for (std::size_t at = 0; at < size; at += 64) __builtin_prefetch(bytes + at);
+        for (std::size_t at = 0; at < size; at += state_head) __builtin_prefetch(bytes + at);
     }
 
     template <class Closed>

@@ -64,6 +64,25 @@ void CertifiedRays::forget_rays(PairState& state) {
     }
 }
 
+CertifiedRays::Slice::Slice() {
+    due.reserve(std::size_t{2} * slice_size);
+    ordered.reserve(std::size_t{2} * slice_size);
+    pairs.reserve(std::size_t{2} * slice_size);
+    stale.reserve(std::size_t{2} * slice_size);
+    fast.reserve(slice_size);
+    still.reserve(slice_size);
+}
+
+void CertifiedRays::Slice::clear() {
+    due.clear();
+    ordered.clear();
+    pairs.clear();
+    stale.clear();
+    fast.clear();
+    still.clear();
+    segments = 0;
+}
+
 void CertifiedRays::clear() {
     table_.clear();
     pool_.clear();
@@ -158,57 +177,51 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
 }
 
 // A cheap bound first, which most pairs at rest pass.
+void CertifiedRays::wake_slice(std::uint32_t begin, std::uint32_t end, std::span<const PlacedBody> bodies,
+                               std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold,
+                               Slice& slice) {
+    const auto wants = [&](std::uint32_t i, Slack& slack) {
+        slack.metres -= motion.pair_bound(pairs[i]);
+        const bool sleeps = slack.metres > 0;
+        if (sleeps && !slack.casts) return Wanted::nothing;
+        if (slack.lists && motion.is_still(pairs[i])) {
+            slack.still = true;
+            slice.still.push_back(i);
+            return Wanted::nothing;
+        }
+        return sleeps && !slack.still ? Wanted::head : Wanted::all;
+    };
+    const auto ask = [&](std::uint32_t i, Wanted wanted) {
+        const Pair& pair = pairs[i];
+        const double speed = motion.pair_speed(pair), shear = motion.pair_shear(pair);
+        if (wanted == Wanted::head)
+            repeat_pair(i, bodies, pair, shear, speed, slice);
+        else if (!threshold && speed > fastest * size_of(bodies[pair.first], bodies[pair.second]))
+            slice.fast.push_back(i);
+        else
+            wake_pair(i, bodies, pair, shear, speed, threshold, slice);
+    };
+    table_.sift(
+        begin, end, [&](std::uint32_t i) { motion.prefetch(pairs[i]); }, wants, ask);
+}
+
+template <class Work>
+void CertifiedRays::each_slice(Executor& executor, std::uint32_t grain, Work&& work) {
+    executor.run(slice_count_, grain, [&](std::uint32_t begin, std::uint32_t end) {
+        for (Slice& slice : std::span(slices_).subspan(begin, end - begin)) work(slice);
+    });
+}
+
 void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
     const auto count = static_cast<std::uint32_t>(pairs.size());
     slice_count_ = (count + slice_size - 1) / slice_size;
-    while (slices_.size() < slice_count_) {
-        Slice& slice = slices_.emplace_back();
-        slice.due.reserve(std::size_t{2} * slice_size);
-        slice.ordered.reserve(std::size_t{2} * slice_size);
-        slice.pairs.reserve(std::size_t{2} * slice_size);
-        slice.stale.reserve(std::size_t{2} * slice_size);
-        slice.fast.reserve(slice_size);
-        slice.still.reserve(slice_size);
-    }
-    executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t s = begin; s < end; ++s) {
-            Slice& slice = slices_[s];
-            slice.due.clear();
-            slice.ordered.clear();
-            slice.pairs.clear();
-            slice.stale.clear();
-            slice.fast.clear();
-            slice.still.clear();
-            const auto wants = [&](std::uint32_t i, Slack& slack) {
-                slack.metres -= motion.pair_bound(pairs[i]);
-                const bool sleeps = slack.metres > 0;
-                if (sleeps && !slack.casts) return Wanted::nothing;
-                if (slack.lists && motion.is_still(pairs[i])) {
-                    slack.still = true;
-                    slice.still.push_back(i);
-                    return Wanted::nothing;
-                }
-                const auto* placed = reinterpret_cast<const char*>(&bodies[pairs[i].second].centred);
-                __builtin_prefetch(placed);
-                __builtin_prefetch(placed + 64);
-                return sleeps && !slack.still ? Wanted::head : Wanted::all;
-            };
-            const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
-            table_.sift(s * slice_size, std::min((s + 1) * slice_size, count), prefetch, wants,
-                        [&](std::uint32_t i, Wanted wanted) {
-                            const Pair& pair = pairs[i];
-                            const double speed = motion.pair_speed(pair);
-                            if (wanted == Wanted::head)
-                                repeat_pair(i, bodies, pair, motion.pair_shear(pair), speed, slice);
-                            else if (!threshold && speed > fastest * size_of(bodies[pair.first], bodies[pair.second]))
-                                slice.fast.push_back(i);
-                            else
-                                wake_pair(i, bodies, pair, motion.pair_shear(pair), speed, threshold, slice);
-                        });
-            slice.segments = 0;
-            for (const Due& due : slice.due) slice.segments += segments_of(due.look, due.count, due.last.count);
-        }
+    if (slices_.size() < slice_count_) slices_.resize(slice_count_);
+    each_slice(executor, 1, [&](Slice& slice) {
+        const auto begin = static_cast<std::uint32_t>(&slice - slices_.data()) * slice_size;
+        slice.clear();
+        wake_slice(begin, std::min(begin + slice_size, count), bodies, pairs, motion, threshold, slice);
+        for (const Due& due : slice.due) slice.segments += segments_of(due.look, due.count, due.last.count);
     });
     list_stale();
 }
@@ -241,25 +254,22 @@ void CertifiedRays::gather(Device& device, Executor& executor) {
     active_.resize(due_count);
     const auto pairs = pairs_.fill(device, due_count);
     const auto segments = segments_.fill(device, segment_count);
-    executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t s = begin; s < end; ++s) {
-            const Slice& slice = slices_[s];
-            const auto at = static_cast<std::ptrdiff_t>(slice.first);
-            std::copy(slice.ordered.begin(), slice.ordered.end(), active_.begin() + at);
-            std::copy(slice.pairs.begin(), slice.pairs.end(), pairs.begin() + at);
-            auto i = static_cast<std::uint32_t>(slice.first);
-            std::size_t next = slice.segment_first;
-            for (const Due& due : slice.due) {
-                const std::uint32_t all = due.look ? due.count : due.last.count;
-                const std::uint32_t most = segment_size(due.look);
-                for (std::uint32_t done = 0; done < all; done += most) {
-                    const std::uint32_t some = std::min(most, all - done);
-                    segments[next++] =
-                        due.look ? kernels::Segment{i, due.first + done, some, due.now, due.from, due.margin, 0}
-                                 : kernels::Segment{i, due.last.first + done, 0, 0, 0, 0, some};
-                }
-                ++i;
+    each_slice(executor, 8, [&](const Slice& slice) {
+        const auto at = static_cast<std::ptrdiff_t>(slice.first);
+        std::copy(slice.ordered.begin(), slice.ordered.end(), active_.begin() + at);
+        std::copy(slice.pairs.begin(), slice.pairs.end(), pairs.begin() + at);
+        auto i = static_cast<std::uint32_t>(slice.first);
+        std::size_t next = slice.segment_first;
+        for (const Due& due : slice.due) {
+            const std::uint32_t all = due.look ? due.count : due.last.count;
+            const std::uint32_t most = segment_size(due.look);
+            for (std::uint32_t done = 0; done < all; done += most) {
+                const std::uint32_t some = std::min(most, all - done);
+                segments[next++] = due.look
+                                       ? kernels::Segment{i, due.first + done, some, due.now, due.from, due.margin, 0}
+                                       : kernels::Segment{i, due.last.first + done, 0, 0, 0, 0, some};
             }
+            ++i;
         }
     });
     pairs_.send(device);
@@ -270,47 +280,47 @@ void CertifiedRays::gather(Device& device, Executor& executor) {
 // before it ends.
 void CertifiedRays::make_lists(Device& device, const ShapeStore& shapes) {
     const ShapeStore::Arrays& arrays = shapes.arrays();
-    wide_pairs_.resize(stale_.size());
-    stale_margins_.resize(stale_.size());
-    horizons_.resize(stale_.size());
+    const auto wide = wide_pairs_.fill(device, stale_.size());
+    const auto margins = margins_.fill(device, stale_.size());
+    const auto horizons = horizons_.fill(device, stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         const Due& due = stale_[i].due();
-        wide_pairs_[i] = stale_[i].slice->pairs[stale_[i].at];
-        stale_margins_[i] = due.margin;
-        horizons_[i] = static_cast<float>(due.expiry) + due.margin;
-        widen(wide_pairs_[i], horizons_[i]);
+        wide[i] = stale_[i].slice->pairs[stale_[i].at];
+        margins[i] = due.margin;
+        horizons[i] = static_cast<float>(due.expiry) + due.margin;
+        widen(wide[i], horizons[i]);
     }
-    device_wide_.write(device, wide_pairs_);
-    device_horizons_.write(device, horizons_);
-    finder_.find_near(device, arrays, device_wide_, device_horizons_);
+    wide_pairs_.send(device);
+    margins_.send(device);
+    horizons_.send(device);
+    finder_.find_near(device, arrays, wide_pairs_.array(), horizons_.array());
     host_counts_.resize(stale_.size());
     host_clears_.resize(stale_.size());
     finder_.counts().read(device, host_counts_);
     finder_.clears().read(device, host_clears_);
 
-    places_.resize(stale_.size());
+    const auto places = places_.fill(device, stale_.size());
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         Due& due = stale_[i].due();
         Watched& own = *due.own;
         pool_.give_back({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
         const RangePool::Range range = pool_.take(host_counts_[i]);
-        places_[i] = due.first = own.first = range.first;
+        places[i] = due.first = own.first = range.first;
         own.capacity = range.capacity;
         due.count = own.count = host_counts_[i];
         stale_[i].slice->segments += segments_of(true, due.count, 0);
         if (own.count == 0) { // nothing to look at for longer than was asked
-            const double clear = 0.99999 * double(host_clears_[i]) - double(stale_margins_[i]);
+            const double clear = 0.99999 * double(host_clears_[i]) - double(due.margin);
             due.expiry = own.expiry = std::max(own.expiry, std::min(clear, due.longest));
         }
     }
     if (finder_.blocks().size() == 0) return;
     watches_.extend(device, pool_.end());
-    device_places_.write(device, places_);
-    device_margins_.write(device, stale_margins_);
-    launch<KernelId::begin_watches>(device, finder_.blocks().size(), device_wide_, arrays.headers, arrays.clusters,
-                                    arrays.clearances, device_margins_, finder_.blocks(), finder_.firsts(),
-                                    device_places_, watches_);
+    places_.send(device);
+    launch<KernelId::begin_watches>(device, finder_.blocks().size(), wide_pairs_.array(), arrays.headers,
+                                    arrays.clusters, arrays.clearances, margins_.array(), finder_.blocks(),
+                                    finder_.firsts(), places_.array(), watches_);
 }
 
 void CertifiedRays::look(Device& device, const ShapeStore& shapes) {
@@ -333,28 +343,30 @@ void CertifiedRays::settle(Device& device, Executor& executor, bool held) {
     const auto holders = holders_.fill(device, active_.size());
     const auto looks = looks_.read(device);
     const auto firsts = firsts_.read(device);
-    executor.run(slice_count_, 8, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t s = begin; s < end; ++s) {
-            Slice& slice = slices_[s];
-            std::size_t segment = slice.segment_first;
-            slice.blocks = 0;
-            for (std::size_t i = 0; i < slice.due.size(); ++i) {
-                const Due& due = slice.due[i];
-                Found found;
-                if (segment < looks.size()) found.ray_first = firsts[segment];
-                const std::size_t own = segments_of(due.look, due.count, due.last.count);
-                for (const kernels::Look& look : looks.subspan(segment, own)) {
-                    found.wake = std::min(found.wake, double(look.wake));
-                    found.rays += look.rays;
-                    found.blocks += look.blocks;
-                }
-                segment += own;
-                slice.blocks += found.blocks;
-                settle_one(slice.ordered[i], due, found, held, holders[slice.first + i]);
-            }
+    each_slice(executor, 8, [&](Slice& slice) {
+        std::size_t segment = slice.segment_first;
+        slice.blocks = 0;
+        for (std::size_t i = 0; i < slice.due.size(); ++i) {
+            const Due& due = slice.due[i];
+            const std::size_t own = segments_of(due.look, due.count, due.last.count);
+            Found found = add_up(looks.subspan(segment, own));
+            if (segment < looks.size()) found.ray_first = firsts[segment];
+            segment += own;
+            slice.blocks += found.blocks;
+            settle_one(slice.ordered[i], due, found, held, holders[slice.first + i]);
         }
     });
     holders_.send(device);
+}
+
+CertifiedRays::Found CertifiedRays::add_up(std::span<const kernels::Look> looks) {
+    Found found;
+    for (const kernels::Look& look : looks) {
+        found.wake = std::min(found.wake, double(look.wake));
+        found.rays += look.rays;
+        found.blocks += look.blocks;
+    }
+    return found;
 }
 
 void CertifiedRays::settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held,

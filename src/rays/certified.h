@@ -87,14 +87,16 @@ private:
     /// What is due of some successive pairs, found by one thread; ordered, pairs: of due. stale: places in due of those
     /// that need a new list.
     struct Slice {
+        Slice();
+        void clear();
+
         std::vector<Due> due;
         std::vector<std::uint32_t> ordered;
         std::vector<kernels::OrderedPair> pairs;
         std::vector<std::uint32_t> stale, fast, still;
-        std::size_t first = 0;         ///< of due, in active_
-        std::size_t segment_first = 0; ///< of theirs
-        std::size_t segments = 0;
-        std::uint64_t blocks = 0; ///< looked at
+        std::size_t first = 0;                       ///< of due, in active_
+        std::size_t segment_first = 0, segments = 0; ///< of theirs
+        std::uint64_t blocks = 0;                    ///< looked at
     };
     struct Stale {
         Slice* slice;
@@ -102,8 +104,13 @@ private:
         Due& due() const { return slice->due[at]; }
     };
 
+    /// work(slice) for each slice of this step, `grain` of them at a time.
+    template <class Work>
+    void each_slice(Executor& executor, std::uint32_t grain, Work&& work);
     void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
                  const Motion& motion, std::optional<double> threshold);
+    void wake_slice(std::uint32_t begin, std::uint32_t end, std::span<const PlacedBody> bodies,
+                    std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold, Slice& slice);
     void make_lists(Device& device, const ShapeStore& shapes);
     void look(Device& device, const ShapeStore& shapes);
     void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
@@ -111,6 +118,7 @@ private:
     void list_stale();
     void gather(Device& device, Executor& executor);
     void settle(Device& device, Executor& executor, bool held);
+    static Found add_up(std::span<const kernels::Look> looks);
     void settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held, kernels::Holder& holder);
     void close(PairState& state);
     void repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
@@ -133,9 +141,8 @@ private:
     std::uint32_t slice_count_ = 0; ///< of this step
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> active_, fast_, still_; ///< ordered pairs
-    std::vector<kernels::OrderedPair> wide_pairs_;
-    std::vector<float> stale_margins_, horizons_, host_clears_; ///< of stale_
-    std::vector<kernels::uint> host_counts_, places_;
+    std::vector<float> host_clears_;                   ///< of stale_
+    std::vector<kernels::uint> host_counts_;
     std::uint64_t open_pairs_ = 0, cast_ = 0, packed_ = 0;
 
     Staged<kernels::OrderedPair> pairs_;
@@ -143,9 +150,10 @@ private:
     Staged<kernels::Look> looks_;
     Staged<kernels::uint> firsts_;
     Staged<kernels::Holder> holders_;
-    Array<kernels::OrderedPair> device_wide_;
-    Array<kernels::uint> counts_, device_places_;
-    Array<float> device_margins_, device_horizons_;
+    Staged<kernels::OrderedPair> wide_pairs_; ///< of stale_, as what follows
+    Staged<float> margins_, horizons_;
+    Staged<kernels::uint> places_;
+    Array<kernels::uint> counts_;
     BlockFinder finder_;
     Array<kernels::Watch> watches_;
     Array<kernels::Ray> rays_, last_rays_;

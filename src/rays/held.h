@@ -6,7 +6,6 @@
 #include "shape/shape_store.h"
 
 #include <algorithm>
-#include <span>
 
 namespace raycontact {
 
