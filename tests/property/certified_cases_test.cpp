@@ -118,6 +118,14 @@ void strike(Random& random, Counts& counts, std::uint64_t number) {
     ++counts.episodes;
 }
 
+// That what a test is about did happen.
+void expect_many(const char* what, std::uint64_t steps, std::uint64_t least, std::uint64_t contacts) {
+    std::printf("[ counts   ] %llu steps %s, %llu contacts in them\n", static_cast<unsigned long long>(steps), what,
+                static_cast<unsigned long long>(contacts));
+    EXPECT_GT(steps, least);
+    EXPECT_GT(contacts, 1000u);
+}
+
 TEST(certified, a_vertex_straight_at_a_face) {
     const auto strikes = static_cast<std::uint64_t>(std::max(300.0, 2e-5 * decisions_wanted()));
     Counts counts;
@@ -226,10 +234,7 @@ TEST(certified, bodies_that_stand_still) {
         ++counts.episodes;
     }
     report("standing still", counts, 1e4);
-    std::printf("[ counts   ] %llu steps without a vertex asked, %llu contacts in them\n",
-                static_cast<unsigned long long>(free_steps), static_cast<unsigned long long>(free_contacts));
-    EXPECT_GT(free_steps, 100u);
-    EXPECT_GT(free_contacts, 1000u);
+    expect_many("without a vertex asked", free_steps, 100, free_contacts);
 }
 
 // Bodies that tremble by less than any block could wake up for: their rays are those of the step before, and no vertex
@@ -262,10 +267,7 @@ TEST(certified, rays_that_are_repeated) {
         ++counts.episodes;
     }
     report("repeated rays", counts, 1e4);
-    std::printf("[ counts   ] %llu steps of repeated rays, %llu contacts in them\n",
-                static_cast<unsigned long long>(repeated), static_cast<unsigned long long>(contacts));
-    EXPECT_GT(repeated, 200u);
-    EXPECT_GT(contacts, 1000u);
+    expect_many("of repeated rays", repeated, 200, contacts);
 }
 
 // Shapes that go take others to new places in the store while pairs of those are asleep.
