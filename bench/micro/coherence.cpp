@@ -94,8 +94,12 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
 
     std::vector<kernels::Holder> holders(wide.size());
     for (std::size_t p = 0; p < wide.size(); ++p)
-        holders[p] = {0, 0, 0, margins[p],
-                      static_cast<float>(HeldRays::tube_radius(batch.shape->data().diagonal, batch.shape->data()))};
+        holders[p] = {0,
+                      0,
+                      0,
+                      margins[p],
+                      static_cast<float>(HeldRays::tube_radius(batch.shape->data().diagonal, batch.shape->data())),
+                      batch.shape->data().header.capped};
     seekers_.write(*device_, holders);
     const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
     for (std::size_t i = watched.size(); i-- > 0;) {
@@ -187,8 +191,8 @@ void Coherence::hold(const Array<kernels::Holder>& holders, const Array<kernels:
                      Array<kernels::Held>& after) {
     const auto& shapes = store_.arrays();
     launch<KernelId::hold_rays>(*device_, watch_rays_.size(), pairs_, holders, shapes.headers, shapes.vertex_blocks,
-                                shapes.nodes, shapes.triangle_blocks, shapes.face_normals, watch_rays_, before, after,
-                                held_hits_, held_casts_);
+                                shapes.nodes, shapes.triangle_blocks, shapes.faces, shapes.face_normals, watch_rays_,
+                                before, after, held_hits_, held_casts_);
 }
 
 void Coherence::seek_tubes() {

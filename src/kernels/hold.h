@@ -6,9 +6,10 @@
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
+#define PLACES_NEARBY 4u    // to either side
 #define MOST_TURN 0.5f // of the least cosine: how far the direction may turn; so `back` moves by half of it at most
 
-// The place of a ray among those that its pair held, which ascend by slot; their number if it is not there. likely: its
+// The place of a ray among those that its pair held, which ascend by slot, or of the first one after it. likely: its
 // place among those of this step, mostly the same.
 DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot, uint likely) {
     if (likely < count && held[likely].slot == slot) return likely;
@@ -20,7 +21,7 @@ DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot, u
         else
             high = middle;
     }
-    return low < count && held[low].slot == slot ? low : count;
+    return low;
 }
 
 DEVICE Held nothing_held(uint slot) {
@@ -35,12 +36,16 @@ DEVICE Held nothing_held(uint slot) {
 
 // Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
 DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
-    return holder->count == 0u && holder->radius <= 0.0f;
+    return holder->count == 0u && holder->radius <= 0.0f && holder->capped == 0u;
 }
 
-DEVICE Held held_before(GLOBAL const Holder* RESTRICT holder, GLOBAL const Held* RESTRICT before, uint slot, uint ray) {
-    const uint at = find_held(before + holder->first, holder->count, slot, ray - holder->now_first);
-    return at < holder->count ? before[holder->first + at] : nothing_held(slot);
+// A triangle that a ray beside that place was known by: from there a ray without one may find its own.
+DEVICE uint triangle_nearby(GLOBAL const Held* RESTRICT held, uint count, uint place) {
+    for (uint k = 0u; k < PLACES_NEARBY; ++k) {
+        if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;
+        if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
+    }
+    return NONE;
 }
 
 // What is known of a ray from now on, where it had to be cast.
@@ -75,12 +80,25 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     return held;
 }
 
+// Whether its cap will know a ray by the triangle that it met, while it meets it.
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const TriangleBlock* RESTRICT block,
+                      uint lane, float tolerance) {
+    float far2 = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
+        const float off = middle * (1.0f / 3.0f) - ray->position[i];
+        far2 += off * off;
+    }
+    return facing_in_cap(block->cap[lane], tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
+}
+
 // Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
 // from now on.
 DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT holders,
                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
-                               GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits) {
+                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after,
+                               GLOBAL Hit* RESTRICT hits) {
     Closest own[RAYS_IN_GROUP];
     cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, hits);
     for (uint r = 0u; r < waiting->count; ++r) {
@@ -93,7 +111,17 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
         const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
         const uint slot = held.slot;
         held.limit = waits;
-        if (!(waits > 0.0f)) held = seek_tube(&source, own + r, holder, shape, nodes, blocks, normals);
+        const bool capped = holder->capped != 0u && hits[at].triangle != NONE;
+        const uint met = capped ? faces[shape->face_first + hits[at].triangle].slot : NONE;
+        if (met != NONE
+            && is_in_cap(&source, hits[at].facing, holder->margin,
+                         blocks + shape->triangle_block_first + met / TRIANGLE_LANES, met % TRIANGLE_LANES,
+                         shape->tolerance)) {
+            held = nothing_held(slot);
+            held.triangle = met;
+        } else if (!(waits > 0.0f)) {
+            held = seek_tube(&source, own + r, holder, shape, nodes, blocks, normals);
+        }
         held.slot = slot;
         after[at] = held;
     }
@@ -103,22 +131,29 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
 // The rays of a group whose tube does not decide them any more are cast.
 DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Holder* RESTRICT holders,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
-                              GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
+                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+                              GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after,
+                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
     fetch_triangles(group, shapes, blocks, normals);
     ask_held(group);
+    for (uint step = 0u; step < MOST_STEPS && step_over(group, shapes, blocks, faces, normals) != 0u; ++step)
+        ask_held(group);
     for (uint r = 0u; r < group->rays.count; ++r) {
         const uint at = group->rays.at[r];
         casts[at] = group->is_known[r] ^ 1u;
         if (group->is_known[r] != 0u) {
             hits[at] = held_hit(group, r, shapes, normals);
+            if (after[at].triangle != group->triangle_slot[r]) {
+                after[at].triangle = group->triangle_slot[r];
+                after[at].safe = after[at].limit = 0.0f;
+            }
             continue;
         }
         const SourceRay source = ray_of(&group->rays, r);
         add_ray(waiting, at, &source, source.reach, group->rays.pair[r], group->rays.target[r], shapes);
         // A group of one is cast by the caller, so that all rays are cast in one place there.
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
-            cast_waiting(waiting, holders, shapes, nodes, blocks, normals, after, hits);
+            cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
     group->rays.count = 0u;
 }
@@ -128,9 +163,9 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
 KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
-                      GLOBAL uint* RESTRICT casts) {
+                      GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
+                      GLOBAL const Ray* RESTRICT rays, GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after,
+                      GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
     Group waiting;
     HeldGroup group;
     clear_group(&waiting);
@@ -147,10 +182,18 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         const bool inside = in_bounds(pairs + ray.pair, source.position);
         bool held = false;
         if (!is_idle(holder)) {
-            const Held known = held_before(holder, before, ray.slot, i);
+            GLOBAL const Held* own = before + holder->first;
+            const uint place = find_held(own, holder->count, ray.slot, i - holder->now_first);
+            const bool capped = holder->capped != 0u;
+            Held known = nothing_held(ray.slot);
+            if (place < holder->count && own[place].slot == ray.slot) known = own[place];
             after[i] = known;
-            held = inside && known.safe > 0.0f;
-            if (held) add_held(&group, i, &source, &known, ray.pair, target, shapes, blocks);
+            if (capped && known.safe <= 0.0f && known.triangle == NONE)
+                known.triangle = triangle_nearby(own, holder->count, place);
+            held = inside && (known.safe > 0.0f || (capped && known.triangle != NONE));
+            if (held)
+                add_held(&group, i, &source, &known, capped ? holder->margin : UNBOUNDED, ray.pair, target, shapes,
+                         blocks);
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
@@ -161,12 +204,12 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
                 hits[i] = no_contact();
         }
         if (is_full(&group.rays))
-            decide_held(&group, &waiting, holders, shapes, nodes, blocks, normals, after, hits, casts);
-        if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
+            decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, hits, casts);
+        if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
     if (RAYS_IN_GROUP > 1) {
-        decide_held(&group, &waiting, holders, shapes, nodes, blocks, normals, after, hits, casts);
-        cast_waiting(&waiting, holders, shapes, nodes, blocks, normals, after, hits);
+        decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, hits, casts);
+        cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
 }
 // NOLINTEND(modernize-use-using)

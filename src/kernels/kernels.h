@@ -29,6 +29,8 @@
 
 #include "kernels/tube.h"
 
+#include "kernels/cap.h"
+
 #include "kernels/held_group.h"
 
 #include "kernels/hold.h"

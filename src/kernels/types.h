@@ -19,11 +19,13 @@
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
 // Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which no test passes.
+// cap: radii of the two balls in which all triangles face alike (cap.h), the narrow angle's in the lower half; 0: none.
 typedef struct {
     float corner[9][TRIANGLE_LANES];
     uint triangle[TRIANGLE_LANES];
+    uint cap[TRIANGLE_LANES];
 } TriangleBlock;
-WIRE_SIZE(TriangleBlock, 640);
+WIRE_SIZE(TriangleBlock, 704);
 
 // Sixteen child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
 // lower, bounds[3 + axis] the upper planes. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
@@ -76,8 +78,9 @@ typedef struct {
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
+    uint capped;                               // most triangles have caps: it pays to ask them
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 160);
+WIRE_SIZE(ShapeHeader, 164);
 
 // Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
 typedef struct {
@@ -170,14 +173,15 @@ typedef struct {
 WIRE_SIZE(Held, 48);
 
 // A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
-// to be sought; 0: none, the pair moves too fast.
+// to be sought; 0: none, the pair moves too fast. capped: whether the target's caps are asked.
 typedef struct {
     uint first, count; // Held
     uint now_first;
     float margin;
     float radius;
+    uint capped;
 } Holder;
-WIRE_SIZE(Holder, 20);
+WIRE_SIZE(Holder, 24);
 
 typedef struct {
     uint pair;

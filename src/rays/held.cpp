@@ -15,7 +15,8 @@ void HeldRays::cast(Device& device, const ShapeStore::Arrays& shapes, const Arra
     hits.resize(device, rays.size());
     casts_.resize(device, rays.size());
     launch<KernelId::hold_rays>(device, rays.size(), pairs, holders, shapes.headers, shapes.vertex_blocks, shapes.nodes,
-                                shapes.triangle_blocks, shapes.face_normals, rays, before_, held_, hits, casts_);
+                                shapes.triangle_blocks, shapes.faces, shapes.face_normals, rays, before_, held_, hits,
+                                casts_);
     cast_in_full_ = scan_.total(device, casts_);
 }
 

@@ -151,6 +151,7 @@ private:
         for (std::size_t lane = 0; lane < block_size; ++lane) {
             const bool empty = begin + lane >= end;
             block.triangle[lane] = empty ? NONE : items_[begin + lane].triangle;
+            block.cap[lane] = 0;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
                 Point3f p{nan, nan, nan};

@@ -5,6 +5,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/vector.h"
 #include "shape/bvh.h"
+#include "shape/caps.h"
 #include "shape/clearance_grid.h"
 #include "shape/clusters.h"
 #include "shape/exit_distances.h"
@@ -110,6 +111,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
+    build_caps(shape, normals);
     link_faces(shape);
 
     shape.exit_distances = measure_exits(shape, normals);

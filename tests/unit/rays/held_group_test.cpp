@@ -51,6 +51,7 @@ Ground any_ground(Floats kind, Random& random) {
             kernels::TriangleBlock& block = ground.blocks.emplace_back();
             for (std::uint32_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
                 block.triangle[lane] = random.below(blocks_of_shape * TRIANGLE_LANES);
+                block.cap[lane] = random.below(2) * static_cast<std::uint32_t>(random.bits());
                 for (auto& row : block.corner) row[lane] = any_float(kind, random);
             }
         }
@@ -162,7 +163,7 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&group, i, &asked.ray, &asked.held, 0, asked.target, ground.shapes.data(),
+                    add_held(&group, i, &asked.ray, &asked.held, UNBOUNDED, 0, asked.target, ground.shapes.data(),
                              ground.blocks.data());
                 }
                 fetch_triangles(&group, ground.shapes.data(), ground.blocks.data(), ground.normals.data());

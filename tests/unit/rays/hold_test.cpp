@@ -3,27 +3,17 @@
 #include "pairs/rounding.h"
 #include "property/crowds.h"
 #include "reference/margins.h"
+#include "unit/rays/asked_ray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <gtest/gtest.h>
-#include <optional>
 
 namespace raycontact {
 namespace {
 
 using namespace reference;
-
-Vec3 vec(const float (&a)[3]) {
-    return {a[0], a[1], a[2]};
-}
-
-void store(float (&to)[3], const Vec3& from) {
-    to[0] = static_cast<float>(from.x);
-    to[1] = static_cast<float>(from.y);
-    to[2] = static_cast<float>(from.z);
-}
 
 // Each triangle alone, so that its distance is the reference's.
 std::vector<Solid> apart(const Solid& solid) {
@@ -47,14 +37,6 @@ double distance_to_segment(const Solid& triangle, const Vec3& from, const Vec3& 
             low = a;
     }
     return std::min({at(0), at(1), at(low), at(high)});
-}
-
-kernels::prototype::SourceRay prototype_ray(const Vec3& position, const Vec3& direction, double reach) {
-    kernels::prototype::SourceRay ray{};
-    store(ray.position, position);
-    store(ray.direction, direction);
-    ray.reach = static_cast<float>(reach);
-    return ray;
 }
 
 // A vertex a little inside or outside the surface, with a ray that need not be square to it nor quite of unit length.
@@ -111,33 +93,6 @@ void examine_leaving(const kernels::Held& held, const ShapeData& target, const S
     }
 }
 
-// What is said of a ray that has moved, if it is known; in some lane of a group.
-std::optional<kernels::Hit> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
-                                const ShapeData& target, std::uint32_t lane) {
-    kernels::prototype::HeldGroup group;
-    kernels::prototype::clear_held(&group);
-    for (std::uint32_t i = 0; i <= lane; ++i)
-        kernels::prototype::add_held(&group, 0, &moved, &held, 0, 0, &target.header, target.triangle_blocks.data());
-    kernels::prototype::fetch_triangles(&group, &target.header, target.triangle_blocks.data(),
-                                        target.face_normals.data());
-    kernels::prototype::ask_held(&group);
-    if (group.is_known[lane] == 0) return std::nullopt;
-    return kernels::prototype::held_hit(&group, lane, &target.header, target.face_normals.data());
-}
-
-kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
-    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
-    const kernels::prototype::Closest met = kernels::prototype::find_closest(
-        0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
-    return kernels::prototype::decide(CASTER_BVH, &ray, &met, &target.header, target.nodes.data(),
-                                      target.triangle_blocks.data(), target.face_normals.data());
-}
-
-bool differ(const kernels::Hit& said, const kernels::Hit& truth) {
-    return said.triangle != truth.triangle || said.distance != truth.distance || said.facing != truth.facing
-           || said.sides != truth.sides;
-}
-
 // A ray of a leaving tube, moved so that some tolerances decide: through a point that near one of the triangle's edges,
 // or so that it meets it that near one of the tube's ends, or turned by nearly all that is allowed.
 kernels::prototype::SourceRay aim(const kernels::Held& held, const ShapeData& target, double reach, Random& random) {
@@ -180,7 +135,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
         const kernels::prototype::Closest own = kernels::prototype::find_closest(
             0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
-        kernels::Holder holder{0, 0, 0, static_cast<float>(margin), radius};
+        kernels::Holder holder{0, 0, 0, static_cast<float>(margin), radius, 0};
         const kernels::Held held =
             kernels::prototype::seek_tube(&ray, &own, &holder, &target.header, target.nodes.data(),
                                           target.triangle_blocks.data(), target.face_normals.data());
@@ -199,7 +154,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
             const Vec3 start = from + far * random.direction(), end = to + far * random.direction();
             const kernels::prototype::SourceRay moved =
                 prototype_ray(start, (1 / double(held.limit)) * (end - start), double(ray.reach));
-            const auto said = ask(moved, held, target, random.below(RAYS_IN_GROUP));
+            const auto said = ask(moved, held, target, UNBOUNDED, random.below(RAYS_IN_GROUP));
             if (!said) continue;
             const kernels::Hit truth = cast(moved, target);
             ++counts.held;
@@ -209,7 +164,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
         }
         for (int i = 0; i < 40 && held.turn > 0; ++i) {
             const kernels::prototype::SourceRay moved = aim(held, target, double(ray.reach), random);
-            const auto said = ask(moved, held, target, random.below(RAYS_IN_GROUP));
+            const auto said = ask(moved, held, target, UNBOUNDED, random.below(RAYS_IN_GROUP));
             ++counts.aimed;
             if (!said) continue;
             ++counts.aimed_known;

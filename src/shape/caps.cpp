@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/caps.h"
+
+#include "mesh/triangle_distance.h"
+#include "mesh/vector.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace raycontact {
+
+namespace {
+
+using kernels::uint;
+constexpr double largest = 65535;   // steps: an eighth of the diagonal
+constexpr double least_height = 64; // of tolerances: what float32 makes of a narrower triangle's normal is not known
+constexpr double beyond_own_corners = 16; // of tolerances
+constexpr double fine = 0.75;             // of the triangles have caps where it pays to ask them
+
+/// Directions within an angle, less than a right one, of an axis; cosine <= 0: any direction.
+struct Cone {
+    Vec3 axis;
+    double cosine = 0, sine = 1;
+
+    bool lies_within(const Vec3& normal, double least_cosine) const {
+        const double along = dot(axis, normal);
+        if (!(cosine > 0) || !(along > 0)) return false;
+        return along * cosine - std::sqrt(std::max(0.0, 1 - along * along)) * sine > least_cosine + 1e-9;
+    }
+};
+
+class Caps {
+public:
+    Caps(const ShapeData& shape, std::span<const Vec3> face_normals)
+        : shape_(shape), normals_(face_normals), cones_(shape.nodes.size()) {
+        std::vector<uint> below;
+        find_cones(0, below);
+    }
+
+    /// Distance of the nearest triangle whose normal is farther from `normal` than the angle, or `bound`.
+    double nearest_unlike(const Vec3& from, const Vec3& normal, double least_cosine, double bound) const {
+        double bound2 = bound * bound;
+        search(0, from, normal, least_cosine, bound2);
+        return std::sqrt(bound2);
+    }
+
+    Vec3 corner(uint triangle, int i) const {
+        const Point3f& p = shape_.points[shape_.mesh.triangles[triangle][i]];
+        return {p.x, p.y, p.z};
+    }
+
+private:
+    // Appends the triangles below a node to `below`.
+    void find_cones(uint n, std::vector<uint>& below) {
+        const kernels::Node& node = shape_.nodes[n];
+        for (int lane = 0; lane < NODE_LANES; ++lane) {
+            if (node.child[lane] == NONE) continue;
+            const std::size_t first = below.size();
+            if ((node.child[lane] & LEAF) == 0)
+                find_cones(node.child[lane], below);
+            else
+                for (const uint t : shape_.triangle_blocks[node.child[lane] & ~LEAF].triangle)
+                    if (t != NONE) below.push_back(t);
+            cones_[n][lane] = cone_of(std::span(below).subspan(first));
+        }
+    }
+
+    Cone cone_of(std::span<const uint> triangles) const {
+        Cone cone;
+        Vec3 sum{};
+        for (const uint t : triangles) sum = sum + normals_[t];
+        const double size = length(sum);
+        if (!(size > 1e-9)) return cone;
+        cone.axis = (1 / size) * sum;
+        cone.cosine = 1;
+        for (const uint t : triangles) cone.cosine = std::min(cone.cosine, dot(cone.axis, normals_[t]));
+        cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
+        return cone;
+    }
+
+    static double squared_distance_of(const kernels::Node& node, int lane, const Vec3& p) {
+        const double off[3] = {std::max({node.bounds[0][lane] - p.x, p.x - node.bounds[3][lane], 0.0}),
+                               std::max({node.bounds[1][lane] - p.y, p.y - node.bounds[4][lane], 0.0}),
+                               std::max({node.bounds[2][lane] - p.z, p.z - node.bounds[5][lane], 0.0})};
+        return off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+    }
+
+    void search(uint n, const Vec3& from, const Vec3& normal, double least_cosine, double& bound2) const {
+        const kernels::Node& node = shape_.nodes[n];
+        std::array<std::pair<double, int>, NODE_LANES> open;
+        std::size_t count = 0;
+        for (int lane = 0; lane < NODE_LANES; ++lane) {
+            if (node.child[lane] == NONE) continue;
+            const double distance2 = squared_distance_of(node, lane, from);
+            if (distance2 < bound2 && !cones_[n][lane].lies_within(normal, least_cosine))
+                open[count++] = {distance2, lane};
+        }
+        std::sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
+        for (std::size_t i = 0; i < count && open[i].first < bound2; ++i) {
+            const uint child = node.child[open[i].second];
+            if ((child & LEAF) == 0) {
+                search(child, from, normal, least_cosine, bound2);
+                continue;
+            }
+            for (const uint t : shape_.triangle_blocks[child & ~LEAF].triangle)
+                if (t != NONE && !(dot(normals_[t], normal) > least_cosine))
+                    bound2 = std::min(bound2, squared_distance(from, corner(t, 0), corner(t, 1), corner(t, 2)));
+        }
+    }
+
+    const ShapeData& shape_;
+    std::span<const Vec3> normals_;
+    std::vector<std::array<Cone, NODE_LANES>> cones_;
+};
+
+} // namespace
+
+void build_caps(ShapeData& shape, std::span<const Vec3> face_normals) {
+    if (shape.header.outward == 0) return;
+    const Caps caps(shape, face_normals);
+    std::size_t with_cap = 0;
+    const double tolerance = shape.header.tolerance, unit = double(CAP_UNIT_TOLERANCES) * tolerance;
+    for (kernels::TriangleBlock& block : shape.triangle_blocks)
+        for (int lane = 0; lane < TRIANGLE_LANES; ++lane) {
+            const uint t = block.triangle[lane];
+            if (t == NONE) continue;
+            const Vec3 a = caps.corner(t, 0), b = caps.corner(t, 1), c = caps.corner(t, 2);
+            const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+            if (length(cross(b - a, c - a)) < least_height * tolerance * longest) continue;
+            const Vec3 centre = (1.0 / 3) * (a + b + c);
+            const double own = std::max({length(a - centre), length(b - centre), length(c - centre)});
+            const auto steps = [&](float cosine, double bound) {
+                const double radius = caps.nearest_unlike(centre, face_normals[t], double(cosine), bound);
+                // One step less: float32 finds the centre elsewhere.
+                return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
+            };
+            const double wide = steps(CAP_WIDE_COSINE, largest * unit);
+            const double narrow = wide > 0 ? steps(CAP_NARROW_COSINE, (wide + 1) * unit) : 0;
+            block.cap[lane] = static_cast<uint>(narrow) | static_cast<uint>(wide) << 16;
+            if (wide > 0) ++with_cap;
+        }
+    shape.header.capped = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+}
+
+} // namespace raycontact

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// In a triangle's cap no triangle turns away farther than is said, by brute force; and caps are not much smaller than
+// they could be.
+#include "mesh/vector.h"
+#include "property/crowds.h"
+#include "reference/margins.h"
+#include "scenes/models/model.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+struct Counts {
+    std::uint64_t triangles = 0, caps = 0, beyond = 0, small = 0;
+};
+
+void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts& counts) {
+    const ShapeData& data = shape.data();
+    const auto corner = [&](std::uint32_t t, std::size_t c) {
+        const Point3f& p = data.points[data.mesh.triangles[t][c]];
+        return Vec3{p.x, p.y, p.z};
+    };
+    const auto normal = [&](std::uint32_t t) {
+        const Vec3 n = cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
+        const double size = length(n);
+        return size > 0 ? (1 / size) * n : Vec3{};
+    };
+    std::vector<Solid> alone; // so that each triangle's distance is the reference's
+    for (std::uint32_t t = 0; t < data.faces.size(); ++t)
+        alone.push_back(make_surface("one", {corner(t, 0), corner(t, 1), corner(t, 2)}, {{0, 1, 2}}));
+    const double unit = double(CAP_UNIT_TOLERANCES) * double(data.header.tolerance), most = 65535 * unit;
+    const auto count = static_cast<std::uint32_t>(data.mesh.triangles.size());
+    for (std::uint32_t i = 0; i < std::min(triangles, count); ++i) {
+        const std::uint32_t t = triangles < count ? random.below(count) : i;
+        const std::uint32_t slot = data.faces[t].slot;
+        if (slot == NONE) continue;
+        const std::uint32_t cap = data.triangle_blocks[slot / TRIANGLE_LANES].cap[slot % TRIANGLE_LANES];
+        const Vec3 centre = (1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2)), n = normal(t);
+        ++counts.triangles;
+        counts.caps += cap != 0;
+        const double own =
+            std::max({length(corner(t, 0) - centre), length(corner(t, 1) - centre), length(corner(t, 2) - centre)});
+        const double radii[2] = {double(cap & 0xffffu) * unit, double(cap >> 16) * unit};
+        const float cosines[2] = {CAP_NARROW_COSINE, CAP_WIDE_COSINE};
+        EXPECT_LE(radii[0], radii[1]);
+        for (int k = 0; k < 2; ++k) {
+            double nearest = most;
+            for (std::uint32_t other = 0; other < count; ++other) {
+                if (data.faces[other].slot == NONE || dot(normal(other), n) > double(cosines[k]) + 1e-9) continue;
+                nearest = std::min(nearest, distance_to_surface(alone[other], centre));
+            }
+            if (radii[k] > 0) {
+                EXPECT_GT(radii[k], own);
+                counts.beyond += radii[k] > nearest;
+                counts.small += radii[k] < nearest - 3 * unit;
+            }
+        }
+    }
+}
+
+TEST(Caps, HoldNothingThatTurnsAway) {
+    Random random(5);
+    Counts counts;
+    for (const Kind kind : {Kind::concave, Kind::cavities, Kind::slivers, Kind::sizes})
+        for (const auto& shape : crowd_shapes(kind, 1))
+            if (shape->triangles().size() < 2000) examine(*shape, 200, random, counts);
+    for (const char* kind : {"sphere", "torus", "knot"})
+        examine(*Shape::make(scenes::scene_model(kind, 4000).mesh), 400, random, counts);
+    std::printf("[ counts   ] %llu triangles, %llu with a cap, %llu of these reach beyond, %llu are too small\n",
+                static_cast<unsigned long long>(counts.triangles), static_cast<unsigned long long>(counts.caps),
+                static_cast<unsigned long long>(counts.beyond), static_cast<unsigned long long>(counts.small));
+    EXPECT_EQ(counts.beyond, 0u);
+    EXPECT_EQ(counts.small, 0u);
+    EXPECT_GT(counts.caps, counts.triangles / 4);
+}
+
+} // namespace
+} // namespace raycontact
