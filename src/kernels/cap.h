@@ -21,7 +21,9 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
     const float across2 = 1.0f - along * along, across = root_of(across2 > 0.0f ? across2 : 0.0f);
     const float in_narrow = (CAP_NARROW_COSINE * along - CAP_NARROW_SINE * across) - CAP_LOST_OF_FACING;
     const float in_wide = (CAP_WIDE_COSINE * along - CAP_WIDE_SINE * across) - CAP_LOST_OF_FACING;
-    const float out_of_narrow = (wide > 0.0f) & (far2 < wide * wide) ? in_wide : -1.0f;
-    return (narrow > 0.0f) & (far2 < narrow * narrow) ? in_narrow : out_of_narrow;
+    // The narrow ball lies in the wide one.
+    const uint is_in_wide = (uint)(wide > 0.0f) & (uint)(far2 < wide * wide);
+    const uint is_in_narrow = (uint)(narrow > 0.0f) & (uint)(far2 < narrow * narrow);
+    return component(2u - is_in_wide - is_in_narrow, in_narrow, in_wide, -1.0f);
 }
 // NOLINTEND(modernize-use-using)

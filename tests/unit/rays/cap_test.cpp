@@ -62,7 +62,7 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
         if (random.below(3) == 0) v = random.uniform(-12, 12) * tolerance / length(c - a);
         if (random.below(6) == 0) u = random.uniform(-2, 3), v = random.uniform(-2, 3);
         const Vec3 through = a + u * (b - a) + v * (c - a);
-        double depth = any_length(tolerance, 1.2 * radius, random);
+        double depth = any_length(tolerance, 4 * radius, random);
         if (random.below(4) == 0) depth = random.uniform(0, 12) * tolerance;
         if (random.below(6) == 0) depth = radius * random.uniform(0.99, 1.01) - double(margin);
         if (random.below(2) == 0) depth = -depth;
