@@ -5,8 +5,6 @@
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
-#define OUTSIDE_TOLERANCES 4.0f
-#define MOST_STEPS 16u // from triangle to triangle, before a ray is cast instead
 
 // Rays, and what was held of each. margin: of rounding, UNBOUNDED where caps are not asked.
 typedef struct {
@@ -20,12 +18,18 @@ typedef struct {
     float corner[9][RAYS_IN_GROUP];    // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    uint beyond[RAYS_IN_GROUP];    // the edge beyond which the triangle's cap may know more, from 1 on; 0: none
+    // For caps (cap_group.h): how the ray's line passes the triangle's edges, whether well inside of them all, and
+    // whether it is a hit if the triangle is all that the ray can meet.
+    float edge[3][RAYS_IN_GROUP];
+    uint is_clear[RAYS_IN_GROUP], is_left[RAYS_IN_GROUP];
+    uint beyond[RAYS_IN_GROUP]; // the edge beyond which caps may know more, from 1 on; 0: none
+    uint capped;                // caps are asked for one of the rays at least
 } HeldGroup;
 
 // Lanes without a ray, or without a triangle, are asked with the others.
 DEVICE void clear_held(HeldGroup* group) {
     clear_group(&group->rays);
+    group->capped = 0u;
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
@@ -56,6 +60,7 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     group->back[r] = held->back;
     group->turn[r] = held->turn;
     group->margin[r] = margin;
+    group->capped |= (uint)(margin < UNBOUNDED);
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
@@ -79,25 +84,6 @@ DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT
                             GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
     for (uint r = 0u; r < group->rays.count; ++r)
         if (group->triangle_slot[r] != NONE) fetch_triangle(group, r, shapes, blocks, normals);
-}
-
-// Rays that passed their triangle by go on to the one across that edge. Returns how many did.
-DEVICE uint step_over(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                      GLOBAL const Packed3* RESTRICT normals) {
-    uint stepped = 0u;
-    for (uint r = 0u; r < group->rays.count; ++r) {
-        if (group->beyond[r] == 0u) continue;
-        GLOBAL const Face* own = faces + shapes[group->rays.target[r]].face_first;
-        const uint next = own[group->triangle[r]].neighbour[group->beyond[r] - 1u];
-        const uint slot = next != NONE ? own[next].slot : NONE;
-        if (slot == NONE) continue;
-        group->triangle_slot[r] = slot;
-        group->safe[r] = 0.0f; // its tube was of the other triangle
-        fetch_triangle(group, r, shapes, blocks, normals);
-        ++stepped;
-    }
-    return stepped;
 }
 
 // First whether any part of the ray has left its tube: none of its points has moved farther than one of its ends. Then
@@ -157,30 +143,15 @@ DEVICE void ask_held(HeldGroup* group) {
                            & (uint)(e.w < -near * (magnitude_of(x1 - x0) + magnitude_of(y1 - y0)));
         const uint leaving = clear & (uint)(t >= -group->back[r]) & in_limit;
 
-        const float third = 1.0f / 3.0f;
-        const float middle_x = ((ax + bx) + cx) * third, middle_y = ((ay + by) + cy) * third;
-        const float middle_z = ((az + bz) + cz) * third;
-        const float far2 = (middle_x * middle_x + middle_y * middle_y) + middle_z * middle_z;
-        const float abx = bx - ax, aby = by - ay, abz = bz - az, acx = cx - ax, acy = cy - ay, acz = cz - az;
-        const float nx = aby * acz - abz * acy, ny = abz * acx - abx * acz, nz = abx * acy - aby * acx;
-        const float n2 = (nx * nx + ny * ny) + nz * nz;
-        const float dx = rays->direction[0][r], dy = rays->direction[1][r], dz = rays->direction[2][r];
-        const float along = n2 > 1.0e-30f ? ((nx * dx + ny * dy) + nz * dz) / root_of(n2) : 0.0f;
-        const float facing = facing_in_cap(group->cap[r], tolerance, group->margin[r], far2, along);
-        const uint faces_alike = (uint)(facing >= CAP_LEAST_FACING);
-        const uint capped =
-            faces_alike & clear & ((uint)(t >= 0.0f) | (uint)(t * facing <= -OUTSIDE_TOLERANCES * tolerance));
-
-        const uint in_own_tube = in_tube & ((leaves & leaving) | ((leaves ^ 1u) & alone));
-        const uint known = in_own_tube | capped;
+        const uint known = in_tube & ((leaves & leaving) | ((leaves ^ 1u) & alone));
         // Where the mesh can only be left, the triangle is one that does not lie apart.
-        const uint left = within & (uint)(t >= 0.0f);
-        const uint hit = (((capped | (in_own_tube & leaves)) & left) | (in_own_tube & (leaves ^ 1u) & met & back))
-                         & (uint) !(t > reach);
-        const uint by_u = (uint)(e.u >= e.v) & (uint)(e.u >= e.w), by_v = (by_u ^ 1u) & (uint)(e.v >= e.w);
-        const float most = by_u != 0u ? e.u : (by_v != 0u ? e.v : e.w);
-        const uint edge = 1u + by_u + 2u * by_v; // as Face numbers them
-        group->beyond[r] = edge & (0u - (faces_alike & (known ^ 1u) & (uint)(most > 0.0f)));
+        const uint left = within & (uint)(t >= 0.0f) & (uint) !(t > reach);
+        const uint hit = known & ((leaves & left) | ((leaves ^ 1u) & met & back & (uint) !(t > reach)));
+        group->edge[0][r] = e.w; // as Face numbers them
+        group->edge[1][r] = e.u;
+        group->edge[2][r] = e.v;
+        group->is_clear[r] = clear;
+        group->is_left[r] = left;
         group->is_known[r] = known;
         group->is_hit[r] = hit;
         group->distance[r] = t;

@@ -135,9 +135,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after,
                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
     fetch_triangles(group, shapes, blocks, normals);
-    ask_held(group);
-    for (uint step = 0u; step < MOST_STEPS && step_over(group, shapes, blocks, faces, normals) != 0u; ++step)
-        ask_held(group);
+    ask_tubes_and_caps(group, shapes, blocks, faces, normals);
     for (uint r = 0u; r < group->rays.count; ++r) {
         const uint at = group->rays.at[r];
         casts[at] = group->is_known[r] ^ 1u;
@@ -155,7 +153,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
             cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
-    group->rays.count = 0u;
+    group->rays.count = group->capped = 0u;
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last

@@ -33,6 +33,8 @@
 
 #include "kernels/held_group.h"
 
+#include "kernels/cap_group.h"
+
 #include "kernels/hold.h"
 
 #include "kernels/follow.h"

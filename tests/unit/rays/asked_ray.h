@@ -30,22 +30,16 @@ inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const V
 /// What is said of a ray that was held, if it is known, in some lane of a group. margin: of caps, UNBOUNDED: not asked.
 inline std::optional<kernels::Hit> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
                                        const ShapeData& target, float margin, std::uint32_t lane,
-                                       std::uint32_t* steps = nullptr) {
+                                       bool* stepped = nullptr) {
     using namespace kernels::prototype;
     HeldGroup group;
     clear_held(&group);
     for (std::uint32_t i = 0; i <= lane; ++i)
         add_held(&group, 0, &moved, &held, margin, 0, 0, &target.header, target.triangle_blocks.data());
     fetch_triangles(&group, &target.header, target.triangle_blocks.data(), target.face_normals.data());
-    ask_held(&group);
-    for (std::uint32_t step = 0; step < MOST_STEPS; ++step) {
-        if (step_over(&group, &target.header, target.triangle_blocks.data(), target.faces.data(),
-                      target.face_normals.data())
-            == 0)
-            break;
-        ask_held(&group);
-        if (steps != nullptr) ++*steps;
-    }
+    ask_tubes_and_caps(&group, &target.header, target.triangle_blocks.data(), target.faces.data(),
+                       target.face_normals.data());
+    if (stepped != nullptr) *stepped = group.triangle_slot[lane] != held.triangle;
     if (group.is_known[lane] == 0) return std::nullopt;
     return held_hit(&group, lane, &target.header, target.face_normals.data());
 }

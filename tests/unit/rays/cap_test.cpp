@@ -79,14 +79,14 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
             held.triangle = target.faces[other].slot;
         }
         ++counts.rays;
-        std::uint32_t steps = 0;
-        const auto said = ask(ray, held, target, margin, random.below(RAYS_IN_GROUP), &steps);
+        bool stepped = false;
+        const auto said = ask(ray, held, target, margin, random.below(RAYS_IN_GROUP), &stepped);
         if (!said) continue;
         const kernels::Hit truth = cast(ray, target);
         ++counts.known;
         counts.contacts += truth.triangle != NONE;
         counts.outside += depth < 0;
-        counts.stepped += steps > 0;
+        counts.stepped += stepped;
         counts.wrong += differ(*said, truth);
     }
 }
