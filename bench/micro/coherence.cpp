@@ -99,7 +99,7 @@ Coherence::Coherence(Executor& executor, std::string_view instruction_set, const
                       0,
                       margins[p],
                       static_cast<float>(HeldRays::tube_radius(batch.shape->data().diagonal, batch.shape->data())),
-                      batch.shape->data().header.capped};
+                      batch.shape->data().header.caps_pay};
     seekers_.write(*device_, holders);
     const std::vector<kernels::Ray> watched = copy_of(*device_, watch_rays_);
     for (std::size_t i = watched.size(); i-- > 0;) {

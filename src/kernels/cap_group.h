@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Held rays that no tube decides, asked of their triangles' caps (cap.h) together, and from triangle to triangle.
+// Held rays that no tube decides, asked of their triangles' caps (cap.h) together, and from triangle to triangle; and
+// where rays without a triangle begin.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define OUTSIDE_TOLERANCES 4.0f
-#define MOST_STEPS 16u // before a ray is cast instead
+#define MOST_STEPS 16u   // before a ray is cast instead
+#define PLACES_NEARBY 4u // to either side
 
 // After ask_held(). A ray that begins in the triangle's cap and passes well inside of its edges leaves the mesh there,
 // and there alone; one that begins beyond it is outside, if by more than rounding.
@@ -66,11 +68,34 @@ DEVICE void ask_tubes_and_caps(HeldGroup* group, GLOBAL const ShapeHeader* RESTR
     ask_held(group);
     uint all_known = 1u;
     for (uint r = 0u; r < group->rays.count; ++r) all_known &= group->is_known[r];
-    if ((all_known | (group->capped ^ 1u)) != 0u) return;
+    if ((all_known | (group->asks_caps ^ 1u)) != 0u) return;
     ask_caps(group);
     for (uint step = 0u; step < MOST_STEPS && step_over(group, shapes, blocks, faces, normals) != 0u; ++step) {
         ask_held(group);
         ask_caps(group);
     }
+}
+
+// A triangle that a ray beside that place was known by: from there a ray without one may find its own.
+DEVICE uint triangle_nearby(GLOBAL const Held* RESTRICT held, uint count, uint place) {
+    for (uint k = 0u; k < PLACES_NEARBY; ++k) {
+        if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;
+        if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
+    }
+    return NONE;
+}
+
+// Whether its cap will know a ray by the triangle that it met, while it meets it.
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const ShapeHeader* RESTRICT shape,
+                      GLOBAL const TriangleBlock* RESTRICT blocks, uint slot) {
+    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
+    const uint lane = slot % TRIANGLE_LANES;
+    float far2 = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
+        const float off = middle * (1.0f / 3.0f) - ray->position[i];
+        far2 += off * off;
+    }
+    return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
 // NOLINTEND(modernize-use-using)

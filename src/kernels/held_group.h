@@ -6,7 +6,7 @@
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
 
-// Rays, and what was held of each. margin: of rounding, UNBOUNDED where caps are not asked.
+// Rays, and what was held of each.
 typedef struct {
     Group rays;
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
@@ -14,29 +14,30 @@ typedef struct {
     uint triangle_slot[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
     uint cap[RAYS_IN_GROUP];           // of the triangle
-    float margin[RAYS_IN_GROUP];       // metres
-    float corner[9][RAYS_IN_GROUP];    // [3 * corner + axis]
+    uint asks_cap[RAYS_IN_GROUP];
+    float margin[RAYS_IN_GROUP];    // of rounding, metres
+    float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    // For caps (cap_group.h): how the ray's line passes the triangle's edges, whether well inside of them all, and
-    // whether it is a hit if the triangle is all that the ray can meet.
+    // For caps (cap_group.h), of every ray with a triangle: how its line passes the edges, whether well inside of them
+    // all, and whether it is a hit if the triangle is all that the ray can meet; `distance` is then of the plane.
     float edge[3][RAYS_IN_GROUP];
     uint is_clear[RAYS_IN_GROUP], is_left[RAYS_IN_GROUP];
     uint beyond[RAYS_IN_GROUP]; // the edge beyond which caps may know more, from 1 on; 0: none
-    uint capped;                // caps are asked for one of the rays at least
+    uint asks_caps;             // some ray does
 } HeldGroup;
 
 // Lanes without a ray, or without a triangle, are asked with the others.
 DEVICE void clear_held(HeldGroup* group) {
     clear_group(&group->rays);
-    group->capped = 0u;
+    group->asks_caps = 0u;
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
         group->rays.reach[r] = group->safe[r] = group->limit[r] = group->back[r] = group->turn[r] = 0.0f;
         group->margin[r] = 0.0f;
         group->triangle_slot[r] = group->triangle[r] = NONE;
-        group->cap[r] = 0u;
+        group->cap[r] = group->asks_cap[r] = 0u;
     }
 }
 
@@ -46,9 +47,9 @@ DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint l
     for (int k = 0; k < 9; ++k) PREFETCH(block->corner[k], lane);
 }
 
-DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held, float margin, uint pair,
-                     uint target, GLOBAL const ShapeHeader* RESTRICT shapes,
-                     GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
+                     GLOBAL const Holder* RESTRICT holder, uint pair, uint target,
+                     GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     const uint r = group->rays.count;
     add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
     for (int i = 0; i < 3; ++i) {
@@ -59,14 +60,15 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     group->limit[r] = held->limit;
     group->back[r] = held->back;
     group->turn[r] = held->turn;
-    group->margin[r] = margin;
-    group->capped |= (uint)(margin < UNBOUNDED);
+    group->margin[r] = holder->margin;
+    group->asks_cap[r] = holder->asks_caps;
+    group->asks_caps |= holder->asks_caps;
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
     GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
-    if (margin < UNBOUNDED) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
+    if (holder->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
 DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
@@ -75,7 +77,7 @@ DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* R
     GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
-    group->cap[r] = group->margin[r] < UNBOUNDED ? block->cap[lane] : 0u;
+    group->cap[r] = group->asks_cap[r] != 0u ? block->cap[lane] : 0u;
     PREFETCH(normals, shapes[group->rays.target[r]].normal_first + group->triangle[r]);
 }
 

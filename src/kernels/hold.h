@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that need not be cast again (docs/certified.md): what is known of a ray lasts until a point of it has moved as
-// far as its tube (tube.h) is wide. Either one triangle alone can be met, or all that are near can only be met from
-// inside, and then one at most is.
+// Rays that need not be cast again (docs/certified.md). What is known by a tube (tube.h) lasts until a point of the ray
+// has moved as far as that is wide: either one triangle alone can be met, or all that are near can only be met from
+// inside, and then one at most is. What a triangle's cap says is asked anew in each step (cap_group.h).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
-#define PLACES_NEARBY 4u    // to either side
 #define MOST_TURN 0.5f // of the least cosine: how far the direction may turn; so `back` moves by half of it at most
 
 // The place of a ray among those that its pair held, which ascend by slot, or of the first one after it. likely: its
@@ -36,16 +35,7 @@ DEVICE Held nothing_held(uint slot) {
 
 // Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
 DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
-    return holder->count == 0u && holder->radius <= 0.0f && holder->capped == 0u;
-}
-
-// A triangle that a ray beside that place was known by: from there a ray without one may find its own.
-DEVICE uint triangle_nearby(GLOBAL const Held* RESTRICT held, uint count, uint place) {
-    for (uint k = 0u; k < PLACES_NEARBY; ++k) {
-        if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;
-        if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
-    }
-    return NONE;
+    return holder->count == 0u && holder->radius <= 0.0f && holder->asks_caps == 0u;
 }
 
 // What is known of a ray from now on, where it had to be cast.
@@ -80,18 +70,6 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     return held;
 }
 
-// Whether its cap will know a ray by the triangle that it met, while it meets it.
-DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const TriangleBlock* RESTRICT block,
-                      uint lane, float tolerance) {
-    float far2 = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
-        const float off = middle * (1.0f / 3.0f) - ray->position[i];
-        far2 += off * off;
-    }
-    return facing_in_cap(block->cap[lane], tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
-}
-
 // Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
 // from now on.
 DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT holders,
@@ -108,17 +86,18 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
         const SourceRay source = ray_of(waiting, r);
         GLOBAL const ShapeHeader* shape = shapes + waiting->target[r];
         Held held = after[at];
-        const float waits = held.safe > 0.0f ? 0.0f : held.limit - 1.0f;
         const uint slot = held.slot;
+        const bool had_tube = held.safe > 0.0f;
+        const float waits = had_tube ? 0.0f : held.limit - 1.0f;
         held.limit = waits;
-        const bool capped = holder->capped != 0u && hits[at].triangle != NONE;
-        const uint met = capped ? faces[shape->face_first + hits[at].triangle].slot : NONE;
-        if (met != NONE
-            && is_in_cap(&source, hits[at].facing, holder->margin,
-                         blocks + shape->triangle_block_first + met / TRIANGLE_LANES, met % TRIANGLE_LANES,
-                         shape->tolerance)) {
+        const bool met = hits[at].triangle != NONE && holder->asks_caps != 0u;
+        const uint slot_met = met ? faces[shape->face_first + hits[at].triangle].slot : NONE;
+        // A cap that holds the ray, and was asked in vain: an edge is near, or the surface. Then a tube may do.
+        const bool in_vain = !had_tube && held.triangle == slot_met;
+        if (slot_met != NONE && !in_vain
+            && is_in_cap(&source, hits[at].facing, holder->margin, shape, blocks, slot_met)) {
             held = nothing_held(slot);
-            held.triangle = met;
+            held.triangle = slot_met;
         } else if (!(waits > 0.0f)) {
             held = seek_tube(&source, own + r, holder, shape, nodes, blocks, normals);
         }
@@ -128,7 +107,7 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
     waiting->count = 0u;
 }
 
-// The rays of a group whose tube does not decide them any more are cast.
+// The rays of a group that neither their tube nor a cap decides are cast.
 DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Holder* RESTRICT holders,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
@@ -153,7 +132,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
             cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
-    group->rays.count = group->capped = 0u;
+    group->rays.count = group->asks_caps = 0u;
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
@@ -182,16 +161,14 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         if (!is_idle(holder)) {
             GLOBAL const Held* own = before + holder->first;
             const uint place = find_held(own, holder->count, ray.slot, i - holder->now_first);
-            const bool capped = holder->capped != 0u;
+            const bool capped = holder->asks_caps != 0u;
             Held known = nothing_held(ray.slot);
             if (place < holder->count && own[place].slot == ray.slot) known = own[place];
             after[i] = known;
             if (capped && known.safe <= 0.0f && known.triangle == NONE)
                 known.triangle = triangle_nearby(own, holder->count, place);
             held = inside && (known.safe > 0.0f || (capped && known.triangle != NONE));
-            if (held)
-                add_held(&group, i, &source, &known, capped ? holder->margin : UNBOUNDED, ray.pair, target, shapes,
-                         blocks);
+            if (held) add_held(&group, i, &source, &known, holder, ray.pair, target, shapes, blocks);
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.

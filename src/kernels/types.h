@@ -78,7 +78,7 @@ typedef struct {
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
-    uint capped;                               // most triangles have caps: it pays to ask them
+    uint caps_pay;                             // most triangles have caps: it pays to ask them
 } ShapeHeader;
 WIRE_SIZE(ShapeHeader, 164);
 
@@ -157,13 +157,14 @@ typedef struct {
 } Look;
 WIRE_SIZE(Look, 24);
 
-// A ray that one triangle decides, or none, while no point of it has moved by `safe`. turn: not 0 where the triangles
-// around it can only be left, so that it meets one of them at most; then its direction may change by no more than that.
-// Lengths along the ray count in lengths of its direction.
+// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. turn:
+// not 0 where the triangles around it can only be left, so that it meets one of them at most; then its direction may
+// change by no more than that. Without a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the
+// ray count in lengths of its direction.
 typedef struct {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
-    uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near
-    float safe;        // metres; 0: it is cast in every step
+    uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
+    float safe;        // metres; 0: it has no tube
     float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
     float back;        // before the ray's origin: where its tube begins
     float turn;        // length of the change
@@ -173,13 +174,13 @@ typedef struct {
 WIRE_SIZE(Held, 48);
 
 // A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
-// to be sought; 0: none, the pair moves too fast. capped: whether the target's caps are asked.
+// to be sought; 0: none, the pair moves too fast. asks_caps: of the target.
 typedef struct {
     uint first, count; // Held
     uint now_first;
     float margin;
     float radius;
-    uint capped;
+    uint asks_caps;
 } Holder;
 WIRE_SIZE(Holder, 24);
 

@@ -52,7 +52,7 @@ std::size_t segments_of(bool look, std::uint32_t watches, std::uint32_t rays) {
 
 // As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
 bool is_idle(const kernels::Holder& holder) {
-    return holder.count == 0 && holder.radius <= 0 && holder.capped == 0;
+    return holder.count == 0 && holder.radius <= 0 && holder.asks_caps == 0;
 }
 
 } // namespace
@@ -111,7 +111,7 @@ CertifiedRays::Due& CertifiedRays::add_due(std::uint32_t ordered, const PlacedBo
     due.margin = static_cast<float>(rounding_margin(source, target));
     const double radius = HeldRays::tube_radius(size_of(source, target), target.shape->data());
     due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-    due.capped = speed < unhurried * size_of(source, target) ? target.shape->data().header.capped : 0;
+    due.asks_caps = speed < unhurried * size_of(source, target) ? target.shape->data().header.caps_pay : 0;
     order_pair(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
     return due;
 }
@@ -374,7 +374,8 @@ CertifiedRays::Found CertifiedRays::add_up(std::span<const kernels::Look> looks)
 
 void CertifiedRays::settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held,
                                kernels::Holder& holder) {
-    holder = {due.last.first, due.last.held ? due.last.count : 0, found.ray_first, due.margin, due.radius, due.capped};
+    holder = {due.last.first, due.last.held ? due.last.count : 0, found.ray_first, due.margin, due.radius,
+              due.asks_caps};
     due.rays->first = found.ray_first;
     // Of a pair that is too fast to be sought for, and of which nothing was known, nothing is known now either.
     due.rays->held = held && !is_idle(holder);

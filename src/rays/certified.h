@@ -73,7 +73,7 @@ private:
         /// it, and what is seen from beside it holds for that much less.
         float now = 0, from = 0;
         float margin = 0, radius = 0; ///< of rounding; of tubes
-        kernels::uint capped = 0;     ///< caps are asked
+        kernels::uint asks_caps = 0;  ///< of its rays
         double longest = 0;           ///< metres that a new list may last
         double expiry = 0;            ///< of Watched, as what follows
         std::uint32_t first = 0, count = 0;

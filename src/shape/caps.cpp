@@ -140,7 +140,7 @@ void build_caps(ShapeData& shape, std::span<const Vec3> face_normals) {
             block.cap[lane] = static_cast<uint>(narrow) | static_cast<uint>(wide) << 16;
             if (wide > 0) ++with_cap;
         }
-    shape.header.capped = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+    shape.header.caps_pay = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
 }
 
 } // namespace raycontact

@@ -56,6 +56,7 @@ TEST(work, reaches_every_kernel_and_the_side_tests) {
     EXPECT_GT(expected().contacts.size(), 500u);
     EXPECT_GT(expected().side_tests, 0u);
     EXPECT_TRUE(same_bits(expected().contacts, expected().watched)) << "the methods differ";
+    EXPECT_GT(expected().known_by_caps, 100u);
     for (std::size_t kernel = 0; kernel < static_cast<std::size_t>(KernelId::count); ++kernel) {
         bool launched = false;
         for (const Written& written : expected().trace)

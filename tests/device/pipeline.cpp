@@ -11,6 +11,7 @@
 #include "reference/meshes.h"
 #include "reference/random.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace raycontact::device_test {
@@ -51,6 +52,27 @@ void four_steps(const Work& work, Step step) {
     }
 }
 
+template <class T>
+std::vector<T> last_argument(const std::vector<Written>& trace, KernelId kernel, std::size_t argument) {
+    const auto found = std::find_if(trace.rbegin(), trace.rend(), [&](const Written& written) {
+        return written.kernel == kernel && written.argument == argument;
+    });
+    std::vector<T> all(found == trace.rend() ? 0 : found->bytes.size() / sizeof(T));
+    if (!all.empty()) std::memcpy(all.data(), found->bytes.data(), all.size() * sizeof(T));
+    return all;
+}
+
+// Contacts of the last hold_rays that were not cast, and have no tube.
+std::size_t known_by_caps(const std::vector<Written>& trace, std::size_t rays) {
+    const auto held = last_argument<kernels::Held>(trace, KernelId::hold_rays, 10);
+    const auto hits = last_argument<kernels::Hit>(trace, KernelId::hold_rays, 11);
+    const auto casts = last_argument<kernels::uint>(trace, KernelId::hold_rays, 12);
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < std::min({rays, held.size(), hits.size(), casts.size()}); ++i)
+        known += casts[i] == 0 && held[i].safe <= 0 && hits[i].triangle != NONE;
+    return known;
+}
+
 // A first look, rays repeated, a look at blocks that woke up, and new lists in the place of old ones.
 void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
                    std::size_t last, Outcome& outcome) {
@@ -61,6 +83,7 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
     four_steps(work, [&](Executor& executor, const std::vector<PlacedBody>& bodies, const Motion& motion, bool begin) {
         certified.fill(tracing, executor, store, bodies, pairs, motion, 0.05);
         certified.cast(tracing, executor, Caster::bvh, store);
+        outcome.known_by_caps += known_by_caps(tracing.trace(), certified.rays().size());
         gather.run(tracing, store.arrays(), certified.pairs(), certified.rays(), certified.hits());
         const auto found = gather.contacts(tracing);
         if (!begin) return;

@@ -29,6 +29,7 @@ struct Outcome {
     std::vector<kernels::LocalContact> contacts; ///< pair: counted over the whole work
     std::vector<kernels::LocalContact> watched;  ///< the same by the certified method, of whole pairs
     std::size_t rays = 0;
+    std::size_t known_by_caps = 0; ///< rays of the certified method
     std::uint64_t side_tests = 0;
 };
 

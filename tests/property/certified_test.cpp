@@ -183,6 +183,40 @@ TEST(certified, dense_crowds) {
     report("dense crowds", counts, wanted);
 }
 
+// Fine meshes that just touch, at paces between which caps come to be asked and cease to be (0.25 % of the size).
+TEST(certified, fine_meshes_that_creep) {
+    const double wanted = 0.05 * decisions_wanted();
+    Counts counts;
+    for (std::uint64_t i = 0; static_cast<double>(counts.decisions) < wanted; ++i) {
+        Random random(first_seed() + 400000 + i);
+        Triplet triplet(some_settings(random), thresholds[random.below(std::size(thresholds))],
+                        "creeping " + std::to_string(i));
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (std::uint32_t b = 0; b < 8; ++b)
+            shapes.push_back(fine_shapes()[random.below(static_cast<std::uint32_t>(fine_shapes().size()))]);
+        std::vector<Pose> poses = touching_poses(shapes, random.uniform(0, 0.02), random);
+        for (const auto& shape : shapes) triplet.each([&](Scene& scene) { scene.add(shape); });
+        std::vector<Vec3> ways(poses.size()), axes(poses.size());
+        double pace = 0;
+        for (int step = 0; step < 50; ++step) {
+            if (step % 10 == 0) {
+                constexpr double paces[] = {1e-5, 2e-4, 8e-4, 1.6e-3, 4e-3};
+                pace = paces[random.below(std::size(paces))];
+                for (std::size_t b = 0; b < poses.size(); ++b) ways[b] = random.in_ball(), axes[b] = random.direction();
+            }
+            for (BodyId b = 0; b < poses.size(); ++b) {
+                const Vec3 at = poses[b].translation + pace * ways[b];
+                poses[b] = composed(small_rotation(axes[b], pace), poses[b]);
+                poses[b].translation = at;
+                triplet.each([&](Scene& scene) { scene.set_pose(b, poses[b]); });
+            }
+            triplet.step(counts);
+        }
+        ++counts.episodes;
+    }
+    report("creeping", counts, wanted);
+}
+
 // Bodies and pairs come and go, settings change, and the shape store is packed, all in mid-run.
 TEST(certified, eventful_scenes) {
     const double wanted = 0.05 * decisions_wanted();

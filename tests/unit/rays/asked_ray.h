@@ -27,29 +27,56 @@ inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const V
     return ray;
 }
 
-/// What is said of a ray that was held, if it is known, in some lane of a group. margin: of caps, UNBOUNDED: not asked.
-inline std::optional<kernels::Hit> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
-                                       const ShapeData& target, float margin, std::uint32_t lane,
-                                       bool* stepped = nullptr) {
+/// Of a pair of which nothing was held. radius: of tubes to be sought.
+inline kernels::Holder holder(double margin, double radius, bool asks_caps) {
+    return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), asks_caps ? 1u : 0u};
+}
+
+/// What is said of a held ray, and the place of the triangle that says it.
+struct Said {
+    kernels::Hit hit;
+    std::uint32_t slot = 0;
+};
+
+/// Of the ray in that lane of a group that has been asked; nothing, where the ray is not known.
+inline std::optional<Said> said_of(const kernels::prototype::HeldGroup& group, std::uint32_t lane,
+                                   const kernels::ShapeHeader* shapes, const kernels::Packed3* normals) {
+    if (group.is_known[lane] == 0) return std::nullopt;
+    return Said{kernels::prototype::held_hit(&group, lane, shapes, normals), group.triangle_slot[lane]};
+}
+
+/// Asked alone: all lanes up to this one hold the same ray.
+inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
+                               const ShapeData& target, const kernels::Holder& holder, std::uint32_t lane) {
     using namespace kernels::prototype;
     HeldGroup group;
     clear_held(&group);
     for (std::uint32_t i = 0; i <= lane; ++i)
-        add_held(&group, 0, &moved, &held, margin, 0, 0, &target.header, target.triangle_blocks.data());
+        add_held(&group, 0, &moved, &held, &holder, 0, 0, &target.header, target.triangle_blocks.data());
     fetch_triangles(&group, &target.header, target.triangle_blocks.data(), target.face_normals.data());
     ask_tubes_and_caps(&group, &target.header, target.triangle_blocks.data(), target.faces.data(),
                        target.face_normals.data());
-    if (stepped != nullptr) *stepped = group.triangle_slot[lane] != held.triangle;
-    if (group.is_known[lane] == 0) return std::nullopt;
-    return held_hit(&group, lane, &target.header, target.face_normals.data());
+    return said_of(group, lane, &target.header, target.face_normals.data());
+}
+
+inline kernels::prototype::Closest closest(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
+    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
+    return kernels::prototype::find_closest(0, &frame, ray.reach, &target.header, target.nodes.data(),
+                                            target.triangle_blocks.data());
 }
 
 inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
-    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
-    const kernels::prototype::Closest met = kernels::prototype::find_closest(
-        0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
+    const kernels::prototype::Closest met = closest(ray, target);
     return kernels::prototype::decide(CASTER_BVH, &ray, &met, &target.header, target.nodes.data(),
                                       target.triangle_blocks.data(), target.face_normals.data());
+}
+
+/// What is held of a ray that was cast, if a tube was wide enough.
+inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, const ShapeData& target,
+                                     const kernels::Holder& holder) {
+    const kernels::prototype::Closest met = closest(ray, target);
+    return kernels::prototype::seek_tube(&ray, &met, &holder, &target.header, target.nodes.data(),
+                                         target.triangle_blocks.data(), target.face_normals.data());
 }
 
 inline bool differ(const kernels::Hit& said, const kernels::Hit& truth) {

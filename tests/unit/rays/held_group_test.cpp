@@ -152,6 +152,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
 
 TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
     Random random(16);
+    const kernels::Holder no_caps{};
     for (const Floats kind : {Floats::ordinary, Floats::on_a_grid, Floats::odd}) {
         Counts counts;
         HeldGroup group;
@@ -163,7 +164,7 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&group, i, &asked.ray, &asked.held, UNBOUNDED, 0, asked.target, ground.shapes.data(),
+                    add_held(&group, i, &asked.ray, &asked.held, &no_caps, 0, asked.target, ground.shapes.data(),
                              ground.blocks.data());
                 }
                 fetch_triangles(&group, ground.shapes.data(), ground.blocks.data(), ground.normals.data());

@@ -132,13 +132,8 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
     for (int round = 0; round < rounds; ++round) {
         const kernels::prototype::SourceRay ray = any_ray(target, solid, random);
         const auto radius = static_cast<float>(std::pow(10.0, random.uniform(-3, -1)) * target.diagonal);
-        const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
-        const kernels::prototype::Closest own = kernels::prototype::find_closest(
-            0, &frame, ray.reach, &target.header, target.nodes.data(), target.triangle_blocks.data());
-        kernels::Holder holder{0, 0, 0, static_cast<float>(margin), radius, 0};
-        const kernels::Held held =
-            kernels::prototype::seek_tube(&ray, &own, &holder, &target.header, target.nodes.data(),
-                                          target.triangle_blocks.data(), target.face_normals.data());
+        const kernels::Holder no_caps = holder(margin, double(radius), false);
+        const kernels::Held held = held_after_cast(ray, target, no_caps);
         ++counts.rays;
         if (!(held.safe > 0)) continue;
         ++counts.tubes;
@@ -154,21 +149,21 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
             const Vec3 start = from + far * random.direction(), end = to + far * random.direction();
             const kernels::prototype::SourceRay moved =
                 prototype_ray(start, (1 / double(held.limit)) * (end - start), double(ray.reach));
-            const auto said = ask(moved, held, target, UNBOUNDED, random.below(RAYS_IN_GROUP));
+            const auto said = ask(moved, held, target, no_caps, random.below(RAYS_IN_GROUP));
             if (!said) continue;
             const kernels::Hit truth = cast(moved, target);
             ++counts.held;
             counts.contacts += truth.triangle != NONE;
             if (held.turn > 0) ++(truth.triangle != NONE ? counts.left : counts.missed);
-            counts.wrong += differ(*said, truth);
+            counts.wrong += differ(said->hit, truth);
         }
         for (int i = 0; i < 40 && held.turn > 0; ++i) {
             const kernels::prototype::SourceRay moved = aim(held, target, double(ray.reach), random);
-            const auto said = ask(moved, held, target, UNBOUNDED, random.below(RAYS_IN_GROUP));
+            const auto said = ask(moved, held, target, no_caps, random.below(RAYS_IN_GROUP));
             ++counts.aimed;
             if (!said) continue;
             ++counts.aimed_known;
-            counts.wrong += differ(*said, cast(moved, target));
+            counts.wrong += differ(said->hit, cast(moved, target));
         }
     }
 }

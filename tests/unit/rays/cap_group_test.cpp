@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Of each ray of a group the same is said as of that ray alone, whatever the others are: held by a tube, asked of caps
+// or not, of other meshes, or without a triangle. On a GPU a group is one ray.
+#include "pairs/rounding.h"
+#include "property/crowds.h"
+#include "scenes/models/model.h"
+#include "unit/rays/aimed_ray.h"
+
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+// Some shapes' arrays, one after the other.
+struct Ground {
+    explicit Ground(const std::vector<std::shared_ptr<const Shape>>& all) : shapes(all) {
+        for (const auto& shape : all) {
+            const ShapeData& data = shape->data();
+            kernels::ShapeHeader& header = headers.emplace_back(data.header);
+            header.triangle_block_first = static_cast<std::uint32_t>(blocks.size());
+            header.face_first = static_cast<std::uint32_t>(faces.size());
+            header.normal_first = static_cast<std::uint32_t>(normals.size());
+            blocks.insert(blocks.end(), data.triangle_blocks.begin(), data.triangle_blocks.end());
+            faces.insert(faces.end(), data.faces.begin(), data.faces.end());
+            normals.insert(normals.end(), data.face_normals.begin(), data.face_normals.end());
+        }
+    }
+
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    std::vector<kernels::ShapeHeader> headers;
+    std::vector<kernels::TriangleBlock> blocks;
+    std::vector<kernels::Face> faces;
+    std::vector<kernels::Packed3> normals;
+};
+
+struct Asked {
+    kernels::prototype::SourceRay ray{};
+    kernels::Held held{};
+    kernels::Holder holder{};
+    std::uint32_t target = 0;
+};
+
+Asked any_ray(const Ground& ground, Random& random) {
+    Asked asked;
+    std::optional<AimedRay> aimed;
+    double margin = 0;
+    while (!aimed) { // some of the coarse meshes have few caps, or none
+        asked.target = random.below(static_cast<std::uint32_t>(ground.shapes.size()));
+        PlacedBody body;
+        body.shape = ground.shapes[asked.target].get();
+        margin = rounding_margin(body, body);
+        aimed = aim_at_cap(body.shape->data(), margin, random);
+    }
+    const ShapeData& target = ground.shapes[asked.target]->data();
+    asked.holder = holder(margin, any_length(1e-3, 1e-1, random) * target.diagonal, random.below(4) > 0);
+    asked.ray = aimed->ray;
+    if (random.below(3) == 0) {
+        asked.held = held_after_cast(asked.ray, target, asked.holder);
+        for (float& p : asked.ray.position) p += static_cast<float>(0.7 * random.uniform(-1, 1)) * asked.held.safe;
+    } else {
+        asked.held = known_triangle(target, aimed->slot, random);
+    }
+    if (random.below(10) == 0) asked.held.triangle = NONE;
+    return asked;
+}
+
+TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
+    std::vector<std::shared_ptr<const Shape>> shapes = crowd_shapes(Kind::concave, 1);
+    for (const char* kind : {"sphere", "knot"}) shapes.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
+    const Ground ground(shapes);
+    Random random(14);
+    kernels::prototype::HeldGroup group;
+    clear_held(&group);
+    std::uint64_t rays = 0, by_tube = 0, by_cap = 0, stepped = 0, differing = 0;
+    for (int round = 0; round < 10000; ++round) {
+        const std::uint32_t count = 1 + random.below(RAYS_IN_GROUP);
+        std::vector<Asked> all;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Asked& asked = all.emplace_back(any_ray(ground, random));
+            add_held(&group, i, &asked.ray, &asked.held, &asked.holder, 0, asked.target, ground.headers.data(),
+                     ground.blocks.data());
+        }
+        fetch_triangles(&group, ground.headers.data(), ground.blocks.data(), ground.normals.data());
+        ask_tubes_and_caps(&group, ground.headers.data(), ground.blocks.data(), ground.faces.data(),
+                           ground.normals.data());
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto together = said_of(group, i, ground.headers.data(), ground.normals.data());
+            const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].holder, 0);
+            ++rays;
+            if (together.has_value() != alone.has_value()) {
+                ++differing;
+            } else if (alone) {
+                differing += differ(together->hit, alone->hit) || together->slot != alone->slot;
+                ++(all[i].held.safe > 0 && alone->slot == all[i].held.triangle ? by_tube : by_cap);
+                stepped += alone->slot != all[i].held.triangle;
+            }
+        }
+        group.rays.count = group.asks_caps = 0;
+    }
+    std::printf("[ counts   ] %llu rays, %llu known with a tube, %llu by caps, %llu of them by another triangle; %llu "
+                "differ\n",
+                static_cast<unsigned long long>(rays), static_cast<unsigned long long>(by_tube),
+                static_cast<unsigned long long>(by_cap), static_cast<unsigned long long>(stepped),
+                static_cast<unsigned long long>(differing));
+    EXPECT_EQ(differing, 0u);
+    EXPECT_GT(by_tube, rays / 50);
+    EXPECT_GT(by_cap, rays / 10);
+    EXPECT_GT(stepped, rays / 200);
+}
+
+} // namespace
+} // namespace raycontact
