@@ -21,6 +21,7 @@ TEST(VertexOrder, IsThatOfSorting) {
             if (count > 1) vertices = {least, least + span}; // the whole span
             while (vertices.size() < count) vertices.insert(least + random.below(span));
             std::vector<std::uint64_t> keys;
+            keys.reserve(vertices.size());
             for (const std::uint32_t vertex : vertices)
                 keys.push_back(std::uint64_t{vertex} << 32 | random.below(1000));
             std::vector<std::uint64_t> sorted = keys;
