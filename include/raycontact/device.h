@@ -9,13 +9,13 @@ namespace raycontact {
 
 /// A device as `raycontact devices` lists it.
 struct DeviceInfo {
-    std::string id;     ///< "cpu", "opencl:i", "cuda:i"
-    std::string kind;   ///< "cpu", "opencl" or "cuda"
+    std::string id;   ///< as Settings::device takes it
+    std::string kind; ///< its back end: the id up to a colon
     std::string name;
     std::string driver;
     std::uint32_t cores = 0;
     std::uint64_t memory_bytes = 0;
-    bool exact = false;  ///< correctly rounded division and root, denormals: same bits as every other exact device
+    bool exact = false; ///< correctly rounded division and root, denormals: same bits as every other exact device
     bool usable = false;
     std::string why_not; ///< empty when usable
 };

@@ -26,4 +26,18 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
     const uint is_in_narrow = (uint)(narrow > 0.0f) & (uint)(far2 < narrow * narrow);
     return component(2u - is_in_wide - is_in_narrow, in_narrow, in_wide, -1.0f);
 }
+
+// Whether its cap will know a ray by the triangle that it met, while it meets it.
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const ShapeHeader* RESTRICT shape,
+                      GLOBAL const TriangleBlock* RESTRICT blocks, uint slot) {
+    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
+    const uint lane = slot % TRIANGLE_LANES;
+    float far2 = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
+        const float off = middle * (1.0f / 3.0f) - ray->position[i];
+        far2 += off * off;
+    }
+    return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
+}
 // NOLINTEND(modernize-use-using)

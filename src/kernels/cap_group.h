@@ -66,9 +66,9 @@ DEVICE void ask_tubes_and_caps(HeldGroup* group, GLOBAL const ShapeHeader* RESTR
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
                                GLOBAL const Packed3* RESTRICT normals) {
     ask_held(group);
-    uint all_known = 1u;
-    for (uint r = 0u; r < group->rays.count; ++r) all_known &= group->is_known[r];
-    if ((all_known | (group->asks_caps ^ 1u)) != 0u) return;
+    uint asks = 0u;
+    for (uint r = 0u; r < group->rays.count; ++r) asks |= group->asks_cap[r] & (group->is_known[r] ^ 1u);
+    if (asks == 0u) return;
     ask_caps(group);
     for (uint step = 0u; step < MOST_STEPS && step_over(group, shapes, blocks, faces, normals) != 0u; ++step) {
         ask_held(group);
@@ -83,19 +83,5 @@ DEVICE uint triangle_nearby(GLOBAL const Held* RESTRICT held, uint count, uint p
         if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
     }
     return NONE;
-}
-
-// Whether its cap will know a ray by the triangle that it met, while it meets it.
-DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const ShapeHeader* RESTRICT shape,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, uint slot) {
-    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
-    const uint lane = slot % TRIANGLE_LANES;
-    float far2 = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
-        const float off = middle * (1.0f / 3.0f) - ray->position[i];
-        far2 += off * off;
-    }
-    return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
 // NOLINTEND(modernize-use-using)

@@ -24,13 +24,11 @@ typedef struct {
     float edge[3][RAYS_IN_GROUP];
     uint is_clear[RAYS_IN_GROUP], is_left[RAYS_IN_GROUP];
     uint beyond[RAYS_IN_GROUP]; // the edge beyond which caps may know more, from 1 on; 0: none
-    uint asks_caps;             // some ray does
 } HeldGroup;
 
 // Lanes without a ray, or without a triangle, are asked with the others.
 DEVICE void clear_held(HeldGroup* group) {
     clear_group(&group->rays);
-    group->asks_caps = 0u;
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
@@ -62,7 +60,6 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     group->turn[r] = held->turn;
     group->margin[r] = holder->margin;
     group->asks_cap[r] = holder->asks_caps;
-    group->asks_caps |= holder->asks_caps;
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;

@@ -132,7 +132,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
             cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
     }
-    group->rays.count = group->asks_caps = 0u;
+    group->rays.count = 0u;
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last

@@ -109,9 +109,10 @@ CertifiedRays::Due& CertifiedRays::add_due(std::uint32_t ordered, const PlacedBo
     due.rays = &state.rays[d];
     due.last = state.rays[d];
     due.margin = static_cast<float>(rounding_margin(source, target));
-    const double radius = HeldRays::tube_radius(size_of(source, target), target.shape->data());
+    const double size = size_of(source, target);
+    const double radius = HeldRays::tube_radius(size, target.shape->data());
     due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-    due.asks_caps = speed < unhurried * size_of(source, target) ? target.shape->data().header.caps_pay : 0;
+    due.asks_caps = speed < unhurried * size ? target.shape->data().header.caps_pay : 0;
     order_pair(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.pairs.emplace_back());
     return due;
 }

@@ -62,7 +62,7 @@ std::vector<T> last_argument(const std::vector<Written>& trace, KernelId kernel,
     return all;
 }
 
-// Contacts of the last hold_rays that were not cast, and have no tube.
+// Contacts of the last hold_rays that were not cast, and have no tube: by its arguments `after`, `hits` and `casts`.
 std::size_t known_by_caps(const std::vector<Written>& trace, std::size_t rays) {
     const auto held = last_argument<kernels::Held>(trace, KernelId::hold_rays, 10);
     const auto hits = last_argument<kernels::Hit>(trace, KernelId::hold_rays, 11);

@@ -194,21 +194,14 @@ TEST(certified, fine_meshes_that_creep) {
         std::vector<std::shared_ptr<const Shape>> shapes;
         for (std::uint32_t b = 0; b < 8; ++b)
             shapes.push_back(fine_shapes()[random.below(static_cast<std::uint32_t>(fine_shapes().size()))]);
-        std::vector<Pose> poses = touching_poses(shapes, random.uniform(0, 0.02), random);
+        const std::vector<Pose> homes = touching_poses(shapes, random.uniform(0, 0.02), random);
         for (const auto& shape : shapes) triplet.each([&](Scene& scene) { scene.add(shape); });
-        std::vector<Vec3> ways(poses.size()), axes(poses.size());
-        double pace = 0;
+        std::vector<Mover> movers;
+        for (const Pose& home : homes) movers.emplace_back(Course::creep, home, 1.0, random);
         for (int step = 0; step < 50; ++step) {
-            if (step % 10 == 0) {
-                constexpr double paces[] = {1e-5, 2e-4, 8e-4, 1.6e-3, 4e-3};
-                pace = paces[random.below(std::size(paces))];
-                for (std::size_t b = 0; b < poses.size(); ++b) ways[b] = random.in_ball(), axes[b] = random.direction();
-            }
-            for (BodyId b = 0; b < poses.size(); ++b) {
-                const Vec3 at = poses[b].translation + pace * ways[b];
-                poses[b] = composed(small_rotation(axes[b], pace), poses[b]);
-                poses[b].translation = at;
-                triplet.each([&](Scene& scene) { scene.set_pose(b, poses[b]); });
+            for (BodyId b = 0; b < movers.size(); ++b) {
+                const Pose pose = movers[b].next(random);
+                triplet.each([&](Scene& scene) { scene.set_pose(b, pose); });
             }
             triplet.step(counts);
         }

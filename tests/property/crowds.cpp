@@ -118,8 +118,9 @@ const char* name_of(Kind kind) {
 }
 
 const char* name_of(Course course) {
-    constexpr const char* names[] = {"drift", "jitter",   "spin",    "approach", "tumble",
-                                     "still", "teleport", "sheared", "mixed"};
+    constexpr const char* names[] = {"drift",  "jitter", "spin",     "creep",   "approach",
+                                     "tumble", "still",  "teleport", "sheared", "mixed"};
+    static_assert(std::size(names) == std::size(courses));
     return names[static_cast<std::size_t>(course)];
 }
 
@@ -204,6 +205,16 @@ Pose Mover::next(Random& random) {
     }
     case Course::spin:
         pose_ = turned(pose_, axis_, rate_);
+        break;
+    case Course::creep:
+        if (step_ % 10 == 1) {
+            constexpr double paces[] = {1e-5, 2e-4, 8e-4, 1.6e-3, 4e-3};
+            rate_ = paces[random.below(std::size(paces))];
+            way_ = random.direction();
+            axis_ = random.direction();
+        }
+        pose_ = turned(pose_, axis_, rate_);
+        pose_.translation = at + rate_ * size_ * way_;
         break;
     case Course::approach: {
         const int phase = step_ % period_;

@@ -35,6 +35,7 @@ enum class Course {
     drift,    ///< slowly, turning slowly, and back
     jitter,   ///< about one place, by anything from a rounding to a thousandth of its size
     spin,     ///< in place, always the same way
+    creep,    ///< at a pace and a way that change now and then, about the fastest at which caps are asked
     approach, ///< into its place and out again
     tumble,   ///< by a large part of its size and any angle, every step
     still,    ///< not a bit
@@ -42,8 +43,9 @@ enum class Course {
     sheared,  ///< jitter of a rotation that is one only to 9e-5
     mixed     ///< each body another of these
 };
-inline constexpr Course courses[] = {Course::drift, Course::jitter,   Course::spin,    Course::approach, Course::tumble,
-                                     Course::still, Course::teleport, Course::sheared, Course::mixed};
+inline constexpr Course courses[] = {Course::drift,    Course::jitter, Course::spin,  Course::creep,
+                                     Course::approach, Course::tumble, Course::still, Course::teleport,
+                                     Course::sheared,  Course::mixed};
 const char* name_of(Course course);
 
 /// A body's poses, one a step.

@@ -19,22 +19,31 @@ using namespace raycontact::reference;
 
 namespace {
 
-// Forty bodies in a crowd that turn and drift a little each step.
+using Shapes = std::vector<std::shared_ptr<const Shape>>;
+
+const Shapes& closed_shapes() {
+    static const Shapes shapes = [] {
+        Shapes list;
+        for (const Subject& subject : closed_subjects()) list.push_back(subject.shape);
+        return list;
+    }();
+    return shapes;
+}
+
+// Forty bodies in a crowd that drift a little each step.
 class Crowd {
 public:
-    explicit Crowd(const Settings& settings) : scene(settings), random_(99) {
-        const auto& subjects = closed_subjects();
+    explicit Crowd(const Settings& settings, const Shapes& shapes = closed_shapes()) : scene(settings), random_(99) {
         for (std::uint32_t i = 0; i < 40; ++i) {
-            const Subject& subject = subjects[i % subjects.size()];
             Pose pose = random_.rotation();
             pose.translation = 1.75 * random_.in_ball();
-            scene.add(subject.shape, pose);
+            scene.add(shapes[i % shapes.size()], pose);
             poses.push_back(pose);
         }
     }
-    void move() {
+    void move(double pace = 0.01) {
         for (BodyId body = 0; body < poses.size(); ++body) {
-            const Vec3 by = 0.01 * random_.in_ball();
+            const Vec3 by = pace * random_.in_ball();
             poses[body].translation = poses[body].translation + by;
             scene.set_pose(body, poses[body]);
         }
@@ -121,32 +130,22 @@ TEST(determinism, threads_change_no_counter_where_caps_are_asked) {
         std::vector<Contact> contacts;
         std::vector<double> counted;
     };
-    std::vector<std::shared_ptr<const Shape>> shapes;
+    Shapes shapes;
     for (const char* kind : {"sphere", "torus", "knot"}) // of which cap_test says that caps are asked
         shapes.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
     std::vector<Step> first;
     for (const std::uint32_t count : {1u, 2u, 3u, 5u}) {
-        Scene scene(threads(count));
-        Random random(7);
-        std::vector<Pose> poses;
-        for (std::uint32_t i = 0; i < 30; ++i) {
-            Pose pose = random.rotation();
-            pose.translation = 1.6 * random.in_ball();
-            scene.add(shapes[i % shapes.size()], pose);
-            poses.push_back(pose);
-        }
+        Crowd crowd(threads(count), shapes);
         std::uint64_t known = 0, rays = 0;
         for (std::size_t step = 0; step < 24; ++step) {
-            const auto contacts = scene.step();
-            if (count == 1) first.push_back({copy(contacts), counters(scene.stats())});
+            const auto contacts = crowd.scene.step();
+            const StepStats& stats = crowd.scene.stats();
+            if (count == 1) first.push_back({copy(contacts), counters(stats)});
             EXPECT_TRUE(same_bits(first[step].contacts, contacts)) << count << " threads, step " << step;
-            EXPECT_EQ(first[step].counted, counters(scene.stats())) << count << " threads, step " << step;
-            known += scene.stats().rays - scene.stats().rays_cast;
-            rays += scene.stats().rays;
-            for (BodyId body = 0; body < poses.size(); ++body) {
-                poses[body].translation = poses[body].translation + (step % 6 == 5 ? 0.01 : 0.001) * random.in_ball();
-                scene.set_pose(body, poses[body]);
-            }
+            EXPECT_EQ(first[step].counted, counters(stats)) << count << " threads, step " << step;
+            known += stats.rays - stats.rays_cast;
+            rays += stats.rays;
+            crowd.move(step % 6 == 5 ? 0.01 : 0.001);
         }
         EXPECT_GT(known, rays / 2);
     }

@@ -20,16 +20,6 @@ struct AimedRay {
     double depth = 0;       ///< metres along the ray to the triangle; below 0: from outside
 };
 
-/// The corners of the triangle at a slot, as the kernels see them.
-inline std::array<Vec3, 3> corners(const ShapeData& shape, std::uint32_t slot) {
-    const kernels::TriangleBlock& block = shape.triangle_blocks[slot / TRIANGLE_LANES];
-    const std::uint32_t lane = slot % TRIANGLE_LANES;
-    std::array<Vec3, 3> all;
-    for (std::size_t k = 0; k < 3; ++k)
-        all[k] = {block.corner[3 * k][lane], block.corner[3 * k + 1][lane], block.corner[3 * k + 2][lane]};
-    return all;
-}
-
 /// The triangle's two radii, of the narrow angle and of the wide one, metres.
 inline std::array<double, 2> cap_radii(const ShapeData& shape, std::uint32_t slot) {
     const std::uint32_t cap = shape.triangle_blocks[slot / TRIANGLE_LANES].cap[slot % TRIANGLE_LANES];

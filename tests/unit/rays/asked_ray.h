@@ -4,6 +4,7 @@
 #include "mesh/vector.h"
 #include "shape/shape_data.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -17,6 +18,16 @@ inline void store(float (&to)[3], const Vec3& from) {
     to[0] = static_cast<float>(from.x);
     to[1] = static_cast<float>(from.y);
     to[2] = static_cast<float>(from.z);
+}
+
+/// The corners of the triangle at a slot, as the kernels see them.
+inline std::array<Vec3, 3> corners(const ShapeData& shape, std::uint32_t slot) {
+    const kernels::TriangleBlock& block = shape.triangle_blocks[slot / TRIANGLE_LANES];
+    const std::uint32_t lane = slot % TRIANGLE_LANES;
+    std::array<Vec3, 3> all;
+    for (std::size_t k = 0; k < 3; ++k)
+        all[k] = {block.corner[3 * k][lane], block.corner[3 * k + 1][lane], block.corner[3 * k + 2][lane]};
+    return all;
 }
 
 inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const Vec3& direction, double reach) {

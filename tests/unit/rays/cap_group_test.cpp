@@ -99,7 +99,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
                 stepped += alone->slot != all[i].held.triangle;
             }
         }
-        group.rays.count = group.asks_caps = 0;
+        group.rays.count = 0;
     }
     std::printf("[ counts   ] %llu rays, %llu known with a tube, %llu by caps, %llu of them by another triangle; %llu "
                 "differ\n",

@@ -23,7 +23,7 @@ struct Counts {
 
 // No more than the cosine of the ray and any normal in the cap; -1: the ray begins outside. Half of what is kept from
 // the rim for rounding may be used up.
-double facing_in_cap(const ShapeData& target, std::uint32_t slot, const Vec3& from, double along, double margin) {
+double least_facing(const ShapeData& target, std::uint32_t slot, const Vec3& from, double along, double margin) {
     const auto corner = corners(target, slot);
     const double far = length((1.0 / 3) * (corner[0] + corner[1] + corner[2]) - from) + 0.5 * margin;
     const auto radii = cap_radii(target, slot);
@@ -38,7 +38,7 @@ void count_against_premises(const ShapeData& target, std::uint32_t slot, const k
     const auto corner = corners(target, slot);
     const Vec3 p = vec(ray.position), d = (1 / length(vec(ray.direction))) * vec(ray.direction);
     const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]), n = (1 / length(normal)) * normal;
-    const double facing = facing_in_cap(target, slot, p, dot(n, d), margin);
+    const double facing = least_facing(target, slot, p, dot(n, d), margin);
     counts.askew += !(facing > double(CAP_LEAST_FACING) + 0.5 * double(CAP_LOST_OF_FACING));
     const double t = dot(corner[0] - p, n) / dot(d, n);
     // Of 4 tolerances in the plane of the ray test more than half are left square to the ray.

@@ -96,13 +96,8 @@ void examine_leaving(const kernels::Held& held, const ShapeData& target, const S
 // A ray of a leaving tube, moved so that some tolerances decide: through a point that near one of the triangle's edges,
 // or so that it meets it that near one of the tube's ends, or turned by nearly all that is allowed.
 kernels::prototype::SourceRay aim(const kernels::Held& held, const ShapeData& target, double reach, Random& random) {
-    const kernels::TriangleBlock& block = target.triangle_blocks[held.triangle / TRIANGLE_LANES];
-    const std::uint32_t lane = held.triangle % TRIANGLE_LANES, first = random.below(3);
-    Vec3 corner[3];
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        const std::uint32_t k = 3 * ((first + c) % 3);
-        corner[c] = {block.corner[k][lane], block.corner[k + 1][lane], block.corner[k + 2][lane]};
-    }
+    std::array<Vec3, 3> corner = corners(target, held.triangle);
+    std::rotate(corner.begin(), corner.begin() + random.below(3), corner.end());
     const double tolerance = double(target.header.tolerance);
     // The point of the edge that is nearest to where the ray met its plane, or any.
     const Vec3 along = corner[1] - corner[0], across = corner[2] - corner[0];
