@@ -27,7 +27,7 @@ void NarrowPhase::take(const Rays& rays, std::span<const std::uint32_t> which, S
     rays.count(stats);
 }
 
-void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats) {
     local_.clear();
     standard_.fill(device(), executor(), shapes_, bodies, pairs, settings_);
     standard_.cast(device(), settings_.caster, shapes_);
@@ -35,7 +35,7 @@ void NarrowPhase::standard(std::span<const PlacedBody> bodies, std::span<const P
 }
 
 // The same contacts; pairs, and blocks of vertices, that cannot touch yet are left alone.
-void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats) {
     motion_.update(executor(), bodies);
     cast_certified(bodies, pairs, settings_.displacement_threshold);
     still_.clear();
@@ -46,13 +46,13 @@ void NarrowPhase::certified(std::span<const PlacedBody> bodies, std::span<const 
     if (!still_.empty()) local_.add(still_, certified_.still());
 }
 
-void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void NarrowPhase::cast_certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                                  std::optional<double> threshold) {
     certified_.fill(device(), executor(), shapes_, bodies, pairs, motion_, threshold);
     certified_.cast(device(), executor(), settings_.caster, shapes_);
 }
 
-void NarrowPhase::take_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void NarrowPhase::take_certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                                  std::span<const std::uint32_t> which, StepStats& stats) {
     take(certified_, which, stats);
     if (certified_.fast().empty()) return;
@@ -62,7 +62,7 @@ void NarrowPhase::take_certified(std::span<const PlacedBody> bodies, std::span<c
 }
 
 // Contacts followed from the last step, and in full for pairs that moved too far; not always those of `standard`.
-void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats) {
+void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats) {
     local_.clear();
     motion_.update(executor(), bodies);
     coherent_.follow(device(), executor(), shapes_, bodies, pairs, motion_, settings_);
@@ -74,8 +74,8 @@ void NarrowPhase::coherent(std::span<const PlacedBody> bodies, std::span<const P
     take_certified(bodies, fast_pairs_, coherent_.fast(), stats);
 }
 
-void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
-                       StepStats& stats) {
+void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+                       std::vector<Contact>& contacts, StepStats& stats) {
     const auto start = std::chrono::steady_clock::now();
     stats = {};
     try {

@@ -28,18 +28,18 @@ public:
     void set_settings(const Settings& settings);
 
     /// pairs: sorted, each once, indices into bodies. Fills contacts and stats except broad_ms.
-    void step(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, std::vector<Contact>& contacts,
+    void step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, std::vector<Contact>& contacts,
               StepStats& stats);
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
 
 private:
-    void standard(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
-    void certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
-    void coherent(std::span<const PlacedBody> bodies, std::span<const Pair> pairs, StepStats& stats);
-    void cast_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+    void standard(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats);
+    void certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats);
+    void coherent(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, StepStats& stats);
+    void cast_certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                         std::optional<double> threshold);
     /// which: what numbers `pairs` have in the step; empty: their own.
-    void take_certified(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+    void take_certified(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                         std::span<const std::uint32_t> which, StepStats& stats);
     /// The contacts among the rays that a method has cast.
     template <class Rays>
@@ -57,7 +57,7 @@ private:
     LocalContacts local_;                      ///< by all; kept until the next step has asked for them
     std::vector<kernels::LocalContact> still_; ///< of the last step, still true
     Placer placer_;
-    std::vector<Pair> fast_pairs_; ///< of predictive, that are left to certified
+    std::vector<SlotPair> fast_pairs_; ///< of predictive, that are left to certified
     Changes changes_;
 };
 

@@ -34,7 +34,7 @@ int widest_axis(const std::vector<WorldBox>& boxes) {
 
 } // namespace
 
-WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow) {
+WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow) {
     const auto& r = pose.rotation;
     const Vec3 middle{0.5 * (box_min.x + box_max.x), 0.5 * (box_min.y + box_max.y), 0.5 * (box_min.z + box_max.z)};
     const Vec3 half{0.5 * (box_max.x - box_min.x) + grow, 0.5 * (box_max.y - box_min.y) + grow,
@@ -48,7 +48,7 @@ WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const 
     return {body, {c.x - e.x, c.y - e.y, c.z - e.z}, {c.x + e.x, c.y + e.y, c.z + e.z}};
 }
 
-void SweepAndPrune::find_pairs(std::vector<WorldBox>& boxes, std::vector<Pair>& pairs) const {
+void SweepAndPrune::find_pairs(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) const {
     pairs.clear();
     if (boxes.size() < 2) return;
     const int axis = widest_axis(boxes), second = (axis + 1) % 3, third = (axis + 2) % 3;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/scene.h>
+#include "slot_pair.h"
+
+#include <raycontact/pose.h>
 
 #include <cstdint>
 #include <vector>
@@ -10,18 +12,18 @@ namespace raycontact {
 
 /// World box of a body, metres.
 struct WorldBox {
-    BodyId body = 0;
+    BodySlot body = 0;
     Vec3 low, high;
 };
 
 /// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.
-WorldBox world_box(BodyId body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow);
+WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow);
 
 /// Sweep and prune along the axis on which the boxes lie farthest apart: O(n log n) plus the overlaps on that axis.
 /// Touching boxes count. The result is sorted and does not depend on the order of the input.
 class SweepAndPrune {
 public:
-    void find_pairs(std::vector<WorldBox>& boxes, std::vector<Pair>& pairs) const;
+    void find_pairs(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) const;
 };
 
 } // namespace raycontact

@@ -12,7 +12,7 @@ namespace {
 
 // What all contacts of one direction of a pair have in common.
 struct Side {
-    Side(const DirectedPair& bodies, const Pair& of, bool first, Direction asked)
+    Side(const DirectedPair& bodies, const SlotPair& of, bool first, Direction asked)
         : pair(of), from_a(first), direction(asked), source(bodies.source.shape->data()),
           source_pose(bodies.source.pose), target_pose(bodies.target.pose),
           triangle_index(bodies.target.shape->triangle_index().data()) {}
@@ -24,7 +24,7 @@ struct Side {
         __builtin_prefetch(&triangle_index[local.triangle]);
     }
 
-    Pair pair;
+    SlotPair pair;
     bool from_a;
     Direction direction;
     const ShapeData& source;
@@ -71,7 +71,7 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
 } // namespace
 
 void Placer::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                 std::span<const Pair> pairs, std::span<const kernels::LocalContact> local,
+                 std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
                  std::vector<Contact>& contacts) {
     contacts.resize(local.size());
     order_.resize(local.size());

@@ -3,6 +3,8 @@
 
 #include "pairs/ordered_pairs.h"
 
+#include <raycontact/scene.h>
+
 #include <vector>
 
 namespace raycontact {
@@ -11,8 +13,9 @@ namespace raycontact {
 class Placer {
 public:
     /// local: those of a pair lie together, in the order of the pairs.
-    void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
-             std::span<const kernels::LocalContact> local, std::vector<Contact>& contacts);
+    void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
+             std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
+             std::vector<Contact>& contacts);
 
 private:
     std::vector<std::uint64_t> order_; ///< of the local contacts: vertex, place

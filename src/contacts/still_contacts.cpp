@@ -19,13 +19,13 @@ std::size_t skip(std::span<const T> values, std::size_t at, Before&& before) {
 
 } // namespace
 
-void find_still_contacts(std::span<const Pair> last_pairs, std::span<const kernels::LocalContact> last,
-                         std::span<const Pair> pairs, std::span<const std::uint32_t> ordered,
+void find_still_contacts(std::span<const SlotPair> last_pairs, std::span<const kernels::LocalContact> last,
+                         std::span<const SlotPair> pairs, std::span<const std::uint32_t> ordered,
                          std::vector<kernels::LocalContact>& found) {
     std::size_t pair = 0, contact = 0;
     for (std::uint32_t i = 0; i < ordered.size(); ++i) {
-        const Pair& wanted = pairs[ordered[i] / 2];
-        pair = skip(last_pairs, pair, [&](const Pair& last_pair) { return last_pair < wanted; });
+        const SlotPair& wanted = pairs[ordered[i] / 2];
+        pair = skip(last_pairs, pair, [&](const SlotPair& last_pair) { return last_pair < wanted; });
         if (pair == last_pairs.size() || last_pairs[pair] != wanted)
             throw std::logic_error("a pair is said not to have moved, but the last step had no such pair");
         const std::size_t number = 2 * pair + ordered[i] % 2; // in the last step

@@ -3,7 +3,7 @@
 
 #include "device/host_kernels.h"
 
-#include <raycontact/scene.h>
+#include "slot_pair.h"
 
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ namespace raycontact {
 /// pairs, numbered 2 x pair + direction and ascending, each contact by its pair's place in `ordered`. last: the
 /// contacts of that step, by the same numbers of its own pairs, of which all of these were; all sorted. Throws
 /// std::logic_error for a pair that was none.
-void find_still_contacts(std::span<const Pair> last_pairs, std::span<const kernels::LocalContact> last,
-                         std::span<const Pair> pairs, std::span<const std::uint32_t> ordered,
+void find_still_contacts(std::span<const SlotPair> last_pairs, std::span<const kernels::LocalContact> last,
+                         std::span<const SlotPair> pairs, std::span<const std::uint32_t> ordered,
                          std::vector<kernels::LocalContact>& found);
 
 } // namespace raycontact

@@ -64,7 +64,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     });
 }
 
-double Motion::pair_bound(const Pair& pair) const {
+double Motion::pair_bound(const SlotPair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
     const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
@@ -74,7 +74,7 @@ double Motion::pair_bound(const Pair& pair) const {
     return 1.001 * double(still + turned);
 }
 
-double Motion::pair_speed(const Pair& pair) const {
+double Motion::pair_speed(const SlotPair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
     return double(distance(a.shift, b.shift)) + double(std::max(a.turn * a.reach, b.turn * b.reach));
 }

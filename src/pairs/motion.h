@@ -17,15 +17,17 @@ public:
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// Asks for what pair_bound() reads of the second body, its first line; the first's is that of the pair before.
-    void prefetch(const Pair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
+    void prefetch(const SlotPair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
     /// No less than what any vertex of either body moved in the frame of the other, metres.
-    double pair_bound(const Pair& pair) const;
+    double pair_bound(const SlotPair& pair) const;
     /// Neither body has moved by a bit since the last step.
-    bool is_still(const Pair& pair) const { return bodies_[pair.first].still && bodies_[pair.second].still; }
+    bool is_still(const SlotPair& pair) const { return bodies_[pair.first].still && bodies_[pair.second].still; }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
-    double pair_speed(const Pair& pair) const;
+    double pair_speed(const SlotPair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
-    double pair_shear(const Pair& pair) const { return lasts_[pair.first].shear + lasts_[pair.second].shear + 1e-15; }
+    double pair_shear(const SlotPair& pair) const {
+        return lasts_[pair.first].shear + lasts_[pair.second].shear + 1e-15;
+    }
 
 private:
     /// What a pair asks of a body. Small, so that those of thousands of bodies stay near: in float, each with what its

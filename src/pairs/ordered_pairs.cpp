@@ -48,7 +48,7 @@ void widen(kernels::OrderedPair& pair, float by) {
     }
 }
 
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  std::vector<kernels::OrderedPair>& ordered) {
     if (pairs.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
         throw std::length_error("more than 2^31 pairs in one step; give fewer");
@@ -63,7 +63,7 @@ void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::sp
     });
 }
 
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered) {
     ordered.resize(which.size());
     executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {

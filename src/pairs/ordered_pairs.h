@@ -4,7 +4,9 @@
 #include "device/host_kernels.h"
 #include "executor/executor.h"
 
-#include <raycontact/scene.h>
+#include "slot_pair.h"
+
+#include <raycontact/shape.h>
 
 #include <vector>
 
@@ -23,7 +25,7 @@ struct DirectedPair {
     const PlacedBody& source;
     const PlacedBody& target;
 };
-inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                                   std::uint32_t ordered) {
     const auto [a, b] = pairs[ordered / 2];
     return ordered % 2 == 0 ? DirectedPair{bodies[a], bodies[b]} : DirectedPair{bodies[b], bodies[a]};
@@ -40,11 +42,11 @@ void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& 
 void widen(kernels::OrderedPair& pair, float by);
 
 /// Each pair twice, a into b and b into a, in the order of `pairs`.
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  std::vector<kernels::OrderedPair>& ordered);
 
 /// Those directions only, by their numbers.
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered);
 
 } // namespace raycontact

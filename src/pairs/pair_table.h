@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/scene.h>
+#include "slot_pair.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,7 +22,7 @@ class PairTable {
 public:
     /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
     template <class Closed>
-    void match(std::span<const Pair> pairs, Closed&& closed) {
+    void match(std::span<const SlotPair> pairs, Closed&& closed) {
         same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
         if (same_) return;
         next_slots_.resize(pairs.size());
@@ -55,7 +55,7 @@ public:
     }
 
     /// Of the match before the last, unless all has been forgotten since.
-    std::span<const Pair> last_pairs() const { return same_ ? open_ : last_; }
+    std::span<const SlotPair> last_pairs() const { return same_ ? open_ : last_; }
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_[i]]; }
@@ -98,7 +98,7 @@ public:
     }
 
     std::uint64_t bytes() const {
-        return open_.size() * (sizeof(Pair) + sizeof(std::uint32_t) + sizeof(Hot))
+        return open_.size() * (sizeof(SlotPair) + sizeof(std::uint32_t) + sizeof(Hot))
                + (states_.size() - free_.size()) * sizeof(State);
     }
 
@@ -125,7 +125,7 @@ private:
         return slot;
     }
 
-    std::vector<Pair> open_, last_;
+    std::vector<SlotPair> open_, last_;
     bool same_ = false; ///< the last match had the pairs of the one before: last_ is older
     std::vector<std::uint32_t> slots_, next_slots_, free_;
     std::vector<State> states_;

@@ -118,7 +118,7 @@ CertifiedRays::Due& CertifiedRays::add_due(std::uint32_t ordered, const PlacedBo
 }
 
 // By the cheap bound nothing of the pair needs to be looked at, but it has rays.
-void CertifiedRays::repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear,
+void CertifiedRays::repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair, double shear,
                                 double speed, Slice& slice) {
     const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
     const PairPlace now = place_pair(body[0]->centred, body[1]->centred, shear);
@@ -127,7 +127,7 @@ void CertifiedRays::repeat_pair(std::uint32_t i, std::span<const PlacedBody> bod
 }
 
 // Decides for one pair, in double, what must be looked at.
-void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear,
+void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair, double shear,
                               double speed, std::optional<double> threshold, Slice& slice) {
     PairState& state = table_.state(i);
     const PlacedBody* body[2] = {&bodies[pair.first], &bodies[pair.second]};
@@ -182,7 +182,7 @@ void CertifiedRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodie
 
 // A cheap bound first, which most pairs at rest pass.
 void CertifiedRays::wake_slice(std::uint32_t begin, std::uint32_t end, std::span<const PlacedBody> bodies,
-                               std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold,
+                               std::span<const SlotPair> pairs, const Motion& motion, std::optional<double> threshold,
                                Slice& slice) {
     const auto wants = [&](std::uint32_t i, Slack& slack) {
         slack.metres -= motion.pair_bound(pairs[i]);
@@ -196,7 +196,7 @@ void CertifiedRays::wake_slice(std::uint32_t begin, std::uint32_t end, std::span
         return sleeps && !slack.still ? Wanted::head : Wanted::all;
     };
     const auto ask = [&](std::uint32_t i, Wanted wanted) {
-        const Pair& pair = pairs[i];
+        const SlotPair& pair = pairs[i];
         const double speed = motion.pair_speed(pair), shear = motion.pair_shear(pair);
         if (wanted == Wanted::head)
             repeat_pair(i, bodies, pair, shear, speed, slice);
@@ -216,7 +216,7 @@ void CertifiedRays::each_slice(Executor& executor, std::uint32_t grain, Work&& w
     });
 }
 
-void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void CertifiedRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                             const Motion& motion, std::optional<double> threshold) {
     const auto count = static_cast<std::uint32_t>(pairs.size());
     slice_count_ = (count + slice_size - 1) / slice_size;
@@ -404,7 +404,7 @@ void CertifiedRays::cast(Device& device, Executor& executor, Caster caster, cons
 }
 
 void CertifiedRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
-                         std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Motion& motion,
+                         std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Motion& motion,
                          std::optional<double> threshold) {
     if (packed_ != shapes.packed()) clear(); // lists name vertex blocks by their place
     packed_ = shapes.packed();

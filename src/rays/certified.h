@@ -9,7 +9,7 @@
 #include "rays/block_finder.h"
 #include "rays/held.h"
 
-#include <raycontact/settings.h>
+#include <raycontact/scene.h>
 
 #include <optional>
 
@@ -23,7 +23,7 @@ class CertifiedRays {
 public:
     /// threshold: metres that a list of blocks reaches beyond the bounds; empty: chosen by the pair's speed and size.
     void fill(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-              std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold);
+              std::span<const SlotPair> pairs, const Motion& motion, std::optional<double> threshold);
     void clear();
 
     const Array<kernels::OrderedPair>& pairs() const { return pairs_.array(); }
@@ -39,7 +39,7 @@ public:
     /// The same of the pairs of which neither body has moved: their contacts are those of the last step.
     std::span<const std::uint32_t> still() const { return still_; }
     /// Of the step before.
-    std::span<const Pair> last_pairs() const { return table_.last_pairs(); }
+    std::span<const SlotPair> last_pairs() const { return table_.last_pairs(); }
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
@@ -108,22 +108,23 @@ private:
     /// work(slice) for each slice of this step, `grain` of them at a time.
     template <class Work>
     void each_slice(Executor& executor, std::uint32_t grain, Work&& work);
-    void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+    void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  const Motion& motion, std::optional<double> threshold);
     void wake_slice(std::uint32_t begin, std::uint32_t end, std::span<const PlacedBody> bodies,
-                    std::span<const Pair> pairs, const Motion& motion, std::optional<double> threshold, Slice& slice);
+                    std::span<const SlotPair> pairs, const Motion& motion, std::optional<double> threshold,
+                    Slice& slice);
     void make_lists(Device& device, const ShapeStore& shapes);
     void look(Device& device, const ShapeStore& shapes);
-    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
-                   std::optional<double> threshold, Slice& slice);
+    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair, double shear,
+                   double speed, std::optional<double> threshold, Slice& slice);
     void list_stale();
     void gather(Device& device, Executor& executor);
     void settle(Device& device, Executor& executor, bool held);
     static Found add_up(std::span<const kernels::Look> looks);
     void settle_one(std::uint32_t ordered, const Due& due, const Found& found, bool held, kernels::Holder& holder);
     void close(PairState& state);
-    void repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, double shear, double speed,
-                     Slice& slice);
+    void repeat_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair, double shear,
+                     double speed, Slice& slice);
     Due& add_due(std::uint32_t ordered, const PlacedBody& source, const PlacedBody& target, double speed,
                  const PairPlace& now, Slice& slice);
     static void forget_rays(PairState& state);

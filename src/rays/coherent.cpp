@@ -45,7 +45,7 @@ double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, co
 }
 
 // Decides for one pair, in double, whether it is looked at in full or followed.
-void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair,
+void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair,
                              const Motion& motion, const Settings& settings) {
     PairState& state = table_.state(i);
     auto& [left, kept] = table_.hot(i);
@@ -80,7 +80,7 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
 }
 
-void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                            const Motion& motion, const Settings& settings) {
     const bool predictive = settings.method == Method::predictive;
     turns_.resize(pairs.size());
@@ -236,7 +236,7 @@ void CoherentRays::keep(Device& device) {
 }
 
 void CoherentRays::follow(Device& device, Executor& executor, const ShapeStore& shapes,
-                          std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Motion& motion,
+                          std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Motion& motion,
                           const Settings& settings) {
     if (packed_ != shapes.packed()) clear(); // candidates name vertices by their place
     packed_ = shapes.packed();

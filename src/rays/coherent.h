@@ -6,7 +6,7 @@
 #include "pairs/pair_table.h"
 #include "rays/block_finder.h"
 
-#include <raycontact/settings.h>
+#include <raycontact/scene.h>
 
 #include <array>
 
@@ -18,7 +18,7 @@ namespace raycontact {
 class CoherentRays {
 public:
     void follow(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                std::span<const Pair> pairs, const Motion& motion, const Settings& settings);
+                std::span<const SlotPair> pairs, const Motion& motion, const Settings& settings);
     void clear() { table_.clear(); }
 
     const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
@@ -33,9 +33,9 @@ public:
 
 private:
     enum class Turn : std::uint8_t { follow, look, leave };
-    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const Pair& pair, const Motion& motion,
+    void wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair, const Motion& motion,
                    const Settings& settings);
-    void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+    void wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                  const Motion& motion, const Settings& settings);
     void find_rays(Device& device, const ShapeStore::Arrays& arrays);
     void let_sleep(Device& device);

@@ -10,7 +10,7 @@
 namespace raycontact {
 
 void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
-                        std::span<const PlacedBody> bodies, std::span<const Pair> pairs, const Settings& settings) {
+                        std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings) {
     order_pairs(executor, bodies, pairs, host_pairs_); // refuses more pairs than have numbers
     which_.resize(2 * pairs.size());
     std::iota(which_.begin(), which_.end(), 0U);
@@ -20,7 +20,7 @@ void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& sh
 }
 
 void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStore& shapes,
-                             std::span<const PlacedBody> bodies, std::span<const Pair> pairs,
+                             std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                              std::span<const std::uint32_t> which) {
     which_.assign(which.begin(), which.end());
     order_pairs(executor, bodies, pairs, which, host_pairs_);

@@ -4,7 +4,7 @@
 #include "pairs/ordered_pairs.h"
 #include "rays/ray_queue.h"
 
-#include <raycontact/settings.h>
+#include <raycontact/scene.h>
 
 namespace raycontact {
 
@@ -13,11 +13,11 @@ namespace raycontact {
 class StandardRays {
 public:
     void fill(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-              std::span<const Pair> pairs, const Settings& settings);
+              std::span<const SlotPair> pairs, const Settings& settings);
     /// Of some ordered pairs only, 2 x pair + direction, ascending. Blocks of vertices that are clear of the other body
     /// are left out; the contacts are the same.
     void fill_near(Device& device, Executor& executor, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                   std::span<const Pair> pairs, std::span<const std::uint32_t> which);
+                   std::span<const SlotPair> pairs, std::span<const std::uint32_t> which);
 
     const Array<kernels::OrderedPair>& pairs() const { return device_pairs_; }
     const Array<kernels::Ray>& rays() const { return queue_.rays(); }
