@@ -67,8 +67,8 @@ private:
             for (int i = 0; i < 3; ++i)
                 p[i] =
                     ((r[3 * i] * s.position[0] + r[3 * i + 1] * s.position[1]) + r[3 * i + 2] * s.position[2]) + t[i];
-            if (p[0] < shape.low.x || p[0] > shape.high.x || p[1] < shape.low.y || p[1] > shape.high.y
-                || p[2] < shape.low.z || p[2] > shape.high.z)
+            const float *low = shape.header.low, *high = shape.header.high;
+            if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] || p[2] > high[2])
                 continue;
             for (int i = 0; i < 3; ++i)
                 d[i] = (r[3 * i] * s.direction[0] + r[3 * i + 1] * s.direction[1]) + r[3 * i + 2] * s.direction[2];

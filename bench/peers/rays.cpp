@@ -4,9 +4,9 @@
 
 #include "device/device.h"
 #include "executor/float_environment.h"
+#include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
-#include "rays/cast_standard.h"
-#include "rays/ray_queue.h"
+#include "rays/standard.h"
 
 namespace raycontact::bench {
 
@@ -31,18 +31,33 @@ public:
             placed.pose = placed.centred = step.poses[body];
             placed.centred.translation = transform_point(placed.pose, placed.shape->centre());
         }
-        order_pairs(*opened_.executor, bodies_, step.pairs, ordered_);
-        pairs_.write(*opened_.device, ordered_);
-        queue_.fill(*opened_.device, shapes_.arrays(), pairs_, false);
+        pairs_ = step.pairs;
+        find(false);
     }
 
 protected:
+    Update update() { return {*opened_.device, *opened_.executor, shapes_, bodies_, pairs_, motion_, settings_}; }
+
+    // grid: those alone that the grids of the shapes leave. They are cast, too.
+    void find(bool grid) {
+        settings_.skip_outside = grid;
+        standard_.begin(update(), batch_);
+        for (;;) {
+            batch_.totals.read(*opened_.device, batch_.sums);
+            if (standard_.had_room(*opened_.device, batch_)) break;
+            standard_.cast(update(), batch_);
+        }
+    }
+    std::size_t ray_count() const { return batch_.sums[RayBatch::ray_sum].results; }
+
     OpenDevice opened_;
     ShapeStore shapes_;
     std::vector<PlacedBody> bodies_;
-    std::vector<kernels::OrderedPair> ordered_;
-    Array<kernels::OrderedPair> pairs_;
-    RayQueue queue_;
+    std::vector<SlotPair> pairs_;
+    Motion motion_;
+    Settings settings_;
+    StandardRays standard_;
+    RayBatch batch_;
 };
 
 class OurRays : public RayPeer {
@@ -51,15 +66,14 @@ public:
 
     Found detect(const WorkStep&) override {
         const FloatEnvironment environment;
-        return cast(false);
+        cast_in_full(update(), batch_, false);
+        return found();
     }
 
 protected:
-    /// near: see cast_standard().
-    Found cast(bool near) {
-        cast_standard(*opened_.device, Caster::bvh, shapes_.arrays(), pairs_, queue_.rays(), hits_, near);
-        host_.resize(hits_.size());
-        hits_.read(*opened_.device, host_);
+    Found found() {
+        host_.resize(ray_count());
+        batch_.hits.read(*opened_.device, host_);
         Found found;
         found.rays = host_.size();
         for (const kernels::Hit& hit : host_) {
@@ -71,7 +85,6 @@ protected:
     }
 
 private:
-    Array<kernels::Hit> hits_;
     std::vector<kernels::Hit> host_;
 };
 
@@ -83,10 +96,10 @@ public:
 
     Found detect(const WorkStep&) override {
         const FloatEnvironment environment;
-        queue_.fill(*opened_.device, shapes_.arrays(), pairs_, true);
-        Found found = cast(true);
-        found.rays = queue_.vertices_inside();
-        return found;
+        find(true);
+        Found of_all = found();
+        of_all.rays = batch_.sums[RayBatch::ray_sum].sums[1];
+        return of_all;
     }
 };
 
@@ -101,8 +114,10 @@ public:
 
     void prepare(const WorkStep& step) override {
         RayPeer::prepare(step);
-        rays_.resize(queue_.rays().size());
-        queue_.rays().read(*opened_.device, rays_);
+        rays_.resize(ray_count());
+        batch_.rays.read(*opened_.device, rays_);
+        ordered_.resize(batch_.pairs->size());
+        batch_.pairs->read(*opened_.device, ordered_);
     }
 
     Found detect(const WorkStep&) override {
@@ -128,6 +143,7 @@ private:
     std::vector<std::unique_ptr<EmbreeScene>> scenes_; ///< by index in the store
     std::vector<kernels::VertexBlock> blocks_;
     std::vector<kernels::Ray> rays_;
+    std::vector<kernels::OrderedPair> ordered_;
 };
 
 } // namespace

@@ -20,6 +20,17 @@ struct DeviceInfo {
     std::string why_not; ///< empty when usable
 };
 
+/// What a device did in one step.
+struct DeviceWork {
+    std::string device;           ///< its id
+    std::uint64_t pairs = 0;      ///< unordered pairs of bodies that were its own
+    std::uint64_t launches = 0;   ///< kernels started, those of prefix sums included
+    std::uint64_t reads = 0;      ///< times the host waited for it
+    std::uint64_t bytes_up = 0;   ///< copied to its memory; none where it works in the host's
+    std::uint64_t bytes_down = 0; ///< copied from its memory
+    double busy_ms = 0;           ///< in which its kernels ran
+};
+
 /// Every device that this version knows how to use: the CPU alone so far. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();
 

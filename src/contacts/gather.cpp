@@ -1,18 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/gather.h"
 
+#include "device/launch.h"
+
+#include <algorithm>
+
 namespace raycontact {
 
-std::uint64_t Gather::run(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
-                          const Array<kernels::Ray>& rays, const Array<kernels::Hit>& hits) {
-    counts_.resize(device, hits.size());
-    sides_.resize(device, hits.size());
-    launch<KernelId::count_contacts>(device, hits.size(), hits, counts_, sides_);
-    const kernels::uint side_tests = scan_.total(device, sides_);
-    contacts_.resize(device, scan_.run(device, counts_, firsts_));
-    launch<KernelId::write_contacts>(device, contacts_.size() > 0 ? hits.size() : 0, pairs, shapes.headers,
-                                     shapes.vertex_blocks, shapes.face_normals, rays, hits, firsts_, contacts_.array());
-    return side_tests;
+namespace {
+
+constexpr std::size_t least_room = 1024; // contacts
+
+} // namespace
+
+void Gather::run(const Update& update, const RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    contacts_.grow(update.device, least_room);
+    batch.outcomes.scan(update.device, batch.count, batch.totals, RayBatch::contact_sum, contacts_.size());
+    launch<KernelId::write_contacts>(update.device, items_of(batch.totals, RayBatch::contact_sum, batch.count.most),
+                                     *batch.pairs, arrays.headers, arrays.vertex_blocks, arrays.face_normals,
+                                     batch.rays, batch.hits, batch.outcomes.firsts(), contacts_);
+}
+
+bool Gather::read(Device& device, RayBatch& batch) {
+    found_.resize(std::min(expected_, contacts_.size()));
+    const Piece pieces[] = {batch.totals.piece(batch.sums), contacts_.piece(std::span(found_))};
+    device.queue().read(pieces);
+    check_sums(batch.sums);
+    const std::size_t count = batch.sums[RayBatch::contact_sum].sums[0], known = std::min(count, found_.size());
+    if (count > contacts_.size()) {
+        contacts_.resize(device, count);
+        return false;
+    }
+    found_.resize(count);
+    if (known < count) {
+        const Piece rest = contacts_.piece(std::span(found_).subspan(known), known);
+        device.queue().read({&rest, 1});
+    }
+    expected_ = count + count / 4;
+    return true;
 }
 
 } // namespace raycontact

@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/scan.h"
-#include "device/staged.h"
-#include "shape/shape_store.h"
+#include "rays/ray_batch.h"
 
 #include <span>
+#include <vector>
 
 namespace raycontact {
 
-/// Hits to contacts in the target's frame: count, scan, write.
+/// Hits to contacts in the targets' frames, and the read that ends a step.
 class Gather {
 public:
-    /// Returns how many side tests the hits needed.
-    std::uint64_t run(Device& device, const ShapeStore::Arrays& shapes, const Array<kernels::OrderedPair>& pairs,
-                      const Array<kernels::Ray>& rays, const Array<kernels::Hit>& hits);
-    /// Of the last run, in the order of its rays; until the next.
-    std::span<const kernels::LocalContact> contacts(Device& device) { return contacts_.read(device); }
+    /// Counts the contacts of a batch and writes them.
+    void run(const Update& update, const RayBatch& batch);
+    /// Waits for all that was launched; reads the batch's sums and the contacts. False where the contacts had no room:
+    /// there is more now, and they are to be written again.
+    bool read(Device& device, RayBatch& batch);
+    /// In the order of their rays.
+    std::span<const kernels::LocalContact> contacts() const { return found_; }
 
 private:
-    Scan scan_;
-    Array<kernels::uint> counts_, sides_, firsts_;
-    Staged<kernels::LocalContact> contacts_;
+    Array<kernels::LocalContact> contacts_;
+    std::vector<kernels::LocalContact> found_;
+    std::size_t expected_ = 0;
 };
 
 } // namespace raycontact

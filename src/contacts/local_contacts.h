@@ -9,21 +9,19 @@
 
 namespace raycontact {
 
-/// The contacts that a step has found so far, in the targets' frames, in the order of the ordered pairs, which are
-/// numbered 2 x pair + direction.
+/// The contacts of a step in the targets' frames. They name their ordered pair by its number: 2 x pair + direction.
 class LocalContacts {
 public:
     void clear() { contacts_.clear(); }
-    /// Adds contacts that name their pair by its place in `ordered`, in one or two ascending runs of those numbers; no
-    /// pair may be in both, or have been added before. which: the pairs that `ordered` numbers; empty: all of them.
-    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> ordered,
-             std::span<const std::uint32_t> which = {});
+    /// Adds contacts whose pair is a place in `numbers`.
+    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> numbers);
+    /// By pair; those of one pair stay in the order in which they were added.
+    void sort(std::size_t pair_count);
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }
 
 private:
-    void merge(std::size_t first, std::size_t second);
-
-    std::vector<kernels::LocalContact> contacts_, merged_;
+    std::vector<kernels::LocalContact> contacts_, sorted_;
+    std::vector<std::uint32_t> firsts_; ///< by number
 };
 
 } // namespace raycontact

@@ -25,6 +25,10 @@ public:
         }
         size_ = size;
     }
+    /// As resize(), but never to less.
+    void grow(Device& device, std::size_t size) {
+        if (size > size_) resize(device, size);
+    }
 
     void write(Device& device, std::span<const T> values) {
         resize(device, values.size());
@@ -49,15 +53,17 @@ public:
         if (!values.empty()) device.queue().write(*buffer_, old_size * sizeof(T), values.data(), values.size_bytes());
     }
 
+    /// What Queue::read() takes: the elements from `first` on go to `values`.
+    Piece piece(std::span<T> values, std::size_t first = 0) const {
+        return {values.data(), buffer_.get(), first * sizeof(T), values.size_bytes()};
+    }
     void read(Device& device, std::span<T> values) const {
-        if (!values.empty()) device.queue().read(values.data(), *buffer_, 0, values.size_bytes());
+        const Piece all = piece(values);
+        device.queue().read({&all, 1});
     }
 
-    T read_one(Device& device, std::size_t index) const {
-        T value;
-        device.queue().read(&value, *buffer_, index * sizeof(T), sizeof(T));
-        return value;
-    }
+    /// Where the host reads and writes it, of a device that shares memory; while no launch that uses it is under way.
+    std::span<T> in_place() const { return {buffer_ ? static_cast<T*>(buffer_->host()) : nullptr, size_}; }
 
 private:
     std::unique_ptr<Buffer> buffer_;

@@ -10,6 +10,8 @@ namespace prototype {
 #include "device/cpu/instruction_set.h"
 
 #include "kernels/kernels.h"
+
+#include "kernels/certified.h"
 } // namespace prototype
 } // namespace raycontact::kernels
 
@@ -17,8 +19,10 @@ namespace raycontact {
 
 enum class KernelId : unsigned {
 #define RAYCONTACT_KERNEL(name) name,
+#define RAYCONTACT_CPU_KERNEL(name) name,
 #include "kernels/kernels.def"
 #undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
     count
 };
 
@@ -29,7 +33,9 @@ struct Prototype;
     struct Prototype<KernelId::name> {                                                                                 \
         using type = decltype(&kernels::prototype::name);                                                              \
     };
+#define RAYCONTACT_CPU_KERNEL(name) RAYCONTACT_KERNEL(name)
 #include "kernels/kernels.def"
 #undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
 
 } // namespace raycontact

@@ -3,8 +3,6 @@
 
 #include "device/array.h"
 
-#include <limits>
-#include <stdexcept>
 #include <type_traits>
 
 namespace raycontact {
@@ -16,11 +14,11 @@ template <typename Parameter>
 struct LaunchArgument;
 template <>
 struct LaunchArgument<kernels::uint> {
-    static Argument make(kernels::uint value) { return {nullptr, value}; }
+    static Argument make(kernels::uint value) { return {nullptr, value, true}; }
 };
 template <typename T>
 struct LaunchArgument<T*> {
-    static Argument make(const Array<std::remove_const_t<T>>& array) { return {array.buffer(), 0}; }
+    static Argument make(const Array<std::remove_const_t<T>>& array) { return {array.buffer(), 0, false}; }
 };
 
 template <typename Function>
@@ -28,9 +26,9 @@ struct Launch;
 template <typename... Parameters>
 struct Launch<void (*)(kernels::Range, kernels::uint, Parameters...)> {
     template <typename... Given>
-    static void run(Device& device, KernelId kernel, kernels::uint count, const Given&... given) {
+    static void run(Device& device, KernelId kernel, const Count& count, const Given&... given) {
         static_assert(sizeof...(Given) == sizeof...(Parameters), "a kernel argument is missing or in excess");
-        if (count == 0) return;
+        if (count.most == 0) return;
         const Argument arguments[] = {LaunchArgument<std::remove_cv_t<strip<Parameters>>>::make(given)...};
         device.queue().launch(kernel, count, arguments);
     }
@@ -45,10 +43,8 @@ private:
 /// Runs a kernel over `count` work items. The host build of the kernel is the prototype: a missing argument, or an
 /// array of the wrong element type, does not compile.
 template <KernelId kernel, typename... Given>
-void launch(Device& device, std::size_t count, const Given&... given) {
-    if (count > std::numeric_limits<kernels::uint>::max())
-        throw std::length_error("more than 2^32 work items in one launch; give a step fewer pairs");
-    detail::Launch<typename Prototype<kernel>::type>::run(device, kernel, static_cast<kernels::uint>(count), given...);
+void launch(Device& device, const Count& count, const Given&... given) {
+    detail::Launch<typename Prototype<kernel>::type>::run(device, kernel, count, given...);
 }
 
 } // namespace raycontact

@@ -1,37 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/scan.h"
 
+#include <limits>
 #include <stdexcept>
 
 namespace raycontact {
 
-// Of at least one value. Leaves the offsets of the blocks, and behind them the total, in sums_. Returns the number of
-// blocks.
-kernels::uint Scan::sum_up(Device& device, const Array<kernels::uint>& values) {
-    const auto count = static_cast<kernels::uint>(values.size());
-    const kernels::uint blocks = (count - 1) / SCAN_BLOCK + 1;
-    sums_.resize(device, blocks + 1);
-    launch<KernelId::scan_sums>(device, blocks, count, values, sums_);
-    launch<KernelId::scan_offsets>(device, 1, blocks, sums_);
-    return blocks;
+namespace {
+
+constexpr std::size_t words = sizeof(kernels::Totals) / sizeof(kernels::uint);
+
+} // namespace
+
+Count::Count(std::size_t number) {
+    if (number >= std::numeric_limits<kernels::uint>::max())
+        throw std::length_error("more than 2^32 items in one step; give it fewer pairs");
+    value = most = static_cast<kernels::uint>(number);
 }
 
-kernels::uint Scan::read_total(Device& device, kernels::uint blocks) const {
-    const kernels::uint total = sums_.read_one(device, blocks);
-    if (total == NONE) throw std::length_error("more than 2^32 items in one step; give it fewer pairs");
-    return total;
+void Columns::resize(Device& device, kernels::uint columns, std::size_t items) {
+    columns_ = columns;
+    stride_ = Count(items).value;
+    values_.resize(device, columns * items);
+    firsts_.resize(device, items);
 }
 
-kernels::uint Scan::total(Device& device, const Array<kernels::uint>& values) {
-    return values.size() == 0 ? 0 : read_total(device, sum_up(device, values));
+void Columns::scan(Device& device, const Count& count, const Array<kernels::Totals>& totals, std::size_t at,
+                   std::size_t room) const {
+    device.queue().scan({count, columns_, stride_, values_.buffer(), firsts_.buffer(), totals.buffer(),
+                         static_cast<kernels::uint>(at), Count(room).value});
 }
 
-kernels::uint Scan::run(Device& device, const Array<kernels::uint>& values, Array<kernels::uint>& firsts) {
-    if (values.size() == 0) return 0;
-    const kernels::uint blocks = sum_up(device, values);
-    firsts.resize(device, values.size());
-    launch<KernelId::scan_write>(device, blocks, static_cast<kernels::uint>(values.size()), values, sums_, firsts);
-    return read_total(device, blocks);
+Count items_of(const Array<kernels::Totals>& totals, std::size_t at, std::size_t most) {
+    return {totals.buffer(), at * words, most};
+}
+
+Count results_of(const Array<kernels::Totals>& totals, std::size_t at, std::size_t most) {
+    return {totals.buffer(), at * words + 1, most};
+}
+
+void check_sums(std::span<const kernels::Totals> totals) {
+    for (const kernels::Totals& own : totals)
+        for (const kernels::uint sum : own.sums)
+            if (sum == NONE) throw std::length_error("more than 2^32 items in one step; give it fewer pairs");
 }
 
 } // namespace raycontact

@@ -68,6 +68,18 @@ DEVICE Hit no_contact(void) {
     return hit;
 }
 
+// A contact has a positive depth: a ray that only grazes the face it leaves through separates nothing.
+DEVICE uint is_contact(const Hit hit) {
+    return (uint)(hit.triangle != NONE) & (uint)(hit.distance * hit.facing > 0.0f);
+}
+
+// How a ray ended. Column 0 of outcomes: it is a contact; column 1: its side tests.
+DEVICE void record_hit(const Hit hit, uint at, uint stride, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+    hits[at] = hit;
+    outcomes[at] = is_contact(hit);
+    outcomes[stride + at] = hit.sides;
+}
+
 // In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
@@ -98,22 +110,24 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
 // What the rays of a group meet, and what that makes of each of them: hits by whose they are.
 DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL const ShapeHeader* RESTRICT shapes,
                        GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                       GLOBAL const Packed3* RESTRICT normals, GLOBAL Hit* RESTRICT hits) {
+                       GLOBAL const Packed3* RESTRICT normals, uint stride, GLOBAL Hit* RESTRICT hits,
+                       GLOBAL uint* RESTRICT outcomes) {
     find_group(own, group, false, short_first, shapes, nodes, blocks);
     for (uint r = 0u; r < group->count; ++r)
         if (own[r].back < UNBOUNDED) PREFETCH(normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
     for (uint r = 0u; r < group->count; ++r) {
         const SourceRay ray = ray_of(group, r);
-        hits[group->at[r]] = decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals);
+        record_hit(decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals), group->at[r],
+                   stride, hits, outcomes);
     }
 }
 
 // Every vertex is in the bounds.
-KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void cast_rays_bvh(COUNT(count), uint short_first, uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                           GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                          GLOBAL Hit* RESTRICT hits) {
+                          GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         Group group;
         Closest own[RAYS_IN_GROUP];
@@ -124,16 +138,16 @@ KERNEL void cast_rays_bvh(RANGE uint count, uint short_first, GLOBAL const Order
             const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
             add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
         }
-        cast_group(own, &group, short_first, shapes, nodes, blocks, normals, hits);
+        cast_group(own, &group, short_first, shapes, nodes, blocks, normals, stride, hits, outcomes);
     }
 }
 
 // A vertex that has left the bounds is no contact, whatever its ray meets.
-KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void cast_rays_basic(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                             GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                            GLOBAL Hit* RESTRICT hits) {
+                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
     FOR_EACH_FEW(i, few, RAYS_AT_ONCE, count) {
         SourceRay source[RAYS_AT_ONCE];
         RayFrame frame[RAYS_AT_ONCE];
@@ -152,9 +166,10 @@ KERNEL void cast_rays_basic(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         }
         for (uint r = 0u; r < few; ++r) {
             GLOBAL const OrderedPair* pair = pairs + rays[i + r].pair;
-            hits[i + r] = in_bounds(pair, source[r].position)
-                              ? decide(CASTER_BASIC, source + r, own + r, shapes + pair->target, nodes, blocks, normals)
-                              : no_contact();
+            const Hit hit = in_bounds(pair, source[r].position) ? decide(CASTER_BASIC, source + r, own + r,
+                                                                         shapes + pair->target, nodes, blocks, normals)
+                                                                : no_contact();
+            record_hit(hit, i + r, stride, hits, outcomes);
         }
     }
 }

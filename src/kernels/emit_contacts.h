@@ -1,21 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits become contacts in count, scan, write form: their order is a key, never a race.
-
-// With positive depth: a ray that only grazes the face it leaves through separates nothing.
-DEVICE uint is_contact(const Hit hit) {
-    return (uint)(hit.triangle != NONE) & (uint)(hit.distance * hit.facing > 0.0f);
-}
-
-KERNEL void count_contacts(RANGE uint count, GLOBAL const Hit* RESTRICT hits, GLOBAL uint* RESTRICT contacts,
-                           GLOBAL uint* RESTRICT sides) {
-    FOR_EACH(i, count) {
-        const Hit hit = hits[i];
-        contacts[i] = is_contact(hit);
-        sides[i] = hit.sides;
-    }
-}
-
-KERNEL void write_contacts(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+// Hits that are contacts, as record_hit() counted them, in the order of the rays.
+KERNEL void write_contacts(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                            GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
                            GLOBAL const Hit* RESTRICT hits, GLOBAL const uint* RESTRICT firsts,

@@ -110,8 +110,8 @@ DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* R
 // Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
 #define SMALL_BLOCKS 64u
 
-DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
-    Cluster cluster;
+DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
+    PairBlock cluster;
     cluster.pair = pair;
     cluster.vertex_block = vertex_block;
     cluster.lanes = 0u;
@@ -123,7 +123,8 @@ DEVICE Cluster cluster_at(uint pair, uint vertex_block) {
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
                            GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, float* clear, const bool write, uint first, GLOBAL Cluster* RESTRICT found) {
+                           float horizon, float* clear, const bool write, uint first,
+                           GLOBAL PairBlock* RESTRICT found) {
     const PairBounds bounds = bounds_of(pair);
     uint count = 0u;
     const uint top = shape->cluster_levels - 1u;
@@ -144,7 +145,7 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
             const uint child = VERTEX_LANES * at + lowest_bit(lanes);
             lanes &= lanes - 1u;
             if (level == 0u) {
-                if (write) found[first + count] = cluster_at(p, shape->vertex_block_first + child);
+                if (write) found[first + count] = pair_block(p, shape->vertex_block_first + child);
                 ++count;
             } else {
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
@@ -169,7 +170,7 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     *clear = UNBOUNDED;
     if (shape->vertex_block_count > SMALL_BLOCKS)
         return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, clear, false, 0u,
-                              (GLOBAL Cluster*)0);
+                              (GLOBAL PairBlock*)0);
     const PairBounds bounds = bounds_of(pairs + p);
     ulong blocks = 0u;
     uint number = 0u;
@@ -186,7 +187,7 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
                           GLOBAL const uint* RESTRICT clearances, float horizon, ulong small, uint first,
-                          GLOBAL Cluster* RESTRICT found) {
+                          GLOBAL PairBlock* RESTRICT found) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     if (shape->vertex_block_count > SMALL_BLOCKS) {
@@ -198,34 +199,38 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
         uint lanes = (uint)(small >> (VERTEX_LANES * i)) & 0xffffu;
         while (lanes != 0u) {
-            found[at] = cluster_at(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
+            found[at] = pair_block(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
             ++at;
             lanes &= lanes - 1u;
         }
     }
 }
 
-KERNEL void count_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
                            GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
     FOR_EACH(p, count) {
         float clear;
-        counts[p] = count_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, &clear, small);
+        counts[p] = pairs[p].source == NONE
+                        ? 0u
+                        : count_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, &clear, small);
     }
 }
 
-KERNEL void write_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
                            GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL Cluster* RESTRICT found) {
-    FOR_EACH(p, count)
-    write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
+                           GLOBAL PairBlock* RESTRICT found) {
+    FOR_EACH(p, count) {
+        if (pairs[p].source != NONE)
+            write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
+    }
 }
 
 // The same without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0: by the
 // bounds alone. clears: of a pair without blocks, how far its vertices can move before one could be in contact; may be
 // less, also negative.
-KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void count_near_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                                 GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears,
@@ -240,11 +245,11 @@ KERNEL void count_near_clusters(RANGE uint count, GLOBAL const OrderedPair* REST
     }
 }
 
-KERNEL void write_near_clusters(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void write_near_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                                 GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                                 GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                                 GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
-                                GLOBAL Cluster* RESTRICT found) {
+                                GLOBAL PairBlock* RESTRICT found) {
     FOR_EACH(p, count) {
         const float horizon = horizons[p];
         if (horizon < 0.0f)

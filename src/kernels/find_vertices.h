@@ -50,36 +50,38 @@ DEVICE uint cleared_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     return pack_sixteen(cleared);
 }
 
-// inside: vertices in the bounds, one ray of the rule each. counts: those whose ray must be cast to know.
-KERNEL void count_rays(RANGE uint count, uint use_grid, GLOBAL const OrderedPair* RESTRICT pairs,
+// Column 0 of counts: vertices whose ray must be cast to know; column 1: vertices in the bounds, one ray of the rule
+// each.
+KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                        GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                       GLOBAL Cluster* RESTRICT clusters, GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
+                       GLOBAL PairBlock* RESTRICT found_blocks, GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + clusters[i].pair;
-        const InsideLanes found = inside_lanes(pair, vertices + clusters[i].vertex_block);
+        GLOBAL const OrderedPair* pair = pairs + found_blocks[i].pair;
+        const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block);
         GLOBAL const ShapeHeader* target = shapes + pair->target;
         const uint inside_mask = pack_sixteen(found.inside);
         uint lanes = inside_mask;
         if (lanes != 0u && use_grid != 0u && target->grid_size[0] != 0u)
             lanes &= ~outside_lanes(&found, target, outside_cells);
         if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~cleared_lanes(&found, target, clearances);
-        clusters[i].lanes = lanes;
-        inside[i] = bit_count(inside_mask);
+        found_blocks[i].lanes = lanes;
         counts[i] = bit_count(lanes);
+        counts[stride + i] = bit_count(inside_mask);
     }
 }
 
-KERNEL void write_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters, GLOBAL const uint* RESTRICT firsts,
-                       GLOBAL Ray* RESTRICT rays) {
+// The rays begin at place `begin`.
+KERNEL void write_rays(COUNT(count), uint begin, GLOBAL const PairBlock* RESTRICT found_blocks,
+                       GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
     FOR_EACH(i, count) {
-        const Cluster cluster = clusters[i];
-        uint lanes = cluster.lanes;
-        uint at = firsts[i];
+        const PairBlock block = found_blocks[i];
+        uint lanes = block.lanes;
+        uint at = begin + firsts[i];
         while (lanes != 0u) {
             Ray ray;
-            ray.pair = cluster.pair;
-            ray.slot = VERTEX_LANES * cluster.vertex_block + lowest_bit(lanes);
+            ray.pair = block.pair;
+            ray.slot = VERTEX_LANES * block.vertex_block + lowest_bit(lanes);
             rays[at] = ray;
             ++at;
             lanes &= lanes - 1u;

@@ -38,14 +38,14 @@ DEVICE uint predicted(const Closest* ahead, float culling) {
     return ahead->back <= culling && ahead->back <= ahead->front ? ahead->back_triangle : NONE;
 }
 
-// By the basic caster, the ray in full, and where it is no contact what lies ahead. `own`: whether the vertex may be in
-// contact at all.
+// By the basic caster, the ray in full, and where it is no contact what lies ahead (culling below 0: nothing). `own`:
+// whether the vertex may be in contact at all.
 DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive, float culling,
                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
     const RayFrame frame = frame_ray(ray->position, ray->direction);
     Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
-    if (predictive != 0u) {
+    if (predictive != 0u && culling >= 0.0f) {
         const RayFrame opposite = frame_opposite(ray->position, ray->direction);
         traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, blocks);
     } else if (own != 0u) {
@@ -159,17 +159,17 @@ DEVICE Outcome follow_ray(const SourceRay* ray, uint inside, uint start, uint ma
 
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
 // the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The
-// upper half of Cluster.lanes tells those whose own ray must be cast.
-KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT wide,
+// upper half of PairBlock.lanes tells those whose own ray must be cast. counts: as of count_rays().
+KERNEL void count_near_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT wide,
                             GLOBAL const float* RESTRICT reach, GLOBAL const float* RESTRICT margins,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const uint* RESTRICT clearances, GLOBAL Cluster* RESTRICT clusters,
-                            GLOBAL uint* RESTRICT inside, GLOBAL uint* RESTRICT counts) {
+                            GLOBAL const uint* RESTRICT clearances, GLOBAL PairBlock* RESTRICT near_blocks,
+                            GLOBAL uint* RESTRICT counts) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = wide + clusters[i].pair;
+        GLOBAL const OrderedPair* pair = wide + near_blocks[i].pair;
         GLOBAL const ShapeHeader* target = shapes + pair->target;
-        const float near = reach[clusters[i].pair], margin = margins[clusters[i].pair];
-        GLOBAL const VertexBlock* block = vertices + clusters[i].vertex_block;
+        const float near = reach[near_blocks[i].pair], margin = margins[near_blocks[i].pair];
+        GLOBAL const VertexBlock* block = vertices + near_blocks[i].vertex_block;
         const InsideLanes held = inside_lanes(pair, block);
         const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
@@ -179,26 +179,26 @@ KERNEL void count_near_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
         }
         const uint inside_mask = pack_sixteen(held.inside);
         const uint lanes = inside_mask & pack_sixteen(close);
-        clusters[i].lanes = lanes | ((lanes & pack_sixteen(unsafe)) << VERTEX_LANES);
-        inside[i] = bit_count(inside_mask);
+        near_blocks[i].lanes = lanes | ((lanes & pack_sixteen(unsafe)) << VERTEX_LANES);
         counts[i] = bit_count(lanes);
+        counts[stride + i] = bit_count(inside_mask);
     }
 }
 
-KERNEL void write_near_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clusters,
+KERNEL void write_near_rays(COUNT(count), GLOBAL const PairBlock* RESTRICT near_blocks,
                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays,
                             GLOBAL uint* RESTRICT starts) {
     FOR_EACH(i, count) {
-        const Cluster cluster = clusters[i];
-        uint lanes = cluster.lanes & 0xffffu;
+        const PairBlock found = near_blocks[i];
+        uint lanes = found.lanes & 0xffffu;
         uint at = firsts[i];
         while (lanes != 0u) {
             const uint lane = lowest_bit(lanes);
             Ray ray;
-            ray.pair = cluster.pair;
-            ray.slot = VERTEX_LANES * cluster.vertex_block + lane;
+            ray.pair = found.pair;
+            ray.slot = VERTEX_LANES * found.vertex_block + lane;
             rays[at] = ray;
-            starts[at] = ((cluster.lanes >> (VERTEX_LANES + lane)) & 1u) != 0u ? IN_FULL : AHEAD_ONLY;
+            starts[at] = ((found.lanes >> (VERTEX_LANES + lane)) & 1u) != 0u ? IN_FULL : AHEAD_ONLY;
             ++at;
             lanes &= lanes - 1u;
         }
@@ -206,9 +206,9 @@ KERNEL void write_near_rays(RANGE uint count, GLOBAL const Cluster* RESTRICT clu
 }
 
 // Candidates of the last step become rays of this one. Segment.first: of the candidates; firsts[s]: of the rays.
-KERNEL void copy_candidates(RANGE uint count, GLOBAL const Segment* RESTRICT segments,
-                            GLOBAL const uint* RESTRICT firsts, GLOBAL const Candidate* RESTRICT candidates,
-                            GLOBAL Ray* RESTRICT rays, GLOBAL uint* RESTRICT starts) {
+KERNEL void copy_candidates(COUNT(count), GLOBAL const Segment* RESTRICT segments, GLOBAL const uint* RESTRICT firsts,
+                            GLOBAL const Candidate* RESTRICT candidates, GLOBAL Ray* RESTRICT rays,
+                            GLOBAL uint* RESTRICT starts) {
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint i = 0u; i < segment.count; ++i) {
@@ -235,13 +235,14 @@ DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT sh
 DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GLOBAL const float* RESTRICT cullings,
                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
-                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts) {
+                               uint stride, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes,
+                               GLOBAL uint* RESTRICT nexts) {
     Closest met[RAYS_IN_GROUP];
-    cast_group(met, casting, 1u, shapes, nodes, blocks, normals, hits);
+    cast_group(met, casting, 1u, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < casting->count; ++r) {
         const uint at = casting->at[r], pair = casting->pair[r];
         nexts[at] = hits[at].triangle;
-        if (predictive == 0u || nexts[at] != NONE) continue;
+        if (predictive == 0u || nexts[at] != NONE || cullings[pair] < 0.0f) continue;
         const SourceRay source = ray_of(casting, r);
         add_ray(ahead, at, &source, cullings[pair], pair, casting->target[r], shapes);
         if (is_full(ahead)) cast_ahead(ahead, shapes, nodes, blocks, nexts);
@@ -250,13 +251,14 @@ DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GL
 }
 
 // hows and nexts: see Outcome.
-KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
+KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
                             GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                             GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
                             GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
-                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
+                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes, GLOBAL uint* RESTRICT nexts,
+                            GLOBAL uint* RESTRICT hows) {
     Group casting, ahead;
     clear_group(&casting);
     clear_group(&ahead);
@@ -269,32 +271,35 @@ KERNEL void follow_rays_bvh(RANGE uint count, uint max_iterations, uint predicti
         const uint inside = is_inside(pairs[ray.pair].bounds, source.position);
         const Outcome end = follow_ray(&source, inside, starts[i], max_iterations, predictive, cast_lost, culling,
                                        shape, faces, blocks, normals);
-        hits[i] = end.hit;
+        record_hit(end.hit, i, stride, hits, outcomes);
         nexts[i] = end.next;
         hows[i] = end.how;
         if ((end.how & CAST) == 0u) continue;
         if (inside != 0u && starts[i] != AHEAD_ONLY) {
             add_ray(&casting, i, &source, source.reach, ray.pair, target, shapes);
             if (is_full(&casting))
-                cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
-        } else if (predictive != 0u && end.next == NONE) {
+                cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, stride, hits,
+                             outcomes, nexts);
+        } else if (predictive != 0u && end.next == NONE && culling >= 0.0f) {
             add_ray(&ahead, i, &source, culling, ray.pair, target, shapes);
             if (is_full(&ahead)) cast_ahead(&ahead, shapes, nodes, blocks, nexts);
         }
     }
     if (RAYS_IN_GROUP > 1) {
-        cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, hits, nexts);
+        cast_in_full(&casting, &ahead, predictive, cullings, shapes, nodes, blocks, normals, stride, hits, outcomes,
+                     nexts);
         cast_ahead(&ahead, shapes, nodes, blocks, nexts);
     }
 }
 
-KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predictive, uint cast_lost,
+KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
                               GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                               GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                               GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
                               GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
-                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT nexts, GLOBAL uint* RESTRICT hows) {
+                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes, GLOBAL uint* RESTRICT nexts,
+                              GLOBAL uint* RESTRICT hows) {
     FOR_EACH(i, count) {
         GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
@@ -309,22 +314,22 @@ KERNEL void follow_rays_basic(RANGE uint count, uint max_iterations, uint predic
                              normals);
             end.how |= how;
         }
-        hits[i] = end.hit;
+        record_hit(end.hit, i, stride, hits, outcomes);
         nexts[i] = end.next;
         hows[i] = end.how;
     }
 }
 
 // Rays of a pair lie together. ranges: first and end of each pair, zero where it has none.
-KERNEL void find_ranges(RANGE uint count, GLOBAL const Ray* RESTRICT rays, GLOBAL uint* RESTRICT ranges) {
+KERNEL void find_ranges(COUNT(count), GLOBAL const Ray* RESTRICT rays, GLOBAL uint* RESTRICT ranges) {
     FOR_EACH(i, count) {
         const uint pair = rays[i].pair;
         if (i == 0u || rays[i - 1u].pair != pair) ranges[2u * pair] = i;
-        if (i + 1u == count || rays[i + 1u].pair != pair) ranges[2u * pair + 1u] = i + 1u;
+        if (i + 1u == ALL(count) || rays[i + 1u].pair != pair) ranges[2u * pair + 1u] = i + 1u;
     }
 }
 
-KERNEL void count_candidates(RANGE uint count, GLOBAL const uint* RESTRICT ranges, GLOBAL const Hit* RESTRICT hits,
+KERNEL void count_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, GLOBAL const Hit* RESTRICT hits,
                              GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT hows,
                              GLOBAL Followed* RESTRICT followed, GLOBAL uint* RESTRICT counts) {
     FOR_EACH(p, count) {
@@ -347,7 +352,7 @@ KERNEL void count_candidates(RANGE uint count, GLOBAL const uint* RESTRICT range
     }
 }
 
-KERNEL void write_candidates(RANGE uint count, GLOBAL const uint* RESTRICT ranges, GLOBAL const Ray* RESTRICT rays,
+KERNEL void write_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, GLOBAL const Ray* RESTRICT rays,
                              GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT firsts,
                              GLOBAL Candidate* RESTRICT candidates) {
     FOR_EACH(p, count) {

@@ -75,10 +75,10 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
 DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT holders,
                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after,
-                               GLOBAL Hit* RESTRICT hits) {
+                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
+                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
     Closest own[RAYS_IN_GROUP];
-    cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, hits);
+    cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < waiting->count; ++r) {
         GLOBAL const Holder* holder = holders + waiting->pair[r];
         if (is_idle(holder)) continue;
@@ -111,15 +111,15 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
 DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Holder* RESTRICT holders,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                              GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after,
-                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
+                              GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
+                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
     fetch_triangles(group, shapes, blocks, normals);
     ask_tubes_and_caps(group, shapes, blocks, faces, normals);
     for (uint r = 0u; r < group->rays.count; ++r) {
         const uint at = group->rays.at[r];
-        casts[at] = group->is_known[r] ^ 1u;
+        outcomes[2u * stride + at] = group->is_known[r] ^ 1u;
         if (group->is_known[r] != 0u) {
-            hits[at] = held_hit(group, r, shapes, normals);
+            record_hit(held_hit(group, r, shapes, normals), at, stride, hits, outcomes);
             if (after[at].triangle != group->triangle_slot[r]) {
                 after[at].triangle = group->triangle_slot[r];
                 after[at].safe = after[at].limit = 0.0f;
@@ -130,26 +130,27 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
         add_ray(waiting, at, &source, source.reach, group->rays.pair[r], group->rays.target[r], shapes);
         // A group of one is cast by the caller, so that all rays are cast in one place there.
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
-            cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
+            cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
     group->rays.count = 0u;
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
-// step and now, those of idle pairs left as they are; casts: 1 for each ray cast in full.
-KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const Holder* RESTRICT holders,
-                      GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                      GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                      GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
-                      GLOBAL const Ray* RESTRICT rays, GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after,
-                      GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT casts) {
+// step and now, those of idle pairs left as they are. Column 2 of outcomes: 1 for each ray cast in full.
+KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
+                      GLOBAL const Holder* RESTRICT holders, GLOBAL const ShapeHeader* RESTRICT shapes,
+                      GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
+                      GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
+                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
+                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
+                      GLOBAL uint* RESTRICT outcomes) {
     Group waiting;
     HeldGroup group;
     clear_group(&waiting);
     clear_held(&group);
     FOR_EACH(i, count) {
         const Ray ray = rays[i];
-        if (i + 8u < count) {
+        if (i + 8u < i_end) {
             PREFETCH(pairs, rays[i + 8u].pair);
             PREFETCH(holders, rays[i + 8u].pair);
         }
@@ -172,19 +173,21 @@ KERNEL void hold_rays(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
-            casts[i] = (uint)inside;
+            outcomes[2u * stride + i] = (uint)inside;
             if (inside)
                 add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
             else
-                hits[i] = no_contact();
+                record_hit(no_contact(), i, stride, hits, outcomes);
         }
         if (is_full(&group.rays))
-            decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, hits, casts);
-        if (is_full(&waiting)) cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
+            decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits,
+                        outcomes);
+        if (is_full(&waiting))
+            cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
     if (RAYS_IN_GROUP > 1) {
-        decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, hits, casts);
-        cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, hits);
+        decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
+        cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
 }
 // NOLINTEND(modernize-use-using)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kernel, in the order of the pipeline; included after one dialect.h and types.h. No include guards: the CPU
+// The kernels that every device runs, in the order of the pipeline; included after one dialect.h and types.h. No include guards: the CPU
 // device compiles this text once per instruction set.
 #include "kernels/triangle.h"
 
@@ -15,30 +15,16 @@
 
 #include "kernels/vertex_lanes.h"
 
+#include "kernels/place_pairs.h"
+
 #include "kernels/clearance.h"
 
 #include "kernels/find_clusters.h"
 
 #include "kernels/find_vertices.h"
 
-#include "kernels/watch.h"
-
-#include "kernels/look.h"
-
 #include "kernels/cast_rays.h"
-
-#include "kernels/tube.h"
-
-#include "kernels/cap.h"
-
-#include "kernels/held_group.h"
-
-#include "kernels/cap_group.h"
-
-#include "kernels/hold.h"
 
 #include "kernels/follow.h"
 
 #include "kernels/emit_contacts.h"
-
-#include "kernels/scan.h"

@@ -18,7 +18,7 @@ DEVICE Look add_looks(Look sum, const Look more) {
 DEVICE Look nothing_found(void) {
     Look none;
     none.wake = UNBOUNDED;
-    none.blocks = none.rays = none.unused = 0u;
+    none.blocks = none.rays = 0u;
     none.casting = 0u;
     return none;
 }
@@ -27,7 +27,7 @@ DEVICE Look nothing_found(void) {
 DEVICE Look known_block(uint lanes, float wake, uint bit) {
     Look found = nothing_found();
     found.rays = bit_count(lanes);
-    found.casting = (ulong)(lanes != 0u) << bit;
+    found.casting = (uint)(lanes != 0u) << bit;
     found.wake = wake;
     return found;
 }
@@ -91,7 +91,7 @@ DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const O
     }
 }
 
-KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void look_at_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const uint* RESTRICT clearances, GLOBAL const Segment* RESTRICT segments,
                             GLOBAL Watch* RESTRICT watches, GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
@@ -99,7 +99,7 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
     uint waits = 0u;
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
-        if (s + 4u < count && segments[s + 4u].rays == 0u) {
+        if (s + 4u < ALL(count)) {
             PREFETCH(watches, segments[s + 4u].first);
             PREFETCH(watches, segments[s + 4u].first + 5u);
             PREFETCH(watches, segments[s + 4u].first + 10u);
@@ -119,7 +119,6 @@ KERNEL void look_at_watches(RANGE uint count, GLOBAL const OrderedPair* RESTRICT
             look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
             waits = 0u;
         }
-        found.rays += segment.rays;
         looks[s] = add_looks(looks[s], found);
         rays[s] = looks[s].rays;
     }

@@ -5,7 +5,7 @@
 #define NODE_LANES 16
 #define VERTEX_LANES 16
 #define CLUSTER_LEVELS 4
-#define SEGMENT_WATCHES 64u // a bit each
+#define SEGMENT_WATCHES 32u // a bit each
 #define NODE_LEVELS 5
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
@@ -15,6 +15,10 @@
 #define CLEARANCE_OFFSET 16
 #define CLEARANCE_OUTSIDE 0x8000u
 #define CLEARANCE_STEPS 2048
+
+// Items that one kernel adds up; more take three.
+#define SCAN_AT_ONCE 65536u
+#define MOST_COLUMNS 4
 
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
@@ -79,10 +83,34 @@ typedef struct {
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
     uint caps_pay;                             // most triangles have caps: it pays to ask them
+    float low[3], high[3];                     // the box
+    float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
 } ShapeHeader;
-WIRE_SIZE(ShapeHeader, 164);
+WIRE_SIZE(ShapeHeader, 192);
 
-// Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive).
+// A body in the world: the frame about its shape's centre, in double, as the host has it.
+typedef struct {
+    double rotation[9];
+    double translation[3];
+    uint shape;
+    uint slot;
+} BodyPlace;
+WIRE_SIZE(BodyPlace, 104);
+
+// The bodies of a pair; NONE: the slot has no pair.
+typedef struct {
+    uint first, second;
+} PairBodies;
+WIRE_SIZE(PairBodies, 8);
+
+typedef struct {
+    uint slot;
+    PairBodies bodies;
+} PairChange;
+WIRE_SIZE(PairChange, 12);
+
+// Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive). source NONE: the
+// slot has no pair.
 typedef struct {
     float rotation[9];
     float translation[3];
@@ -92,12 +120,13 @@ typedef struct {
 } OrderedPair;
 WIRE_SIZE(OrderedPair, 80);
 
+// A vertex block that may reach into its pair's target.
 typedef struct {
     uint pair;
     uint vertex_block; // absolute
     uint lanes;        // a bit for each vertex that casts a ray
-} Cluster;
-WIRE_SIZE(Cluster, 12);
+} PairBlock;
+WIRE_SIZE(PairBlock, 12);
 
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).
@@ -135,27 +164,24 @@ typedef struct {
 WIRE_SIZE(Watch, 12);
 
 // Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
-// from where on a certificate given now counts. margin: metres of rounding that it must exceed. rays: not 0 where none
-// of its watches is due; then its rays are as many of the last step's, from `first` on.
+// from where on a certificate given now counts. margin: metres of rounding that it must exceed.
 typedef struct {
     uint pair;
     uint first, count;
     float now, from;
     float margin;
-    uint rays;
 } Segment;
-WIRE_SIZE(Segment, 28);
+WIRE_SIZE(Segment, 24);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
 // casting: a bit for each watch that has any.
 typedef struct {
-    ulong casting;
+    uint casting;
     float wake;
     uint blocks;
     uint rays;
-    uint unused;
 } Look;
-WIRE_SIZE(Look, 24);
+WIRE_SIZE(Look, 16);
 
 // What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. turn:
 // not 0 where the triangles around it can only be left, so that it meets one of them at most; then its direction may
@@ -199,6 +225,16 @@ typedef struct {
     uint sides;
 } Hit;
 WIRE_SIZE(Hit, 16);
+
+// What a scan leaves. items: those whose results are to be written; 0 where there is none, or no room. results: as
+// many; 0 where there is no room. sums: of the columns, whether or not there is room; NONE where 32 bits cannot hold
+// it.
+typedef struct {
+    uint items;
+    uint results;
+    uint sums[MOST_COLUMNS];
+} Totals;
+WIRE_SIZE(Totals, 24);
 
 typedef struct {
     float x, y, z;

@@ -8,16 +8,6 @@
 
 namespace raycontact {
 
-namespace {
-
-// An open mesh has no inside that its box could bound: vertices that far beyond the box may still reach it.
-float reach_into(const ShapeData& target, const ShapeData& source) {
-    if (target.header.closed) return 0;
-    return source.exit_max > 0 ? source.exit_max : static_cast<float>(source.diagonal);
-}
-
-} // namespace
-
 void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::OrderedPair& ordered) {
     order_pair(source, target, relative_pose(target.centred, source.centred), ordered);
 }
@@ -25,18 +15,16 @@ void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::Ord
 // Written where it is to be: one made on the stack is copied in words that no store has just written, and waits.
 void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
                 kernels::OrderedPair& ordered) {
-    const ShapeData& shape = target.shape->data();
-    const float grow = reach_into(shape, source.shape->data());
+    const kernels::ShapeHeader& shape = target.shape->data().header;
+    const float grow = shape.closed != 0 ? 0 : source.shape->data().header.ray_reach;
     for (int i = 0; i < 9; ++i) ordered.rotation[i] = static_cast<float>(relative.rotation[i]);
     ordered.translation[0] = static_cast<float>(relative.translation.x);
     ordered.translation[1] = static_cast<float>(relative.translation.y);
     ordered.translation[2] = static_cast<float>(relative.translation.z);
-    ordered.bounds[0] = shape.low.x - grow;
-    ordered.bounds[1] = shape.low.y - grow;
-    ordered.bounds[2] = shape.low.z - grow;
-    ordered.bounds[3] = shape.high.x + grow;
-    ordered.bounds[4] = shape.high.y + grow;
-    ordered.bounds[5] = shape.high.z + grow;
+    for (int k = 0; k < 3; ++k) {
+        ordered.bounds[k] = shape.low[k] - grow;
+        ordered.bounds[3 + k] = shape.high[k] + grow;
+    }
     ordered.source = source.shape_index;
     ordered.target = target.shape_index;
 }

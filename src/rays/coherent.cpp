@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/coherent.h"
 
+#include "device/launch.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
 
 namespace raycontact {
 
@@ -45,15 +44,18 @@ double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, co
 }
 
 // Decides for one pair, in double, whether it is looked at in full or followed.
-void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies, const SlotPair& pair,
-                             const Motion& motion, const Settings& settings) {
+void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
+    const SlotPair& pair = update.pairs[i];
+    const Motion& motion = update.motion;
+    const Settings& settings = update.settings;
     PairState& state = table_.state(i);
     auto& [left, kept] = table_.hot(i);
-    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
     const bool predictive = settings.method == Method::predictive;
     if (predictive && !settings.displacement_threshold && is_too_fast(a, b, motion.pair_speed(pair))) {
-        turns_[i] = Turn::leave;
+        turns_[i] = Turn::look;
         state = {};
+        state.culling = -1;
         table_.hot(i) = {};
         return;
     }
@@ -80,29 +82,26 @@ void CoherentRays::wake_pair(std::uint32_t i, std::span<const PlacedBody> bodies
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
 }
 
-void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                           const Motion& motion, const Settings& settings) {
+void CoherentRays::wake_up(const Update& update) {
+    const Settings& settings = update.settings;
+    const auto pair_count = static_cast<std::uint32_t>(update.pairs.size());
     const bool predictive = settings.method == Method::predictive;
-    turns_.resize(pairs.size());
-    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+    turns_.resize(pair_count);
+    update.executor.run(pair_count, 256, [&](std::uint32_t begin, std::uint32_t end) {
         const auto wants = [&](std::uint32_t i, Hot& hot) {
             turns_[i] = Turn::follow;
-            hot.slack -= motion.pair_bound(pairs[i]);
-            return hot.slack >= 0 ? Wanted::nothing : Wanted::all;
+            hot.slack -= update.motion.pair_bound(update.pairs[i]);
+            return !(hot.slack >= 0);
         };
-        const auto prefetch = [&](std::uint32_t i) { motion.prefetch(pairs[i]); };
-        table_.sift(begin, end, prefetch, wants,
-                    [&](std::uint32_t i, Wanted) { wake_pair(i, bodies, pairs[i], motion, settings); });
+        const auto prefetch = [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); };
+        table_.sift(begin, end, prefetch, wants, [&](std::uint32_t i) { wake_pair(update, i); });
     });
 
     active_.clear();
-    fast_.clear();
-    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    for (std::uint32_t i = 0; i < pair_count; ++i)
         if (turns_[i] == Turn::look) active_.insert(active_.end(), {2 * i, 2 * i + 1});
-        if (turns_[i] == Turn::leave) fast_.push_back(i);
-    }
     full_count_ = active_.size();
-    for (std::uint32_t i = 0; i < pairs.size(); ++i)
+    for (std::uint32_t i = 0; i < pair_count; ++i)
         for (std::uint32_t d = 0; turns_[i] == Turn::follow && d < 2; ++d)
             if (table_.hot(i).kept[d].count > 0) active_.push_back(2 * i + d);
 
@@ -111,33 +110,29 @@ void CoherentRays::wake_up(Executor& executor, std::span<const PlacedBody> bodie
     wide_pairs_.resize(full_count_);
     reaches_.resize(full_count_);
     margins_.resize(full_count_);
-    executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+    update.executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(bodies, pairs, active_[i]);
+            const auto [source, target] = directed_pair(update.bodies, update.pairs, active_[i]);
             order_pair(source, target, host_pairs_[i]);
             cullings_[i] = static_cast<float>(table_.state(active_[i] / 2).culling);
             if (i >= full_count_) continue;
-            const double extension =
-                predictive && settings.distance_extension ? *settings.distance_extension : double(cullings_[i]);
+            const float ahead = std::max(cullings_[i], 0.0F);
+            const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
             wide_pairs_[i] = host_pairs_[i];
-            widen(wide_pairs_[i], static_cast<float>(extension));
+            widen(wide_pairs_[i], extended ? static_cast<float>(*settings.distance_extension) : ahead);
             margins_[i] = static_cast<float>(rounding_margin(source, target));
-            reaches_[i] = cullings_[i] + margins_[i];
+            reaches_[i] = ahead + margins_[i];
         }
     });
 }
 
 // Pairs without a block near either surface.
-void CoherentRays::let_sleep(Device& device) {
-    host_counts_.resize(full_count_);
-    host_clears_.resize(full_count_);
-    finder_.counts().read(device, host_counts_);
-    finder_.clears().read(device, host_clears_);
+void CoherentRays::let_sleep() {
     for (std::size_t i = 0; i < full_count_; i += 2) {
-        if (host_counts_[i] != 0 || host_counts_[i + 1] != 0) continue;
         PairState& state = table_.state(active_[i] / 2);
+        if (state.threshold < 0 || near_.host_counts()[i] != 0 || near_.host_counts()[i + 1] != 0) continue;
         for (std::size_t d = 0; d < 2; ++d) {
-            const double clear = 0.99999 * double(host_clears_[i + d]) - double(margins_[i + d]);
+            const double clear = 0.99999 * double(near_.host_clears()[i + d]) - double(margins_[i + d]);
             state.clear = d == 0 ? clear : std::min(state.clear, clear);
         }
         table_.hot(active_[i] / 2).slack = std::max(state.threshold, state.clear);
@@ -145,76 +140,93 @@ void CoherentRays::let_sleep(Device& device) {
 }
 
 // Full looks first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
-void CoherentRays::find_rays(Device& device, const ShapeStore::Arrays& arrays) {
+void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    Device& device = update.device;
     device_pairs_.write(device, host_pairs_);
     device_cullings_.write(device, cullings_);
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    finder_.find_near(device, arrays, device_wide_, device_reaches_);
-    let_sleep(device);
-    Array<kernels::Cluster>& blocks = finder_.blocks();
-    counts_.resize(device, blocks.size());
-    inside_.resize(device, blocks.size());
-    launch<KernelId::count_near_rays>(device, blocks.size(), device_wide_, device_reaches_, device_margins_,
-                                      arrays.headers, arrays.vertex_blocks, arrays.clearances, blocks, inside_,
-                                      counts_);
+    near_.find(update, device_wide_, device_reaches_, batch.totals, RayBatch::block_sum);
+    let_sleep();
+    const Array<kernels::PairBlock>& blocks = near_.blocks();
     sums_.vertices = VERTEX_LANES * blocks.size();
-    sums_.rays = scan_.run(device, inside_, firsts_);
-    full_rays_ = scan_.run(device, counts_, firsts_);
+    full_rays_ = 0;
+    if (blocks.size() > 0) {
+        ray_counts_.resize(device, 2, blocks.size());
+        launch<KernelId::count_near_rays>(device, blocks.size(), ray_counts_.stride(), device_wide_, device_reaches_,
+                                          device_margins_, arrays.headers, arrays.vertex_blocks, arrays.clearances,
+                                          blocks, ray_counts_.values());
+        ray_counts_.scan(device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
+        kernels::Totals sum;
+        const Piece piece = batch.totals.piece({&sum, 1}, RayBatch::ray_sum);
+        device.queue().read({&piece, 1});
+        check_sums({&sum, 1});
+        full_rays_ = sum.sums[0];
+        sums_.rays = sum.sums[1];
+    }
 
     host_segments_.clear();
     host_firsts_.clear();
     std::uint64_t end = full_rays_;
     for (std::size_t i = full_count_; i < active_.size(); ++i) {
         const Kept& own = kept(active_[i]);
-        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0, 0, 0});
+        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0, 0});
         host_firsts_.push_back(static_cast<kernels::uint>(end));
         end += own.count;
     }
-    if (end >= std::numeric_limits<kernels::uint>::max())
-        throw std::length_error("more than 2^32 rays in one step; give it fewer pairs");
     sums_.rays += end - full_rays_;
-    rays_.resize(device, end);
+    batch.count = Count(end);
+    batch.resize(device, end);
     starts_.resize(device, end);
-    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, firsts_, rays_, starts_);
+    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, ray_counts_.firsts(),
+                                      batch.rays, starts_);
     segments_.write(device, host_segments_);
     segment_firsts_.write(device, host_firsts_);
-    launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_, rays_,
-                                      starts_);
+    launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_,
+                                      batch.rays, starts_);
 }
 
-void CoherentRays::cast(Device& device, const ShapeStore::Arrays& arrays, const Settings& settings) {
-    hits_.resize(device, rays_.size());
-    nexts_.resize(device, rays_.size());
-    hows_.resize(device, rays_.size());
+void CoherentRays::follow(const Update& update, RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    const Settings& settings = update.settings;
+    nexts_.resize(update.device, batch.rays.size());
+    hows_.resize(update.device, batch.rays.size());
     const kernels::uint predictive = settings.method == Method::predictive ? 1 : 0;
     const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
+    const auto run = [&]<KernelId kernel>() {
+        launch<kernel>(update.device, batch.count, settings.max_iterations, predictive, cast_lost,
+                       batch.outcomes.stride(), device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
+                       arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals, batch.rays, starts_,
+                       batch.hits, batch.outcomes.values(), nexts_, hows_);
+    };
     if (settings.caster == Caster::basic)
-        launch<KernelId::follow_rays_basic>(device, rays_.size(), settings.max_iterations, predictive, cast_lost,
-                                            device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
-                                            arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
-                                            rays_, starts_, hits_, nexts_, hows_);
+        run.operator()<KernelId::follow_rays_basic>();
     else
-        launch<KernelId::follow_rays_bvh>(device, rays_.size(), settings.max_iterations, predictive, cast_lost,
-                                          device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
-                                          arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals,
-                                          rays_, starts_, hits_, nexts_, hows_);
+        run.operator()<KernelId::follow_rays_bvh>();
 }
 
-// What each pair follows in the next step.
-void CoherentRays::keep(Device& device) {
+// The candidates of the next step, and what each pair's rays came to.
+void CoherentRays::list_candidates(const Update& update, RayBatch& batch) {
+    Device& device = update.device;
     host_ranges_.assign(2 * active_.size(), 0);
     ranges_.write(device, host_ranges_);
-    launch<KernelId::find_ranges>(device, rays_.size(), rays_, ranges_);
+    launch<KernelId::find_ranges>(device, batch.count, batch.rays, ranges_);
     followed_.resize(device, active_.size());
-    counts_.resize(device, active_.size());
-    launch<KernelId::count_candidates>(device, active_.size(), ranges_, hits_, nexts_, hows_, followed_, counts_);
-    candidates_.resize(device, scan_.run(device, counts_, firsts_));
-    launch<KernelId::write_candidates>(device, candidates_.size() > 0 ? active_.size() : 0, ranges_, rays_, nexts_,
-                                       firsts_, candidates_);
+    kept_counts_.resize(device, 1, active_.size());
+    candidates_.resize(device, batch.rays.size());
+    launch<KernelId::count_candidates>(device, active_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
+                                       kept_counts_.values());
+    if (batch.rays.size() == 0) return;
+    kept_counts_.scan(device, active_.size(), batch.totals, RayBatch::kept_sum, candidates_.size());
+    launch<KernelId::write_candidates>(device, active_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
+                                       candidates_);
+}
+
+void CoherentRays::keep(const Update& update) {
     host_followed_.resize(active_.size());
-    followed_.read(device, host_followed_);
+    followed_.read(update.device, host_followed_);
     kernels::uint first = 0;
     for (std::size_t i = 0; i < active_.size(); ++i) {
         const kernels::Followed& sum = host_followed_[i];
@@ -235,19 +247,20 @@ void CoherentRays::keep(Device& device) {
     candidates_kept_ = first;
 }
 
-void CoherentRays::follow(Device& device, Executor& executor, const ShapeStore& shapes,
-                          std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Motion& motion,
-                          const Settings& settings) {
-    if (packed_ != shapes.packed()) clear(); // candidates name vertices by their place
-    packed_ = shapes.packed();
+void CoherentRays::cast(const Update& update, RayBatch& batch) {
+    if (packed_ != update.shapes.packed()) clear(); // candidates name vertices by their place
+    packed_ = update.shapes.packed();
     sums_ = {};
     ++step_;
-    open_pairs_ = pairs.size();
-    table_.match(pairs, [](PairState&) {});
-    wake_up(executor, bodies, pairs, motion, settings);
-    find_rays(device, shapes.arrays());
-    cast(device, shapes.arrays(), settings);
-    keep(device);
+    open_pairs_ = update.pairs.size();
+    table_.match(update.pairs, [](PairState&) {});
+    wake_up(update);
+    batch.resize(update.device, 0);
+    find_rays(update, batch);
+    batch.pairs = &device_pairs_;
+    batch.numbers = active_;
+    follow(update, batch);
+    list_candidates(update, batch);
 }
 
 void CoherentRays::count(StepStats& stats) const {
@@ -255,7 +268,7 @@ void CoherentRays::count(StepStats& stats) const {
     stats.rays += sums_.rays;
     stats.rays_cast += sums_.rays_cast;
     stats.pairs_full += full_count_;
-    stats.pairs_asleep += 2 * (open_pairs_ - fast_.size()) - active_.size();
+    stats.pairs_asleep += 2 * open_pairs_ - active_.size();
     stats.walks += sums_.walks;
     stats.walks_lost += sums_.walks_lost;
     stats.walk_casts += sums_.walk_casts;

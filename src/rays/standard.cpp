@@ -1,53 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/standard.h"
 
-#include "pairs/rounding.h"
-#include "rays/cast_standard.h"
-#include "shape/shape_data.h"
-
-#include <numeric>
+#include "device/launch.h"
 
 namespace raycontact {
 
-void StandardRays::fill(Device& device, Executor& executor, const ShapeStore& shapes,
-                        std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings) {
-    order_pairs(executor, bodies, pairs, host_pairs_); // refuses more pairs than have numbers
-    which_.resize(2 * pairs.size());
-    std::iota(which_.begin(), which_.end(), 0U);
-    device_pairs_.write(device, host_pairs_);
-    short_first_ = settings.skip_outside && settings.caster != Caster::basic;
-    queue_.fill(device, shapes.arrays(), device_pairs_, short_first_);
+namespace {
+
+constexpr std::size_t least_room = 4096; // blocks, rays
+
+} // namespace
+
+void StandardRays::begin(const Update& update, RayBatch& batch) {
+    pairs_.place(update);
+    blocks_.grow(update.device, least_room);
+    batch.resize(update.device, std::max(batch.rays.size(), least_room));
+    batch.pairs = &pairs_.ordered();
+    batch.numbers = pairs_.numbers();
+    cast(update, batch);
 }
 
-void StandardRays::fill_near(Device& device, Executor& executor, const ShapeStore& shapes,
-                             std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                             std::span<const std::uint32_t> which) {
-    which_.assign(which.begin(), which.end());
-    order_pairs(executor, bodies, pairs, which, host_pairs_);
-    margins_.resize(which.size());
-    executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(bodies, pairs, which[i]);
-            // Of few blocks it is not worth asking which are near.
-            const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
-            margins_[i] = few ? -1.0f : static_cast<float>(rounding_margin(source, target));
-        }
-    });
-    device_pairs_.write(device, host_pairs_);
-    device_margins_.write(device, margins_);
-    short_first_ = true;
-    queue_.fill_near(device, shapes.arrays(), device_pairs_, device_margins_);
+void StandardRays::cast(const Update& update, RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    const Array<kernels::OrderedPair>& pairs = pairs_.ordered();
+    const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
+    block_counts_.resize(update.device, 1, pairs.size());
+    small_.resize(update.device, pairs.size());
+    launch<KernelId::count_clusters>(update.device, pairs.size(), pairs, arrays.headers, arrays.clusters,
+                                     block_counts_.values(), small_);
+    block_counts_.scan(update.device, pairs.size(), batch.totals, RayBatch::block_sum, blocks_.size());
+    launch<KernelId::write_clusters>(update.device, items_of(batch.totals, RayBatch::block_sum, pairs.size()), pairs,
+                                     arrays.headers, arrays.clusters, small_, block_counts_.firsts(), blocks_);
+
+    const Count found = results_of(batch.totals, RayBatch::block_sum, blocks_.size());
+    ray_counts_.resize(update.device, 2, blocks_.size());
+    launch<KernelId::count_rays>(update.device, found, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,
+                                 arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks_,
+                                 ray_counts_.values());
+    ray_counts_.scan(update.device, found, batch.totals, RayBatch::ray_sum, batch.rays.size());
+    launch<KernelId::write_rays>(update.device, items_of(batch.totals, RayBatch::ray_sum, blocks_.size()), 0u, blocks_,
+                                 ray_counts_.firsts(), batch.rays);
+
+    batch.count = results_of(batch.totals, RayBatch::ray_sum, batch.rays.size());
+    cast_in_full(update, batch, use_grid);
 }
 
-void StandardRays::cast(Device& device, Caster caster, const ShapeStore& shapes) {
-    cast_standard(device, caster, shapes.arrays(), device_pairs_, queue_.rays(), hits_, short_first_);
+bool StandardRays::had_room(Device& device, RayBatch& batch) {
+    const std::size_t blocks = batch.sums[RayBatch::block_sum].sums[0], rays = batch.sums[RayBatch::ray_sum].sums[0];
+    const bool fits = blocks <= blocks_.size() && rays <= batch.rays.size();
+    blocks_.grow(device, blocks);
+    if (rays > batch.rays.size()) batch.resize(device, rays);
+    return fits;
 }
 
-void StandardRays::count(StepStats& stats) const {
-    stats.vertices += queue_.vertices_tested();
-    stats.rays += queue_.vertices_inside();
-    stats.rays_cast += queue_.rays().size();
-    stats.pairs_full += which_.size();
+void StandardRays::count(const RayBatch& batch, std::size_t pairs, StepStats& stats) {
+    stats.vertices += std::uint64_t{VERTEX_LANES} * batch.sums[RayBatch::block_sum].sums[0];
+    stats.rays += batch.sums[RayBatch::ray_sum].sums[1];
+    stats.rays_cast += batch.sums[RayBatch::ray_sum].sums[0];
+    stats.pairs_full += 2 * pairs;
 }
 
 } // namespace raycontact

@@ -48,8 +48,7 @@ double wanted_cells(double triangles) {
 class Grid {
 public:
     explicit Grid(const ShapeData& shape) {
-        const float low[3] = {shape.low.x, shape.low.y, shape.low.z};
-        const float high[3] = {shape.high.x, shape.high.y, shape.high.z};
+        const float *low = shape.header.low, *high = shape.header.high;
         double extent[3];
         for (int axis = 0; axis < 3; ++axis) extent[axis] = double(high[axis]) - double(low[axis]);
         const double longest_side = std::max({extent[0], extent[1], extent[2]});

@@ -17,17 +17,16 @@ constexpr double margin = 1e-2;
 
 class Grid {
 public:
-    explicit Grid(const ShapeData& shape) : low_{shape.low.x, shape.low.y, shape.low.z} {
-        const double extent[3] = {double(shape.high.x) - low_[0], double(shape.high.y) - low_[1],
-                                  double(shape.high.z) - low_[2]};
+    explicit Grid(const ShapeData& shape) : low_{shape.header.low[0], shape.header.low[1], shape.header.low[2]} {
+        const float *low = shape.header.low, *high = shape.header.high;
+        const double extent[3] = {double(high[0]) - low_[0], double(high[1]) - low_[1], double(high[2]) - low_[2]};
         const double longest = std::max({extent[0], extent[1], extent[2]});
         // Cells about half as long as an edge of the surface's triangles: memory stays a small part of the triangles'.
         const double wanted = std::clamp(1.6 * std::sqrt(double(shape.mesh.triangles.size())), 8.0, 256.0);
         // A float32 scale: the kernels must find the very cells that are tested here. The farthest look-up is that of
         // the upper corner, and in float32 it may round up into one cell more than in double.
         scale_ = static_cast<float>(wanted / longest);
-        const float far[3] = {shape.high.x - shape.low.x, shape.high.y - shape.low.y, shape.high.z - shape.low.z};
-        for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(far[axis] * scale_) + 1;
+        for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>((high[axis] - low[axis]) * scale_) + 1;
         cells_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], Unknown);
         visits_left_ = 20 * cells_.size() + 1000 * shape.mesh.triangles.size();
     }

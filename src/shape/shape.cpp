@@ -49,8 +49,10 @@ void round_vertices(ShapeData& shape) {
     }
     shape.diagonal = length(high - low);
     shape.grain = shape.diagonal / std::sqrt(double(shape.mesh.triangles.size()));
-    shape.low = {static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
-    shape.high = {static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
+    for (std::size_t k = 0; k < 3; ++k) {
+        shape.header.low[k] = static_cast<float>(axis(low, k));
+        shape.header.high[k] = static_cast<float>(axis(high, k));
+    }
     shape.box_min = shape.centre + low;
     shape.box_max = shape.centre + high;
 }
@@ -63,8 +65,7 @@ void link_faces(ShapeData& shape) {
     for (std::size_t b = 0; b < shape.triangle_blocks.size(); ++b)
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const kernels::uint triangle = shape.triangle_blocks[b].triangle[lane];
-            if (triangle != NONE)
-                shape.faces[triangle].slot = static_cast<kernels::uint>(TRIANGLE_LANES * b + lane);
+            if (triangle != NONE) shape.faces[triangle].slot = static_cast<kernels::uint>(TRIANGLE_LANES * b + lane);
         }
 }
 

@@ -20,8 +20,7 @@ struct ShapeData {
     std::vector<Vec3> vertex_normals;
     std::vector<float> exit_distances;
     std::vector<std::array<std::uint32_t, 3>> neighbours;
-    Vec3 box_min, box_max; ///< body frame
-    Point3f low, high;     ///< the same box about centre, exactly that of points
+    Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
     double diagonal = 0;   ///< of the box, metres
     double radius = 0;
     double grain = 0;   ///< about as long as an edge: the diagonal over the root of the number of triangles, metres

@@ -45,6 +45,7 @@ bool ShapeStore::pack() {
     if (2 * bytes_dropped_ <= bytes_used_) return false;
     ++packed_;
     arrays_ = {};
+    headers_.clear();
     bytes_used_ = bytes_dropped_ = 0;
     for (const Shape* shape : order_) upload(entries_.at(shape));
     return true;
@@ -63,6 +64,7 @@ void ShapeStore::upload(Entry& entry) {
     for (kernels::uint& first : header.cluster_first)
         first += first_index(arrays_.clusters.size(), data.clusters.size());
     entry.index = static_cast<kernels::uint>(arrays_.headers.size());
+    headers_.reserve(entry.index + std::size_t{1});
     arrays_.headers.append(device_, std::span(&header, 1));
     arrays_.triangle_blocks.append(device_, std::span(data.triangle_blocks));
     arrays_.nodes.append(device_, std::span(data.nodes));
@@ -72,6 +74,8 @@ void ShapeStore::upload(Entry& entry) {
     arrays_.face_normals.append(device_, std::span(data.face_normals));
     arrays_.outside_cells.append(device_, std::span(data.outside_cells));
     arrays_.clearances.append(device_, std::span(data.clearances));
+    headers_.resize(entry.index);
+    headers_.push_back(header);
     bytes_used_ += entry.shape->memory_bytes();
 }
 

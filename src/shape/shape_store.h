@@ -37,6 +37,8 @@ public:
     /// Counts the times that indices changed.
     std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
+    /// arrays().headers, as the host has them.
+    std::span<const kernels::ShapeHeader> headers() const { return headers_; }
 
 private:
     struct Entry {
@@ -50,6 +52,7 @@ private:
     std::unordered_map<const Shape*, Entry> entries_;
     std::vector<const Shape*> order_; ///< of upload, so that no result depends on addresses
     Arrays arrays_;
+    std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
     std::uint64_t packed_ = 0;
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
+#include "device/cpu/scan.h"
 
 #include <raycontact/error.h>
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <new>
@@ -23,7 +25,7 @@ public:
     HostBuffer(const HostBuffer&) = delete;
     HostBuffer& operator=(const HostBuffer&) = delete;
     std::size_t bytes() const override { return bytes_; }
-    void* host() override { return data_; }
+    void* host() const override { return data_; }
     std::byte* data() const { return static_cast<std::byte*>(data_); }
 
 private:
@@ -34,6 +36,27 @@ private:
 std::byte* bytes_of(const Buffer& buffer) {
     return static_cast<const HostBuffer&>(buffer).data();
 }
+kernels::uint* words_of(const Buffer* buffer) {
+    return buffer ? reinterpret_cast<kernels::uint*>(bytes_of(*buffer)) : nullptr;
+}
+kernels::uint number_of(const Count& count) {
+    return count.buffer ? words_of(count.buffer)[count.value] : count.value;
+}
+
+using Clock = std::chrono::steady_clock;
+
+// Adds the time that it lives.
+class Busy {
+public:
+    explicit Busy(Clock::duration& sum) : sum_(sum) {}
+    ~Busy() { sum_ += Clock::now() - start_; }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+private:
+    Clock::duration& sum_;
+    Clock::time_point start_ = Clock::now();
+};
 
 // How many items make a slice worth a thread's while; a ray costs a hundred times what an element of a scan does.
 kernels::uint grain_of(KernelId kernel) {
@@ -61,9 +84,6 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::count_candidates:
     case KernelId::write_candidates:
         return 256;
-    case KernelId::scan_sums:
-    case KernelId::scan_write:
-        return 16;
     default:
         return 4096;
     }
@@ -76,6 +96,7 @@ public:
     }
 
     const DeviceInfo& info() const override { return info_; }
+    const DeviceTraits& traits() const override { return traits_; }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
     Queue& queue() override { return *this; }
 
@@ -83,23 +104,37 @@ private:
     void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
         std::memcpy(bytes_of(to) + offset, from, bytes);
     }
-    void read(void* to, const Buffer& from, std::size_t offset, std::size_t bytes) override {
-        std::memcpy(to, bytes_of(from) + offset, bytes);
+    void read(std::span<const Piece> pieces) override {
+        for (const Piece& piece : pieces)
+            if (piece.bytes > 0) std::memcpy(piece.to, bytes_of(*piece.from) + piece.offset, piece.bytes);
     }
     void copy(Buffer& to, const Buffer& from, std::size_t bytes) override {
         std::memcpy(bytes_of(to), bytes_of(from), bytes);
     }
-    void launch(KernelId kernel, kernels::uint count, std::span<const Argument> arguments) override {
+    void launch(KernelId kernel, Count count, std::span<const Argument> arguments) override {
+        const Busy busy(busy_);
         const Entry entry = table_.entries[static_cast<std::size_t>(kernel)];
-        executor_.run(count, grain_of(kernel), [&](kernels::uint begin, kernels::uint end) {
-            entry({begin, end}, count, arguments.data());
+        const kernels::uint all = number_of(count);
+        executor_.run(all, grain_of(kernel), [&](kernels::uint begin, kernels::uint end) {
+            entry({begin, end}, all, arguments.data());
         });
     }
+    kernels::uint scan(const ScanOf& scan) override {
+        const Busy busy(busy_);
+        scanner_.run(executor_,
+                     {number_of(scan.count), scan.columns, scan.stride, words_of(scan.values), words_of(scan.firsts),
+                      reinterpret_cast<kernels::Totals*>(words_of(scan.totals)) + scan.at, scan.room});
+        return scan.count.most > SCAN_AT_ONCE ? 3 : 1;
+    }
     void finish() override {}
+    double busy_ms() const override { return std::chrono::duration<double, std::milli>(busy_).count(); }
 
     DeviceInfo info_;
+    DeviceTraits traits_{.has_double = true, .shares_memory = true};
     Executor& executor_;
     const KernelTable& table_;
+    Scanner scanner_;
+    Clock::duration busy_{};
 };
 
 std::string processor_name() {

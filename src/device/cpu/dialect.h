@@ -7,7 +7,7 @@
 #endif
 
 // The kernels' words in C++. FOR_EACH and FOR_EACH_FEW walk the slice that a thread was given; FOR_LANES promises that
-// lanes do not depend on each other.
+// lanes do not depend on each other. The device looks up the number of items before it hands out slices.
 namespace raycontact::kernels {
 using uint = std::uint32_t;
 using ulong = std::uint64_t;
@@ -24,7 +24,8 @@ struct Range {
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
-#define RANGE [[maybe_unused]] Range range,
+#define COUNT(n) [[maybe_unused]] Range range, [[maybe_unused]] uint n
+#define ALL(n) (n)
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4
 #define RAYS_IN_GROUP 16

@@ -2,18 +2,15 @@
 // The dialect's words that depend on the instruction set; included once for each, inside its namespace. The same bits
 // from all of them.
 
-// What rounding took from p = fl(a * b), exactly: by one fused multiply-add, or by splitting (Dekker 1971), which alone
-// would leave some zeros negative.
+// What rounding took from p = fl(a * b): by one fused multiply-add, or in double, which holds every product of two
+// floats and what p leaves of it; either rounds once, so the bits are the same for every a and b.
 #ifdef __FMA__
 DEVICE float product_error(float a, float b, float p) {
     return __builtin_fmaf(a, b, -p);
 }
 #else
 DEVICE float product_error(float a, float b, float p) {
-    const float wide_a = 4097.0f * a, wide_b = 4097.0f * b;
-    const float high_a = wide_a - (wide_a - a), high_b = wide_b - (wide_b - b);
-    const float low_a = a - high_a, low_b = b - high_b;
-    return low_a * low_b - (((p - high_a * high_b) - low_a * high_b) - high_a * low_b) + 0.0f;
+    return (float)((double)a * (double)b - (double)p);
 }
 #endif
 

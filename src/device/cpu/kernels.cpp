@@ -6,6 +6,8 @@ namespace raycontact::kernels::RAYCONTACT_ISA {
 #include "device/cpu/instruction_set.h"
 
 #include "kernels/kernels.h"
+
+#include "kernels/certified.h"
 } // namespace raycontact::kernels::RAYCONTACT_ISA
 
 #define RAYCONTACT_STRING_(x) #x
@@ -17,8 +19,10 @@ extern const KernelTable RAYCONTACT_ISA;
 const KernelTable RAYCONTACT_ISA = {RAYCONTACT_STRING(RAYCONTACT_ISA),
                                     {
 #define RAYCONTACT_KERNEL(name) &Unpacked<&kernels::RAYCONTACT_ISA::name>::run,
+#define RAYCONTACT_CPU_KERNEL(name) RAYCONTACT_KERNEL(name)
 #include "kernels/kernels.def"
 #undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
                                     }};
 
 } // namespace raycontact::cpu

@@ -11,13 +11,16 @@ typedef unsigned long long ulong;
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) ((void)(index))
-#define RANGE
-#define FOR_EACH(i, n) for (uint i = blockIdx.x * blockDim.x + threadIdx.x; i < (n); i += gridDim.x * blockDim.x)
+#define COUNT(n) const uint *RESTRICT n##_counts, uint n##_value
+#define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
+#define FOR_EACH(i, n)                                                                                                 \
+    for (uint i = blockIdx.x * blockDim.x + threadIdx.x, i##_end = ALL(n); i < i##_end; i += gridDim.x * blockDim.x)
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
-    for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u; i < (n); i += gridDim.x * blockDim.x)
+    for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u, i##_end = ALL(n); i < i##_end;                      \
+         i += gridDim.x * blockDim.x)
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
 DEVICE uint lowest_bit(uint bits) {

@@ -10,13 +10,15 @@
 #define GLOBAL __global
 #define RESTRICT restrict
 #define PREFETCH(array, index) ((void)(index))
-#define RANGE
-#define FOR_EACH(i, n) for (uint i = (uint)get_global_id(0); i < (n); i += (uint)get_global_size(0))
+#define COUNT(n) GLOBAL const uint *RESTRICT n##_counts, uint n##_value
+#define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
+#define FOR_EACH(i, n)                                                                                                 \
+    for (uint i = (uint)get_global_id(0), i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
-    for (uint i = (uint)get_global_id(0), few = 1u; i < (n); i += (uint)get_global_size(0))
+    for (uint i = (uint)get_global_id(0), few = 1u, i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
 DEVICE uint lowest_bit(uint bits) {

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernels of the certified method (docs/certified.md), which only devices run that share the host's memory; included
+// after kernels.h.
+#include "kernels/watch.h"
+
+#include "kernels/look.h"
+
+#include "kernels/tube.h"
+
+#include "kernels/cap.h"
+
+#include "kernels/held_group.h"
+
+#include "kernels/cap_group.h"
+
+#include "kernels/hold.h"

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where bodies are in the world becomes where each source is, seen from its target: relative_pose() in double, rounded
+// only then, so that nothing is lost far from the origin. The only kernels that use double.
+
+// Bodies that moved, then pairs that came or went.
+KERNEL void apply_changes(COUNT(count), uint moved_count, GLOBAL const BodyPlace* RESTRICT moved,
+                          GLOBAL const PairChange* RESTRICT changed, GLOBAL BodyPlace* RESTRICT bodies,
+                          GLOBAL PairBodies* RESTRICT pairs) {
+    FOR_EACH(i, count) {
+        if (i < moved_count)
+            bodies[moved[i].slot] = moved[i];
+        else
+            pairs[changed[i - moved_count].slot] = changed[i - moved_count].bodies;
+    }
+}
+
+// The operations of relative_pose(target, source), in their order. An open mesh has no inside that its box could bound:
+// vertices beyond the box may still reach it.
+DEVICE void place_pair(GLOBAL const BodyPlace* RESTRICT source, GLOBAL const BodyPlace* RESTRICT target,
+                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL OrderedPair* RESTRICT ordered) {
+    GLOBAL const double* o = target->rotation;
+    GLOBAL const double* s = source->rotation;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            ordered->rotation[3 * row + column] =
+                (float)((o[row] * s[column] + o[3 + row] * s[3 + column]) + o[6 + row] * s[6 + column]);
+    const double x = source->translation[0] - target->translation[0];
+    const double y = source->translation[1] - target->translation[1];
+    const double z = source->translation[2] - target->translation[2];
+    for (int row = 0; row < 3; ++row)
+        ordered->translation[row] = (float)((o[row] * x + o[3 + row] * y) + o[6 + row] * z);
+    GLOBAL const ShapeHeader* shape = shapes + target->shape;
+    const float grow = shape->closed != 0u ? 0.0f : shapes[source->shape].ray_reach;
+    for (int k = 0; k < 3; ++k) {
+        ordered->bounds[k] = shape->low[k] - grow;
+        ordered->bounds[3 + k] = shape->high[k] + grow;
+    }
+    ordered->source = source->shape;
+    ordered->target = target->shape;
+}
+
+// Slot p becomes ordered pairs 2 p (first into second) and 2 p + 1.
+KERNEL void place_pairs(COUNT(count), GLOBAL const PairBodies* RESTRICT pairs, GLOBAL const BodyPlace* RESTRICT bodies,
+                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL OrderedPair* RESTRICT ordered) {
+    FOR_EACH(p, count) {
+        const PairBodies pair = pairs[p];
+        if (pair.first == NONE) {
+            ordered[2u * p].source = NONE;
+            ordered[2u * p + 1u].source = NONE;
+        } else {
+            place_pair(bodies + pair.first, bodies + pair.second, shapes, ordered + 2u * p);
+            place_pair(bodies + pair.second, bodies + pair.first, shapes, ordered + 2u * p + 1u);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pairs/device_pairs.h"
+
+#include "device/launch.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+namespace raycontact {
+
+namespace {
+
+constexpr kernels::uint nowhere = NONE; // no shape: this body was never sent
+
+kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
+    kernels::BodyPlace place;
+    std::copy(body.centred.rotation.begin(), body.centred.rotation.end(), place.rotation);
+    place.translation[0] = body.centred.translation.x;
+    place.translation[1] = body.centred.translation.y;
+    place.translation[2] = body.centred.translation.z;
+    place.shape = body.shape_index;
+    place.slot = slot;
+    return place;
+}
+
+} // namespace
+
+void DevicePairs::clear() {
+    slots_.clear();
+    numbers_.clear();
+    pairs_.clear();
+    sent_.clear();
+}
+
+void DevicePairs::list_changes(const Update& update) {
+    moved_.clear();
+    changed_.clear();
+    sent_.resize(update.bodies.size(), {{}, {}, nowhere, 0});
+    for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
+        if (update.bodies[i].shape == nullptr) continue;
+        const kernels::BodyPlace now = place_of(update.bodies[i], i);
+        if (std::memcmp(&now, &sent_[i], sizeof now) == 0) continue;
+        moved_.push_back(sent_[i] = now);
+    }
+    touched_.clear();
+    const bool changed = slots_.match(
+        update.pairs, [](std::size_t, std::size_t, std::size_t) {},
+        [&](std::size_t i, kernels::uint slot) {
+            if (slot == pairs_.size()) pairs_.emplace_back();
+            pairs_[slot] = {update.pairs[i].first, update.pairs[i].second};
+            touched_.push_back(slot);
+        },
+        [&](kernels::uint slot) {
+            pairs_[slot] = {NONE, NONE};
+            touched_.push_back(slot);
+        });
+    if (!changed) return;
+    // A slot may be given again in the step in which it becomes free: it is sent once, as it is now.
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const kernels::uint slot : touched_) changed_.push_back({slot, pairs_[slot]});
+    numbers_.resize(2 * pairs_.size());
+    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        const std::size_t slot = slots_.slot(i);
+        numbers_[2 * slot] = 2 * i;
+        numbers_[2 * slot + 1] = 2 * i + 1;
+    }
+}
+
+void DevicePairs::place(const Update& update) {
+    if (update.pairs.size() >= NONE / 2) throw std::length_error("more than 2^31 pairs in one step; give fewer");
+    list_changes(update);
+    ordered_.resize(update.device, 2 * pairs_.size());
+    if (!update.device.traits().has_double) return place_on_host(update);
+    device_bodies_.extend(update.device, sent_.size());
+    device_pairs_.extend(update.device, pairs_.size());
+    device_moved_.write(update.device, moved_);
+    device_changed_.write(update.device, changed_);
+    launch<KernelId::apply_changes>(update.device, moved_.size() + changed_.size(),
+                                    static_cast<kernels::uint>(moved_.size()), device_moved_, device_changed_,
+                                    device_bodies_, device_pairs_);
+    launch<KernelId::place_pairs>(update.device, pairs_.size(), device_pairs_, device_bodies_, update.arrays().headers,
+                                  ordered_);
+}
+
+void DevicePairs::place_on_host(const Update& update) {
+    host_ordered_.resize(2 * pairs_.size());
+    update.executor.run(static_cast<kernels::uint>(pairs_.size()), 256, [&](kernels::uint begin, kernels::uint end) {
+        kernels::prototype::place_pairs({begin, end}, static_cast<kernels::uint>(pairs_.size()), pairs_.data(),
+                                        sent_.data(), update.shapes.headers().data(), host_ordered_.data());
+    });
+    ordered_.write(update.device, host_ordered_);
+}
+
+} // namespace raycontact

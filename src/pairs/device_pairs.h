@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pairs/pair_slots.h"
+#include "pairs/update.h"
+
+namespace raycontact {
+
+/// The bodies and the open pairs as the device keeps them: what changed goes up, and every pair is placed there, in
+/// double. Where a device has no double, the host does that with the same text.
+class DevicePairs {
+public:
+    void place(const Update& update);
+    void clear();
+
+    /// 2 x slot of a pair, + 1 for the second body into the first; some slots have no pair.
+    const Array<kernels::OrderedPair>& ordered() const { return ordered_; }
+    /// By the same number: 2 x place of the pair in the step, + 1; anything where the slot has no pair.
+    std::span<const std::uint32_t> numbers() const { return numbers_; }
+
+private:
+    void list_changes(const Update& update);
+    void place_on_host(const Update& update);
+
+    PairSlots slots_;
+    std::vector<std::uint32_t> numbers_;
+    std::vector<kernels::BodyPlace> sent_, moved_; ///< by body; of those that moved
+    std::vector<kernels::PairBodies> pairs_;       ///< by slot
+    std::vector<kernels::uint> touched_;           ///< slots
+    std::vector<kernels::PairChange> changed_;
+    std::vector<kernels::OrderedPair> host_ordered_; ///< of a device without double
+
+    Array<kernels::BodyPlace> device_bodies_, device_moved_;
+    Array<kernels::PairBodies> device_pairs_;
+    Array<kernels::PairChange> device_changed_;
+    Array<kernels::OrderedPair> ordered_;
+};
+
+} // namespace raycontact

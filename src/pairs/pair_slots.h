@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "slot_pair.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// The pairs that are open, each with a slot that it keeps for as long as it is. Slots are given again, so memory
+/// follows the most pairs ever open at once.
+class PairSlots {
+public:
+    /// pairs: sorted, each once. In their order: kept(old, now, n) tells of n pairs in a row that stay, opened(now,
+    /// slot) and closed(slot) of those that come and go. False, and nothing is told, where all pairs are those of
+    /// before.
+    template <class Kept, class Opened, class Closed>
+    bool match(std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
+        same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
+        if (same_) return false;
+        next_.resize(pairs.size());
+        std::size_t old = 0;
+        const auto close = [&] {
+            closed(slots_[old]);
+            free_.push_back(slots_[old++]);
+        };
+        for (std::size_t i = 0; i < pairs.size();) {
+            // Most pairs stay, in runs.
+            const std::size_t most = std::min(pairs.size() - i, open_.size() - old);
+            std::size_t same = 0;
+            while (same < most && pairs[i + same] == open_[old + same]) ++same;
+            std::copy_n(slots_.begin() + std::ptrdiff_t(old), same, next_.begin() + std::ptrdiff_t(i));
+            if (same > 0) kept(old, i, same);
+            i += same;
+            old += same;
+            if (i == pairs.size()) break;
+            if (old < open_.size() && open_[old] < pairs[i]) {
+                close();
+                continue;
+            }
+            next_[i] = take();
+            opened(i, next_[i]);
+            ++i;
+        }
+        while (old < open_.size()) close();
+        slots_.swap(next_);
+        last_.swap(open_);
+        open_.assign(pairs.begin(), pairs.end());
+        return true;
+    }
+
+    std::span<const SlotPair> pairs() const { return open_; }
+    /// Of the match before the last, unless all has been forgotten since.
+    std::span<const SlotPair> last_pairs() const { return same_ ? open_ : last_; }
+    /// Of the i-th pair.
+    std::uint32_t slot(std::size_t i) const { return slots_[i]; }
+    /// All slots are below.
+    std::uint32_t end() const { return end_; }
+
+    void clear() {
+        open_.clear();
+        last_.clear();
+        slots_.clear();
+        free_.clear();
+        end_ = 0;
+        same_ = false;
+    }
+
+private:
+    std::uint32_t take() {
+        if (free_.empty()) return end_++;
+        const std::uint32_t slot = free_.back();
+        free_.pop_back();
+        return slot;
+    }
+
+    std::vector<SlotPair> open_, last_;
+    std::vector<std::uint32_t> slots_, next_, free_;
+    std::uint32_t end_ = 0;
+    bool same_ = false; ///< the last match had the pairs of the one before: last_ is older
+};
+
+} // namespace raycontact

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "executor/executor.h"
+#include "pairs/motion.h"
+#include "pairs/ordered_pairs.h"
+#include "shape/shape_store.h"
+
+#include <raycontact/settings.h>
+
+#include <span>
+
+namespace raycontact {
+
+/// What one step of one part works on. Valid for that step alone.
+struct Update {
+    Device& device;
+    Executor& executor;
+    const ShapeStore& shapes;
+    std::span<const PlacedBody> bodies;
+    std::span<const SlotPair> pairs; ///< the part's: sorted, each once
+    const Motion& motion;            ///< not of `standard`, which asks for none
+    const Settings& settings;
+
+    const ShapeStore::Arrays& arrays() const { return shapes.arrays(); }
+};
+
+} // namespace raycontact

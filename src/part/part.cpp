@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "part/part.h"
+
+#include <utility>
+
+namespace raycontact {
+
+Part::Part(OpenDevice opened)
+    : executor_(std::move(opened.executor)), device_(std::make_unique<CountingDevice>(std::move(opened.device))),
+      shapes_(*device_) {}
+
+void Part::forget() {
+    standard_.clear();
+    certified_.clear();
+    coherent_.clear();
+    local_.clear();
+}
+
+// What `certified` keeps lies in memory that host and device share; elsewhere it casts what `standard` does.
+Part::Finds Part::finds(const Settings& settings) const {
+    if (settings.method == Method::standard) return Finds::standard;
+    if (settings.method != Method::certified) return Finds::coherent;
+    return device_->traits().shares_memory ? Finds::certified : Finds::standard;
+}
+
+Update Part::update() const {
+    return {*device_, *executor_, shapes_, bodies_, pairs_, motion_, *settings_};
+}
+
+void Part::begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings) {
+    bodies_ = bodies;
+    pairs_ = pairs;
+    settings_ = &settings;
+    const Update now = update();
+    const Finds method = finds(settings);
+    if (method != Finds::standard) motion_.update(*executor_, bodies);
+    if (method == Finds::standard)
+        standard_.begin(now, batch_);
+    else if (method == Finds::certified)
+        certified_.cast(now, batch_);
+    else
+        coherent_.cast(now, batch_);
+    gather_.run(now, batch_);
+}
+
+std::span<const kernels::LocalContact> Part::end() {
+    const Update now = update();
+    const Finds method = finds(*settings_);
+    for (;;) {
+        const bool all_written = gather_.read(*device_, batch_);
+        const bool all_cast = method != Finds::standard || standard_.had_room(*device_, batch_);
+        if (all_written && all_cast) break;
+        if (!all_cast) standard_.cast(now, batch_);
+        gather_.run(now, batch_);
+    }
+    if (method == Finds::coherent) coherent_.keep(now);
+    still_.clear();
+    if (method == Finds::certified && !certified_.still().empty())
+        find_still_contacts(certified_.last_pairs(), local_.contacts(), pairs_, certified_.still(), still_);
+    local_.clear();
+    local_.add(gather_.contacts(), batch_.numbers);
+    local_.add(still_, certified_.still());
+    local_.sort(pairs_.size());
+    work_ = device_->take_work();
+    work_.device = device_->info().id;
+    work_.pairs = pairs_.size();
+    return local_.contacts();
+}
+
+void Part::count(StepStats& stats) const {
+    stats.pairs += pairs_.size();
+    stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
+    switch (finds(*settings_)) {
+    case Finds::standard:
+        return StandardRays::count(batch_, pairs_.size(), stats);
+    case Finds::certified:
+        return certified_.count(batch_, stats);
+    case Finds::coherent:
+        return coherent_.count(stats);
+    }
+}
+
+} // namespace raycontact

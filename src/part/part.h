@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contacts/gather.h"
+#include "contacts/local_contacts.h"
+#include "contacts/still_contacts.h"
+#include "device/counting.h"
+#include "rays/certified.h"
+#include "rays/coherent.h"
+#include "rays/standard.h"
+
+#include <raycontact/scene.h>
+
+#include <string_view>
+
+namespace raycontact {
+
+/// What one device does for the pairs that are its own: it keeps the shapes, finds the rays by a method, casts them and
+/// gathers their contacts. It knows bodies by their slots and no other part. Keeps every array between steps, so that a
+/// step allocates nothing once it has seen the worst.
+class Part {
+public:
+    explicit Part(OpenDevice opened);
+
+    Executor& executor() { return *executor_; }
+    ShapeStore& shapes() { return shapes_; }
+
+    /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until end().
+    void begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings);
+    /// The contacts of the step, by pair: LocalContact::pair is 2 x place in `pairs` + direction. Valid until begin().
+    std::span<const kernels::LocalContact> end();
+
+    /// Adds what the last step did.
+    void count(StepStats& stats) const;
+    const DeviceWork& work() const { return work_; }
+
+    /// Forgets what the methods kept.
+    void forget();
+
+private:
+    enum class Finds : std::uint8_t { standard, certified, coherent };
+    Finds finds(const Settings& settings) const;
+    Update update() const;
+
+    std::unique_ptr<Executor> executor_;
+    std::unique_ptr<CountingDevice> device_;
+    ShapeStore shapes_;
+    Motion motion_;
+    StandardRays standard_;
+    CertifiedRays certified_;
+    CoherentRays coherent_;
+    RayBatch batch_;
+    Gather gather_;
+    LocalContacts local_;                      ///< kept until the next step has asked for them
+    std::vector<kernels::LocalContact> still_; ///< of the last step, still true
+    DeviceWork work_;
+
+    std::span<const PlacedBody> bodies_; ///< of the step, as what follows
+    std::span<const SlotPair> pairs_;
+    const Settings* settings_ = nullptr;
+};
+
+} // namespace raycontact

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/scan.h"
+#include "pairs/update.h"
+
+namespace raycontact {
+
+/// The vertex blocks of some pairs that could be in contact soon, in the order of the pairs.
+class NearBlocks {
+public:
+    /// Those of the first horizons.size() pairs that could be in contact before they have moved by horizons[p], metres,
+    /// which hold the rounding to be allowed for; below 0: that reach into the bounds. totals[at] is used. Waits for
+    /// the device once.
+    void find(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<float>& horizons,
+              const Array<kernels::Totals>& totals, std::size_t at);
+
+    const Array<kernels::PairBlock>& blocks() const { return blocks_; }
+    /// By pair: where its blocks begin.
+    const Array<kernels::uint>& firsts() const { return counts_.firsts(); }
+    /// By pair: how many there are.
+    std::span<const kernels::uint> host_counts() const { return host_counts_; }
+    /// By pair, where it has no block: how far its vertices can move before one could be in contact, metres, rounding
+    /// not allowed for. May be less, also negative.
+    std::span<const float> host_clears() const { return host_clears_; }
+
+private:
+    Columns counts_;
+    Array<float> clears_;
+    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
+    Array<kernels::PairBlock> blocks_;
+    std::vector<kernels::uint> host_counts_;
+    std::vector<float> host_clears_;
+};
+
+} // namespace raycontact

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/scan.h"
+#include "pairs/update.h"
+
+#include <array>
+
+namespace raycontact {
+
+/// The rays of a step on the device, and how they ended. The host may learn only at the end of the step how many.
+struct RayBatch {
+    /// What the scans of a step count: vertex blocks found, rays, contacts, rays kept for the next step.
+    enum Sum : std::size_t { block_sum, ray_sum, contact_sum, kept_sum, sum_count };
+
+    /// Room for so many rays. Their hits come with columns: contacts, side tests, and if asked for rays cast in full.
+    void resize(Device& device, std::size_t size, kernels::uint columns = 2) {
+        rays.resize(device, size);
+        hits.resize(device, size);
+        outcomes.resize(device, columns, size);
+        if (totals.size() == 0) totals.write(device, sums);
+    }
+
+    Count count{0};
+    const Array<kernels::OrderedPair>* pairs = nullptr; ///< Ray::pair is a place in it
+    std::span<const std::uint32_t> numbers;             ///< of these: 2 x pair of the step + direction
+    Array<kernels::Ray> rays;
+    Array<kernels::Hit> hits;
+    Columns outcomes;
+    Array<kernels::Totals> totals;
+    std::array<kernels::Totals, sum_count> sums{}; ///< totals, as the host has read them
+};
+
+/// Casts every ray in full (paper section 2.1). short_first: the rays are those that a grid left over, most of which
+/// end close by; a matter of time alone.
+void cast_in_full(const Update& update, RayBatch& batch, bool short_first);
+
+} // namespace raycontact

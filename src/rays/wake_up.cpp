@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/wake_up.h"
+
+#include "pairs/rounding.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+#include <array>
+
+namespace raycontact {
+
+namespace {
+
+constexpr std::uint32_t slice_size = 128; // pairs
+
+// Shares of the smaller body's size:
+constexpr double fastest = 0.006;    // a step: a list would not last long enough to pay for itself
+constexpr double trembling = 0.001;  // the reference pose is moved once the pair is this far from it
+constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to triangle
+// How fast a pair may be for tubes to be sought, of their radius a step.
+constexpr double slow = 0.15;
+
+double size_of(const PlacedBody& a, const PlacedBody& b) {
+    return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+}
+
+// How far beyond the bounds a new list reaches: some steps' worth between the lengths that `bench sweep` found best, on
+// a pile and on fast bodies alike.
+double look_ahead(double size, double speed) {
+    return std::max(0.015 * size,
+                    std::min(0.027 * size, 24 * speed)); // in this order also for a speed that is no number
+}
+
+// Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
+double longest_clock(const PlacedBody& target) {
+    return 8 * target.shape->data().diagonal;
+}
+
+// Metres around a ray that are searched for what it could meet: within the length of a triangle the surface mostly
+// faces one way, farther off there are only more triangles to be asked.
+double tube_radius(double size, const ShapeData& target) {
+    return std::min(size / 128, target.grain);
+}
+
+} // namespace
+
+// Decides for one pair, in double, what must be looked at.
+void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice) {
+    const std::optional<double>& threshold = update.settings.displacement_threshold;
+    const SlotPair& pair = update.pairs[i];
+    WatchedPair& state = table.state(i);
+    Slack& slack = table.hot(i);
+    const PlacedBody* body[2] = {&update.bodies[pair.first], &update.bodies[pair.second]};
+    const double size = size_of(*body[0], *body[1]);
+    const bool fresh = state.directions[0].expiry < 0;
+    const PairPlace now = place_pair(body[0]->centred, body[1]->centred, update.motion.pair_shear(pair));
+    std::array<double, 2> moved{0, 0};
+    if (!fresh)
+        moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
+    bool stale[2] = {}, wakes[2] = {};
+    const bool was_still = slack.still;
+    slack = {1e300, true, false, false};
+    for (std::size_t d = 0; d < 2; ++d) {
+        Watched& own = state.directions[d];
+        if (was_still) own.rays.held = false;
+        const double clock = own.clock + moved[d];
+        // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
+        stale[d] = fresh || !(clock < own.expiry);
+        wakes[d] = stale[d] || !(clock < own.wake);
+        slack.casts = slack.casts || own.rays.count > 0;
+        if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
+    }
+    const bool any_wakes = wakes[0] || wakes[1], any_stale = stale[0] || stale[1];
+    if (!any_wakes && !slack.casts) return;
+
+    if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
+    const bool move = any_stale || (any_wakes && !(std::max(moved[0], moved[1]) < trembling * size));
+    if (move) state.reference = now;
+    for (std::uint32_t d = 0; d < 2; ++d) {
+        const PlacedBody &source = *body[d], &target = *body[1 - d];
+        Watched& own = state.directions[d];
+        if (move) {
+            own.clock += moved[d];
+            moved[d] = 0;
+        }
+        if (stale[d]) {
+            own.clock = 0;
+            own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
+            slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
+        }
+        if (!wakes[d] && own.rays.count == 0) continue;
+        Due& due = slice.due.emplace_back();
+        due.own = &own;
+        due.ordered = 2 * i + d;
+        due.stale = stale[d];
+        due.now = static_cast<float>(own.clock + moved[d]);
+        due.from = static_cast<float>(own.clock - moved[d]);
+        due.margin = static_cast<float>(rounding_margin(source, target));
+        const double radius = tube_radius(size, target.shape->data());
+        due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
+        due.asks_caps = speed < unhurried * size ? target.shape->data().header.caps_pay : 0;
+        due.longest = longest_clock(target);
+        order_pair(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.emplace_back());
+    }
+}
+
+// A cheap bound first, which most pairs at rest pass.
+void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
+                        Slice& slice) {
+    const auto wants = [&](std::uint32_t i, Slack& slack) {
+        slack.metres -= update.motion.pair_bound(update.pairs[i]);
+        if (slack.metres > 0 && !slack.casts) return false;
+        if (!slack.open || !update.motion.is_still(update.pairs[i])) return true;
+        slack.still = true;
+        slice.still.push_back(i);
+        return false;
+    };
+    const auto ask = [&](std::uint32_t i) {
+        const SlotPair& pair = update.pairs[i];
+        const double speed = update.motion.pair_speed(pair);
+        if (!update.settings.displacement_threshold
+            && speed > fastest * size_of(update.bodies[pair.first], update.bodies[pair.second]))
+            slice.fast.push_back(i);
+        else
+            wake_pair(update, table, i, speed, slice);
+    };
+    table.sift(
+        begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);
+}
+
+void WakeUp::run(const Update& update, WatchedPairs& table) {
+    const auto count = static_cast<std::uint32_t>(update.pairs.size());
+    slice_count_ = (count + slice_size - 1) / slice_size;
+    while (slices_.size() < slice_count_) {
+        Slice& slice = slices_.emplace_back();
+        slice.due.reserve(std::size_t{2} * slice_size);
+        slice.places.reserve(std::size_t{2} * slice_size);
+        slice.stale.reserve(std::size_t{2} * slice_size);
+        slice.fast.reserve(slice_size);
+        slice.still.reserve(slice_size);
+    }
+    update.executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t s = begin; s < end; ++s) {
+            Slice& slice = slices_[s];
+            slice.due.clear();
+            slice.places.clear();
+            slice.stale.clear();
+            slice.fast.clear();
+            slice.still.clear();
+            wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
+        }
+    });
+}
+
+} // namespace raycontact
