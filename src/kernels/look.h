@@ -52,7 +52,7 @@ DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segme
     if (lanes != 0u && least > again) least = again;
     watch->lanes = lanes;
     // Never asleep, whichever way the clock was rounded.
-    watch->wake = least > 0.0f ? segment.from + least : AWAKE;
+    watch->wake = least > 0.0f ? segment.now + least : AWAKE;
     Look found = known_block(lanes, watch->wake, i - segment.first);
     found.blocks = 1u;
     return found;

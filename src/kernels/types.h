@@ -163,15 +163,15 @@ typedef struct {
 } Watch;
 WIRE_SIZE(Watch, 12);
 
-// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. from:
-// from where on a certificate given now counts. margin: metres of rounding that it must exceed.
+// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. margin:
+// metres of rounding that a certificate must exceed.
 typedef struct {
     uint pair;
     uint first, count;
-    float now, from;
+    float now;
     float margin;
 } Segment;
-WIRE_SIZE(Segment, 24);
+WIRE_SIZE(Segment, 20);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
 // casting: a bit for each watch that has any.

@@ -14,8 +14,6 @@
 namespace raycontact {
 
 namespace {
-using PoseBits = std::array<std::uint64_t, 12>;
-
 constexpr double lost_of_float = 6e-8;    // of a length, by rounding its components
 constexpr double lost_of_squares = 1e-22; // metres, where they underflow
 
@@ -39,16 +37,10 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             Body& body = bodies_[i];
             Last& last = lasts_[i];
             if (bodies[i].shape == nullptr) {
-                last.known = body.still = false;
+                last.known = false;
                 continue;
             }
             const Pose& now = bodies[i].centred;
-            // Bits, not values: 0 and -0 are one place, but not one contact.
-            body.still = last.known && std::bit_cast<PoseBits>(last.centred) == std::bit_cast<PoseBits>(now);
-            if (body.still) {
-                body.shift[0] = body.shift[1] = body.shift[2] = body.turn = body.shift_lost = 0;
-                continue;
-            }
             const double shear = shear_bound(now);
             const Pose& before = last.known ? last.centred : now;
             const Vec3 shift = now.translation - before.translation;

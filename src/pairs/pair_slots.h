@@ -19,8 +19,7 @@ public:
     /// before.
     template <class Kept, class Opened, class Closed>
     bool match(std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
-        same_ = std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end());
-        if (same_) return false;
+        if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return false;
         next_.resize(pairs.size());
         std::size_t old = 0;
         const auto close = [&] {
@@ -47,14 +46,11 @@ public:
         }
         while (old < open_.size()) close();
         slots_.swap(next_);
-        last_.swap(open_);
         open_.assign(pairs.begin(), pairs.end());
         return true;
     }
 
     std::span<const SlotPair> pairs() const { return open_; }
-    /// Of the match before the last, unless all has been forgotten since.
-    std::span<const SlotPair> last_pairs() const { return same_ ? open_ : last_; }
     /// Of the i-th pair.
     std::uint32_t slot(std::size_t i) const { return slots_[i]; }
     /// All slots are below.
@@ -62,11 +58,9 @@ public:
 
     void clear() {
         open_.clear();
-        last_.clear();
         slots_.clear();
         free_.clear();
         end_ = 0;
-        same_ = false;
     }
 
 private:
@@ -77,10 +71,9 @@ private:
         return slot;
     }
 
-    std::vector<SlotPair> open_, last_;
+    std::vector<SlotPair> open_;
     std::vector<std::uint32_t> slots_, next_, free_;
     std::uint32_t end_ = 0;
-    bool same_ = false; ///< the last match had the pairs of the one before: last_ is older
 };
 
 } // namespace raycontact

@@ -31,8 +31,6 @@ public:
         if (changed) hot_.swap(next_hot_);
     }
 
-    std::span<const SlotPair> last_pairs() const { return slots_.last_pairs(); }
-
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_.slot(i)]; }
     Hot& hot(std::size_t i) { return hot_[i]; }

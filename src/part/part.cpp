@@ -54,12 +54,8 @@ std::span<const kernels::LocalContact> Part::end() {
         gather_.run(now, batch_);
     }
     if (method == Finds::coherent) coherent_.keep(now);
-    still_.clear();
-    if (method == Finds::certified && !certified_.still().empty())
-        find_still_contacts(certified_.last_pairs(), local_.contacts(), pairs_, certified_.still(), still_);
     local_.clear();
     local_.add(gather_.contacts(), batch_.numbers);
-    local_.add(still_, certified_.still());
     local_.sort(pairs_.size());
     work_ = device_->take_work();
     work_.device = device_->info().id;

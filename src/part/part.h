@@ -3,7 +3,6 @@
 
 #include "contacts/gather.h"
 #include "contacts/local_contacts.h"
-#include "contacts/still_contacts.h"
 #include "device/counting.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
@@ -51,8 +50,7 @@ private:
     CoherentRays coherent_;
     RayBatch batch_;
     Gather gather_;
-    LocalContacts local_;                      ///< kept until the next step has asked for them
-    std::vector<kernels::LocalContact> still_; ///< of the last step, still true
+    LocalContacts local_;
     DeviceWork work_;
 
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows

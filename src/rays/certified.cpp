@@ -40,11 +40,9 @@ void CertifiedRays::close(WatchedPair& state) {
 // What the slices found, in the order of the pairs.
 void CertifiedRays::list_slices() {
     stale_.clear();
-    still_.clear();
     numbers_.clear();
     for (WakeUp::Slice& slice : wake_up_.slices()) {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
-        for (const std::uint32_t i : slice.still) still_.insert(still_.end(), {2 * i, 2 * i + 1});
         for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).open) close(table_.state(i));
             table_.hot(i) = {};

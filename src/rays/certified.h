@@ -20,11 +20,6 @@ public:
     void cast(const Update& update, RayBatch& batch);
     void clear();
 
-    /// 2 x pair + direction of the pairs of which neither body has moved: their contacts are those of the last step.
-    std::span<const std::uint32_t> still() const { return still_; }
-    /// Of the step before.
-    std::span<const SlotPair> last_pairs() const { return table_.last_pairs(); }
-
     /// Adds what the last step did.
     void count(const RayBatch& batch, StepStats& stats) const;
 
@@ -50,7 +45,6 @@ private:
     RangePool pool_;
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> numbers_; ///< 2 x pair + direction: of the fast pairs, then of what is due
-    std::vector<std::uint32_t> still_;   ///< the same of pairs that stand still
     std::size_t fast_count_ = 0;         ///< of numbers_
     kernels::Totals fast_sums_{};        ///< rays of theirs: cast, and of the rule
     std::size_t open_pairs_ = 0;

@@ -172,7 +172,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     std::uint64_t end = full_rays_;
     for (std::size_t i = full_count_; i < active_.size(); ++i) {
         const Kept& own = kept(active_[i]);
-        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0, 0});
+        host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0});
         host_firsts_.push_back(static_cast<kernels::uint>(end));
         end += own.count;
     }

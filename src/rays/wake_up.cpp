@@ -15,7 +15,6 @@ constexpr std::uint32_t slice_size = 128; // pairs
 
 // Shares of the smaller body's size:
 constexpr double fastest = 0.006;    // a step: a list would not last long enough to pay for itself
-constexpr double trembling = 0.001;  // the reference pose is moved once the pair is this far from it
 constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to triangle
 // How fast a pair may be for tubes to be sought, of their radius a step.
 constexpr double slow = 0.15;
@@ -58,11 +57,9 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool stale[2] = {}, wakes[2] = {};
-    const bool was_still = slack.still;
-    slack = {1e300, true, false, false};
+    slack = {1e300, true, false};
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
-        if (was_still) own.rays.held = false;
         const double clock = own.clock + moved[d];
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
         stale[d] = fresh || !(clock < own.expiry);
@@ -74,15 +71,12 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!any_wakes && !slack.casts) return;
 
     if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-    const bool move = any_stale || (any_wakes && !(std::max(moved[0], moved[1]) < trembling * size));
-    if (move) state.reference = now;
+    if (any_wakes) state.reference = now;
     for (std::uint32_t d = 0; d < 2; ++d) {
         const PlacedBody &source = *body[d], &target = *body[1 - d];
         Watched& own = state.directions[d];
-        if (move) {
-            own.clock += moved[d];
-            moved[d] = 0;
-        }
+        const double clock = own.clock + moved[d];
+        if (any_wakes) own.clock = clock;
         if (stale[d]) {
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
@@ -93,8 +87,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         due.own = &own;
         due.ordered = 2 * i + d;
         due.stale = stale[d];
-        due.now = static_cast<float>(own.clock + moved[d]);
-        due.from = static_cast<float>(own.clock - moved[d]);
+        due.now = static_cast<float>(stale[d] ? 0 : clock);
         due.margin = static_cast<float>(rounding_margin(source, target));
         const double radius = tube_radius(size, target.shape->data());
         due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
@@ -109,11 +102,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
                         Slice& slice) {
     const auto wants = [&](std::uint32_t i, Slack& slack) {
         slack.metres -= update.motion.pair_bound(update.pairs[i]);
-        if (slack.metres > 0 && !slack.casts) return false;
-        if (!slack.open || !update.motion.is_still(update.pairs[i])) return true;
-        slack.still = true;
-        slice.still.push_back(i);
-        return false;
+        return !(slack.metres > 0) || slack.casts;
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
@@ -137,7 +126,6 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
         slice.places.reserve(std::size_t{2} * slice_size);
         slice.stale.reserve(std::size_t{2} * slice_size);
         slice.fast.reserve(slice_size);
-        slice.still.reserve(slice_size);
     }
     update.executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
@@ -146,7 +134,6 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
             slice.places.clear();
             slice.stale.clear();
             slice.fast.clear();
-            slice.still.clear();
             wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
         }
     });

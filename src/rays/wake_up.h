@@ -17,7 +17,7 @@ public:
         std::vector<Due> due;
         std::vector<kernels::OrderedPair> places; ///< of due
         std::vector<std::uint32_t> stale;         ///< of due: need a new list
-        std::vector<std::uint32_t> fast, still;   ///< pairs: too fast to be watched; of which neither body moved
+        std::vector<std::uint32_t> fast;          ///< pairs: too fast to be watched
         std::size_t first = 0;                    ///< of its due among all
         std::size_t segment_first = 0;            ///< of theirs
         std::uint64_t blocks = 0;                 ///< looked at

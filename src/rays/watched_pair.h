@@ -34,18 +34,15 @@ struct WatchedPair {
 struct Slack {
     double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
     bool open = false;  ///< it has lists
-    bool still = false; ///< it did not move in the last step, which kept no rays of it
     bool casts = false; ///< it has rays, to be decided in each step in which it moves
 };
 
 /// A direction whose blocks are asked in this step.
 struct Due {
     Watched* own = nullptr;
-    std::uint32_t ordered = 0; ///< 2 x pair + direction
-    bool stale = false;        ///< it needs a new list
-    /// The clock now, and that from which new wakes count: the reference is kept while a pair only trembles about it,
-    /// and what is seen from beside it holds for that much less.
-    float now = 0, from = 0;
+    std::uint32_t ordered = 0;    ///< 2 x pair + direction
+    bool stale = false;           ///< it needs a new list
+    float now = 0;                ///< the clock
     float margin = 0, radius = 0; ///< of rounding; of tubes
     kernels::uint asks_caps = 0;  ///< of its rays
     double longest = 0;           ///< metres that a new list may last
