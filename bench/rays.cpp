@@ -9,6 +9,7 @@
 #include "pairs/ordered_pairs.h"
 #include "rays/cast_standard.h"
 #include "rays/ray_queue.h"
+#include "scenes/random.h"
 #include "shape/shape_data.h"
 
 #include <raycontact/error.h>
@@ -24,27 +25,16 @@ namespace rk = raycontact::kernels;
 
 namespace {
 
-struct Random {
-    std::uint64_t state;
-    double next() // splitmix64, in [-1, 1)
-    {
-        std::uint64_t z = (state += 0x9e3779b97f4a7c15ull);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-        return static_cast<double>((z ^ (z >> 31)) >> 11) / 4503599627370496.0 - 1;
-    }
-};
-
 std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pairs) {
-    Random random{7};
+    rc::scenes::Random random(7);
     std::vector<rc::PlacedBody> bodies(2 * pairs);
     for (rc::PlacedBody& body : bodies) {
         const double apart = 0.35 * shape.data().diagonal;
-        const rc::Vec3 at{apart * random.next(), apart * random.next(), apart * random.next()};
+        const rc::Vec3 at{apart * random.symmetric(), apart * random.symmetric(), apart * random.symmetric()};
         body.shape = &shape;
-        body.pose = rc::pose_from_quaternion(at, random.next(), random.next(), random.next(), random.next());
-        body.centred = body.pose;
-        body.centred.translation = rc::transform_point(body.pose, shape.centre());
+        body.pose = rc::pose_from_quaternion(at, random.symmetric(), random.symmetric(), random.symmetric(),
+                                             random.symmetric());
+        body.centred = rc::centred_pose(shape, body.pose);
     }
     return bodies;
 }
@@ -108,8 +98,8 @@ int main(int argc, char** argv) try {
     const std::size_t pair_count = argc > 2 ? std::stoul(argv[2]) : 2000;
     const int runs = argc > 3 ? std::stoi(argv[3]) : 9;
     const std::vector<rc::PlacedBody> bodies = random_pairs(*shape, pair_count);
-    std::vector<rc::Pair> pairs;
-    for (rc::BodyId i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
+    std::vector<rc::SlotPair> pairs;
+    for (rc::BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
 
     rc::Executor executor(1);
     std::vector<rk::OrderedPair> ordered;

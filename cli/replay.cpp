@@ -131,12 +131,10 @@ std::string steps_csv(const std::vector<recording::ReplayStep>& steps, bool comp
 template <class Value>
 void write_plot(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,
                 const std::string& name, report::Plot plot, Value value) {
-    std::vector<double> steps;
-    for (const recording::ReplayStep& step : replay.steps) {
-        plot.series.front().values.push_back(value(step));
-        steps.push_back(static_cast<double>(steps.size()));
-    }
-    write_out(given.out, name, report::plot_svg(plot, steps, reader.info().dt));
+    plot.over = report::over_steps(reader.info().dt);
+    auto& points = plot.lines.front().points;
+    for (const recording::ReplayStep& step : replay.steps) points.emplace_back(points.size(), value(step));
+    write_out(given.out, name, report::plot_svg({plot}));
 }
 
 void write_files(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,

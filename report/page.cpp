@@ -2,6 +2,7 @@
 #include <report/page.h>
 
 #include <report/image.h>
+#include <report/svg.h>
 
 #include <fmt/format.h>
 
@@ -114,12 +115,12 @@ std::string make_page(const Page& page) {
     html += "<h1>" + escape_html(page.title) + "</h1>\n<p class=\"lead\">" + escape_html(page.summary) + "</p>\n";
     if (!page.stills.empty()) html += strip(page.stills);
     html += "<h2>Step by step</h2>\n<div class=\"plots\">\n";
-    for (const Plot& plot : page.plots) html += plot_figure(plot, page.steps, page.step_seconds);
+    for (const Plot& plot : page.plots) html += plot_figure(plot);
     html += "</div>\n<h2>Figures of the whole run</h2>\n" + table(page.rows);
     html += "<h2>The same run again</h2>\n<pre>" + escape_html(page.command) + "</pre>\n";
     html += "<footer>" + escape_html(page.footer) + "</footer>\n</main>\n";
-    html += "<script type=\"application/json\" id=\"data\">" + plot_data(page.plots, page.steps) + "</script>\n<script>"
-            + script + "</script>\n</body></html>\n";
+    html += "<script type=\"application/json\" id=\"data\">" + plot_data(page.plots) + "</script>\n<script>" + script
+            + "</script>\n</body></html>\n";
     return html;
 }
 

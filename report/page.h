@@ -24,9 +24,7 @@ struct Page {
     std::string title;
     std::string summary;
     std::vector<Still> stills;
-    std::vector<Plot> plots;
-    std::vector<double> steps;
-    double step_seconds = 0;
+    std::vector<Plot> plots; ///< over the same steps
     std::vector<Row> rows;
     std::string command; ///< that makes the same run again
     std::string footer;

@@ -1,38 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raycontact::report {
 
-/// One line of a plot: a value for each step.
-struct Series {
+/// One line of a plot, interrupted where an axis cannot show a point.
+struct Line {
     std::string name; ///< for the legend and the read-out
-    std::vector<double> values;
+    std::vector<std::pair<double, double>> points;
+    std::size_t colour = automatic; ///< a number from 0 to 9; lines that belong together have the same
+    bool dashed = false;            ///< and then not in the legend
+    static constexpr std::size_t automatic = ~std::size_t{0}; ///< its place in the plot
 };
 
-/// A plot over the steps of a run, all in one unit, the value axis from zero.
+/// Lines in one unit over something that is in another.
 struct Plot {
     std::string title, unit, note; ///< note: what the figure is, one sentence
-    std::vector<Series> series;    ///< one or two
+    std::vector<Line> lines;
+    std::string over{};       ///< what the lower axis is, with its unit
+    bool logarithmic = false; ///< both axes, and the points are marked; else the upright axis begins at zero
 };
 
-/// A <figure> with an inline SVG: grid, axes with units, lines, legend. Colours come from the page's style, the hover
-/// read-out from its script, which finds the numbers in `plot_data`. Steps outside a clipped axis are said in the
+/// What the lower axis of a plot over the steps of a run is.
+std::string over_steps(double step_seconds);
+
+/// A <figure> with an inline SVG: grid, axes with units, lines, legend. Colours, two, come from the page's style, the
+/// hover read-out from its script, which finds the numbers in `plot_data`. What is beyond a clipped axis is said in the
 /// caption.
-std::string plot_figure(const Plot& plot, const std::vector<double>& steps, double step_seconds);
+std::string plot_figure(const Plot& plot);
 
-/// The same as an SVG file of its own, with its colours in it: title, legend and note are inside.
-std::string plot_svg(const Plot& plot, const std::vector<double>& steps, double step_seconds);
+/// Plots two by two as an SVG file of its own, with its colours in it: titles, legends and notes are inside.
+std::string plot_svg(const std::vector<Plot>& plots);
 
-/// JSON: {"steps": [...], "plots": [{"unit", "top", "series": [{"name", "values"}]}]}, in the order of the figures.
-std::string plot_data(const std::vector<Plot>& plots, const std::vector<double>& steps);
-
-/// Text made safe inside HTML and its attributes.
-std::string escape_html(const std::string& text);
-
-/// For a person: thousands apart, four significant digits.
-std::string readable(double value);
+/// Of plots that are all over the same steps: {"steps": [...], "plots": [{"unit", "top", "series": [{"name",
+/// "values"}]}]}, JSON, in the order of the figures.
+std::string plot_data(const std::vector<Plot>& plots);
 
 } // namespace raycontact::report

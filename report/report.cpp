@@ -53,54 +53,55 @@ std::vector<std::size_t> chosen_frames(std::size_t count) {
 }
 
 template <class Value>
-std::vector<double> column(const scenes::RunLog& log, Value value) {
-    std::vector<double> values;
-    for (const scenes::StepRow& row : log.rows) values.push_back(static_cast<double>(value(row)));
-    return values;
+Line line(const scenes::RunLog& log, const char* name, Value value) {
+    Line line{name, {}};
+    for (const scenes::StepRow& row : log.rows) line.points.emplace_back(row.step, static_cast<double>(value(row)));
+    return line;
 }
 
 std::vector<Plot> plots_of(const scenes::RunLog& log) {
     using scenes::StepRow;
-    return {
+    std::vector<Plot> plots{
         {"Pairs",
          "pairs",
          "Pairs of bodies whose boxes overlap, as the broad phase hands them to the narrow phase.",
-         {{"pairs", column(log, [](const StepRow& r) { return r.pairs; })}}},
+         {line(log, "pairs", [](const StepRow& r) { return r.pairs; })}},
         {"Rays",
          "rays",
          "Rays of the rule, both ways round: vertices inside the other body's bounds, also those known to be outside "
          "its mesh. By certified only those that it knows no reason to leave alone.",
-         {{"rays", column(log, [](const StepRow& r) { return r.rays; })}}},
+         {line(log, "rays", [](const StepRow& r) { return r.rays; })}},
         {"Contacts",
          "contacts",
          "Rays that met the other mesh from inside before they left their own.",
-         {{"contacts", column(log, [](const StepRow& r) { return r.contacts; })}}},
+         {line(log, "contacts", [](const StepRow& r) { return r.contacts; })}},
         {"Time",
          "ms",
          "Wall clock of a whole step (with the response) and of the narrow phase in it, on this machine.",
-         {{"step", column(log, [](const StepRow& r) { return r.step_ms; })},
-          {"narrow phase", column(log, [](const StepRow& r) { return r.narrow_ms; })}}},
+         {line(log, "step", [](const StepRow& r) { return r.step_ms; }),
+          line(log, "narrow phase", [](const StepRow& r) { return r.narrow_ms; })}},
         {"Penetration",
          "mm",
          "Depth of the deepest contact of the step, along the contact's normal.",
-         {{"penetration", column(log, [](const StepRow& r) { return 1000 * r.penetration_max; })}}},
+         {line(log, "penetration", [](const StepRow& r) { return 1000 * r.penetration_max; })}},
         {"Ray length",
          "m",
          "Lengths of all rays that are contacts, added up.",
-         {{"ray length", column(log, [](const StepRow& r) { return r.ray_length; })}}},
+         {line(log, "ray length", [](const StepRow& r) { return r.ray_length; })}},
         {"Mean ray length",
          "mm",
          "Ray length divided by contacts: how far a vertex in contact typically is from the face it meets.",
-         {{"mean ray length", column(log,
-                                     [](const StepRow& r) {
-                                         return r.contacts > 0 ? 1000 * r.ray_length / static_cast<double>(r.contacts)
-                                                               : std::nan("");
-                                     })}}},
+         {line(log, "mean ray length",
+               [](const StepRow& r) {
+                   return r.contacts > 0 ? 1000 * r.ray_length / static_cast<double>(r.contacts) : std::nan("");
+               })}},
         {"Median speed",
          "m/s",
          "Half of the moving bodies are slower than this at the end of the step.",
-         {{"speed", column(log, [](const StepRow& r) { return r.median_speed; })}}},
+         {line(log, "speed", [](const StepRow& r) { return r.median_speed; })}},
     };
+    for (Plot& plot : plots) plot.over = over_steps(log.dt);
+    return plots;
 }
 
 } // namespace
@@ -115,8 +116,6 @@ void write_report(const std::filesystem::path& folder, const scenes::RunLog& log
     Page page;
     describe(log, page);
     page.plots = plots_of(log);
-    page.steps = column(log, [](const scenes::StepRow& row) { return row.step; });
-    page.step_seconds = log.dt;
     const Renderer renderer(log);
     for (const std::size_t k : chosen_frames(log.frames.size())) {
         const scenes::Frame& frame = log.frames[k];

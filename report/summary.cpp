@@ -2,6 +2,7 @@
 #include <report/summary.h>
 
 #include <raycontact/settings.h>
+#include <report/svg.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

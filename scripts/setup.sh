@@ -12,7 +12,7 @@ packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers
     python3-pip) # brings the CUDA compiler that the kernels are checked with
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact bench peers`, both optional
-packages_all=(clang clang-tidy oclgrind libbenchmark-dev valgrind)
+packages_all=(clang clang-tidy oclgrind valgrind)
 
 say() { printf '== %s\n' "$*" >&2; }
 die() { printf '%s: %s\n' "${0##*/}" "$*" >&2; exit 1; }

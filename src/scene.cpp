@@ -48,8 +48,8 @@ struct Scene::State {
         }
         for (BodyId id = 0; id < bodies.size(); ++id) {
             if (!bodies[id].shape) continue;
-            placed[id].pose = placed[id].centred = bodies[id].pose;
-            placed[id].centred.translation = transform_point(bodies[id].pose, bodies[id].shape->centre());
+            placed[id].pose = bodies[id].pose;
+            placed[id].centred = centred_pose(*bodies[id].shape, bodies[id].pose);
         }
     }
 

@@ -216,11 +216,4 @@ void Coherence::find_watch_rays() {
     write_watch_rays();
 }
 
-std::vector<kernels::Hit> Coherence::host_hits() {
-    return copy_of(*device_, hits_);
-}
-std::vector<kernels::Hit> Coherence::host_walk_hits() {
-    return copy_of(*device_, walk_hits_);
-}
-
 } // namespace raycontact::bench

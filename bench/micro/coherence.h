@@ -44,10 +44,6 @@ public:
     std::size_t walks() const { return walk_rays_.size(); }
     std::size_t watch_rays() const { return watch_rays_.size(); }
 
-    // Copies for the host.
-    std::vector<kernels::Hit> host_hits();
-    std::vector<kernels::Hit> host_walk_hits();
-
 private:
     void hold(const Array<kernels::Holder>& holders, const Array<kernels::Held>& before, Array<kernels::Held>& after);
     void follow(Caster caster, std::size_t count, const Array<kernels::OrderedPair>& pairs,

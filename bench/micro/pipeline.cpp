@@ -17,10 +17,6 @@ Pipeline::Pipeline(Executor& executor, std::string_view instruction_set, const B
     pair_clusters_.resize(*device_, pairs_.size());
     small_.resize(*device_, pairs_.size());
     find_clusters();
-    std::vector<kernels::Cluster> clusters(clusters_.size());
-    clusters_.read(*device_, clusters);
-    all_clusters_.write(*device_, clusters);
-    all_block_rays_.resize(*device_, clusters.size());
     find_rays();
     hits_.resize(*device_, rays_.size());
     cast_bvh();
@@ -30,12 +26,6 @@ Pipeline::Pipeline(Executor& executor, std::string_view instruction_set, const B
     ray_sides_.resize(*device_, rays_.size());
     find_contacts();
     if (contacts_.size() == 0) throw std::logic_error("the batch " + batch.name + " has no contacts to measure with");
-    sums_.resize(*device_, scan_blocks() + 1);
-    offsets_.resize(*device_, scan_blocks() + 1);
-    elements_firsts_.resize(*device_, elements());
-    scan_sums();
-    offsets_.write(*device_, std::vector<kernels::uint>(scan_blocks() + 1, 1));
-    scan_write();
 }
 
 void Pipeline::count_clusters() {
@@ -50,13 +40,10 @@ void Pipeline::write_clusters() {
                                      cluster_firsts_, clusters_);
 }
 
-// Without the grid there are more rays than the later arrays have room for: that answer is kept apart.
-void Pipeline::count_rays(bool use_grid) {
+void Pipeline::count_rays() {
     const auto& shapes = store_.arrays();
-    launch<KernelId::count_rays>(*device_, clusters_.size(), use_grid ? 1u : 0u, pairs_, shapes.headers,
-                                 shapes.vertex_blocks, shapes.outside_cells, shapes.clearances,
-                                 use_grid ? clusters_ : all_clusters_, block_inside_,
-                                 use_grid ? block_rays_ : all_block_rays_);
+    launch<KernelId::count_rays>(*device_, clusters_.size(), 1u, pairs_, shapes.headers, shapes.vertex_blocks,
+                                 shapes.outside_cells, shapes.clearances, clusters_, block_inside_, block_rays_);
 }
 
 void Pipeline::write_rays() {
@@ -89,20 +76,6 @@ void Pipeline::write_contacts() {
                                      shapes.face_normals, rays_, hits_, contact_firsts_, contacts_);
 }
 
-void Pipeline::scan_sums() {
-    launch<KernelId::scan_sums>(*device_, scan_blocks(), static_cast<kernels::uint>(elements()), block_rays_, sums_);
-}
-
-// Runs in place, so again and again over the same array; wrapping sums are as good as any.
-void Pipeline::scan_offsets() {
-    launch<KernelId::scan_offsets>(*device_, 1, static_cast<kernels::uint>(scan_blocks()), offsets_);
-}
-
-void Pipeline::scan_write() {
-    launch<KernelId::scan_write>(*device_, scan_blocks(), static_cast<kernels::uint>(elements()), block_rays_, sums_,
-                                 elements_firsts_);
-}
-
 void Pipeline::find_clusters() {
     count_clusters();
     clusters_.resize(*device_, scan_.run(*device_, pair_clusters_, cluster_firsts_));
@@ -112,7 +85,7 @@ void Pipeline::find_clusters() {
 }
 
 void Pipeline::find_rays() {
-    count_rays(true);
+    count_rays();
     rays_.resize(*device_, scan_.run(*device_, block_rays_, ray_firsts_));
     write_rays();
 }
@@ -123,12 +96,6 @@ void Pipeline::find_contacts() {
     write_contacts();
 }
 
-std::vector<kernels::Ray> Pipeline::host_rays() {
-    return copy_of(*device_, rays_);
-}
-std::vector<kernels::Hit> Pipeline::host_hits() {
-    return copy_of(*device_, hits_);
-}
 std::vector<kernels::LocalContact> Pipeline::host_contacts() {
     return copy_of(*device_, contacts_);
 }

@@ -17,22 +17,11 @@ public:
     /// Runs everything once. Throws InputError for an instruction set that this processor or build does not have.
     Pipeline(Executor& executor, std::string_view instruction_set, const Batch& batch);
 
-    // One kernel each; the arrays of those before it are as the first run left them.
-    void count_clusters();
-    void write_clusters();
-    void count_rays(bool use_grid);
-    void write_rays();
-    void cast_bvh();
-    void cast_basic(); ///< of basic_rays() rays
-    void count_contacts();
-    void write_contacts();
-    void scan_sums(); ///< of elements() elements
-    void scan_offsets();
-    void scan_write();
-
-    // As a step strings them together.
+    // The arrays of those before it are as the first run left them.
     void find_clusters();
     void find_rays();
+    void cast_bvh();
+    void cast_basic(); ///< of basic_rays() rays
     void find_contacts();
 
     std::size_t ordered_pairs() const { return pairs_.size(); }
@@ -40,28 +29,28 @@ public:
     std::size_t rays() const { return rays_.size(); }
     std::size_t basic_rays() const;
     std::size_t contacts() const { return contacts_.size(); }
-    std::size_t elements() const { return block_rays_.size(); }
-    std::size_t scan_blocks() const { return (elements() - 1) / SCAN_BLOCK + 1; }
-
-    // Copies for the host.
-    std::vector<kernels::Ray> host_rays();
-    std::vector<kernels::Hit> host_hits();
-    std::vector<kernels::LocalContact> host_contacts();
+    std::vector<kernels::LocalContact> host_contacts(); ///< a copy
 
 private:
+    void count_clusters();
+    void write_clusters();
+    void count_rays();
+    void write_rays();
+    void count_contacts();
+    void write_contacts();
+
     std::unique_ptr<Device> device_;
     ShapeStore store_;
     Scan scan_;
     Array<kernels::OrderedPair> pairs_;
     Array<kernels::uint> pair_clusters_, cluster_firsts_;
     Array<kernels::ulong> small_;
-    Array<kernels::Cluster> clusters_, all_clusters_;
-    Array<kernels::uint> block_inside_, block_rays_, all_block_rays_, ray_firsts_;
+    Array<kernels::Cluster> clusters_;
+    Array<kernels::uint> block_inside_, block_rays_, ray_firsts_;
     Array<kernels::Ray> rays_;
     Array<kernels::Hit> hits_, basic_hits_;
     Array<kernels::uint> ray_contacts_, ray_sides_, contact_firsts_;
     Array<kernels::LocalContact> contacts_;
-    Array<kernels::uint> sums_, offsets_, elements_firsts_;
 };
 
 } // namespace raycontact::bench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/contest_output.h>
 
-#include <bench/peers/chart.h>
 #include <bench/peers/files.h>
+#include <report/bars.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -57,14 +57,14 @@ std::string csv(const Machine& machine, std::span<const WorkNote> works, std::sp
 }
 
 std::string chart(std::span<const WorkNote> works, std::span<const Result> results) {
-    std::vector<BarGroup> groups;
+    std::vector<report::BarGroup> groups;
     for (const WorkNote& work : works) {
-        BarGroup& group = groups.emplace_back();
+        report::BarGroup& group = groups.emplace_back();
         group.name = work.name;
         for (const Result& r : results)
             if (r.work == work.name && !r.rays_alone) group.bars.emplace_back(r.peer, r.us);
     }
-    return bar_chart("Microseconds a pair and step, one thread", "us, logarithmic", groups);
+    return report::bar_chart("Microseconds a pair and step, one thread", "us, logarithmic", groups);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include <bench/peers/embree_scene.h>
 #include <bench/peers/peer.h>
 
+#include "pairs/ordered_pairs.h"
 #include "shape/shape_data.h"
 
 #include <cmath>
@@ -29,9 +30,9 @@ public:
     }
 
     Found detect(const WorkStep& step) override {
-        centred_.assign(step.poses.begin(), step.poses.end());
-        for (BodyId body = 0; body < centred_.size(); ++body)
-            centred_[body].translation = transform_point(step.poses[body], work_.shape(body).centre());
+        centred_.clear();
+        for (BodyId body = 0; body < step.poses.size(); ++body)
+            centred_.push_back(centred_pose(work_.shape(body), step.poses[body]));
         contacts_.clear();
         Found found;
         for (const Pair& pair : step.pairs) {

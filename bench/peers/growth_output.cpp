@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/growth_output.h>
 
-#include <bench/peers/chart.h>
 #include <bench/peers/files.h>
+#include <report/plot.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,28 +33,34 @@ std::string unit_of(const std::string& part) {
 }
 
 std::string chart(std::span<const GrowthRow> rows) {
-    Panel panels[] = {
-        {"Avalanche", "bodies", "us a pair and step", {}},
-        {"Approaching pairs", "triangles a mesh", "us a pair and step", {}},
-        {"Rolling pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
-        {"Creeping pairs, contacts alike", "triangles a mesh", "us a pair and step", {}},
-        {"The same pairs, still", "triangles a mesh", "us a pair and step", {}},
-        {"Rolling pairs, contacts alike", "displacement a step, part of the size", "us a pair and step", {}}};
-    const std::string parts[] = {"bodies", "triangles", "contacts", "creeping", "still", "displacement"};
-    for (std::size_t i = 0; i < std::size(parts); ++i) {
+    struct Part {
+        const char *part, *title, *over;
+    };
+    std::vector<report::Plot> plots;
+    for (const Part& part :
+         {Part{"bodies", "Avalanche", "bodies"}, Part{"triangles", "Approaching pairs", "triangles a mesh"},
+          Part{"contacts", "Rolling pairs, contacts alike", "triangles a mesh"},
+          Part{"creeping", "Creeping pairs, contacts alike", "triangles a mesh"},
+          Part{"still", "The same pairs, still", "triangles a mesh"},
+          Part{"displacement", "Rolling pairs, contacts alike", "displacement a step, part of the size"}}) {
+        report::Plot& plot = plots.emplace_back();
+        plot.title = part.title;
+        plot.unit = "us a pair and step";
+        plot.over = part.over;
+        plot.logarithmic = true;
         for (const Method method : {Method::standard, Method::predictive, Method::certified}) {
-            Line& line = panels[i].lines.emplace_back();
+            report::Line& line = plot.lines.emplace_back();
             line.name = to_string(method);
             for (const GrowthRow& r : rows)
-                if (r.part == parts[i] && r.method == method) line.points.emplace_back(r.size, r.us_per_pair);
+                if (r.part == part.part && r.method == method) line.points.emplace_back(r.size, r.us_per_pair);
         }
-        Line& contacts = panels[i].lines.emplace_back();
+        report::Line& contacts = plot.lines.emplace_back();
         contacts.name = "contacts a pair";
         for (const GrowthRow& r : rows)
-            if (r.part == parts[i] && r.method == Method::standard)
+            if (r.part == part.part && r.method == Method::standard)
                 contacts.points.emplace_back(r.size, r.contacts / std::max(r.pairs, 1e-9));
     }
-    return line_chart({std::begin(panels), std::end(panels)});
+    return report::plot_svg(plots);
 }
 
 } // namespace

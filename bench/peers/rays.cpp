@@ -28,8 +28,8 @@ public:
         const FloatEnvironment environment;
         for (std::size_t body = 0; body < bodies_.size(); ++body) {
             PlacedBody& placed = bodies_[body];
-            placed.pose = placed.centred = step.poses[body];
-            placed.centred.translation = transform_point(placed.pose, placed.shape->centre());
+            placed.pose = step.poses[body];
+            placed.centred = centred_pose(*placed.shape, placed.pose);
         }
         pairs_ = step.pairs;
         find(false);

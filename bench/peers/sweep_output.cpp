@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/sweep_output.h>
 
-#include <bench/peers/chart.h>
 #include <bench/peers/files.h>
+#include <report/bars.h>
+#include <report/plot.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -48,22 +49,21 @@ const char* setting_of(bool fixed) {
 }
 
 std::string chart(std::span<const WorkNote> works, std::span<const ThresholdRow> rows) {
-    std::vector<Panel> panels;
+    std::vector<report::Plot> plots;
     for (const WorkNote& work : works) {
-        Panel time{work.name, "displacement threshold, part of the size", "us a step; dashed: chosen", {}};
-        Panel wrong{work.name,
-                    "displacement threshold, part of the size",
-                    "wrong rays a million (none: no point); dashed: chosen",
-                    {}};
+        const std::string over = "displacement threshold, part of the size";
+        report::Plot time{work.name, "us a step", "Dashed: with thresholds that the method chose.", {}, over, true};
+        report::Plot wrong{work.name, "wrong rays a million", "Where none was wrong there is no point.", {}, over,
+                           true};
         for (std::size_t m = 0; m < std::size(swept); ++m) {
-            Line line_time{std::string(to_string(swept[m])), {}, m}, line_wrong = line_time;
+            report::Line line_time{std::string(to_string(swept[m])), {}, m}, line_wrong = line_time;
             for (const ThresholdRow& row : rows) {
                 if (row.work != work.name || row.method != swept[m] || !row.fraction) continue;
                 line_time.points.emplace_back(*row.fraction, row.us);
                 line_wrong.points.emplace_back(*row.fraction, wrong_a_million(row.wrong));
             }
             const auto ends = [&](double value) {
-                Line line{line_time.name + ", chosen", {}, m, true};
+                report::Line line{line_time.name + ", chosen", {}, m, true};
                 if (line_time.points.empty()) return line;
                 line.points = {{line_time.points.front().first, value}, {line_time.points.back().first, value}};
                 return line;
@@ -76,10 +76,10 @@ std::string chart(std::span<const WorkNote> works, std::span<const ThresholdRow>
                 wrong.lines.push_back(ends(wrong_a_million(row.wrong)));
             }
         }
-        panels.push_back(time);
-        panels.push_back(wrong);
+        plots.push_back(time);
+        plots.push_back(wrong);
     }
-    return line_chart(panels);
+    return report::plot_svg(plots);
 }
 
 std::string name_of(const SeedRow& row) {
@@ -202,7 +202,7 @@ std::filesystem::path write_results(const std::filesystem::path& folder, const M
 std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
                                     std::span<const SeedRow> rows) {
     std::string csv = fmt::format("{},seed,method,setting,cast_lost_walks,steps,{}\n", machine_columns, work_columns);
-    std::vector<BarGroup> groups;
+    std::vector<report::BarGroup> groups;
     std::set<std::uint64_t> seeds;
     for (const SeedRow& r : rows) {
         csv += fmt::format("{},{},{},{},{},{},{}\n", machine_fields(machine), r.seed, to_string(r.method),
@@ -210,8 +210,9 @@ std::filesystem::path write_results(const std::filesystem::path& folder, const M
         if (seeds.insert(r.seed).second) groups.push_back({"seed " + std::to_string(r.seed), {}});
         groups.back().bars.emplace_back(name_of(r), wrong_a_million(r.wrong));
     }
-    return write_both(folder, machine, "sweep-seeds", csv,
-                      bar_chart("Wrong rays over the avalanche", "a million rays, logarithmic; none: no bar", groups));
+    return write_both(
+        folder, machine, "sweep-seeds", csv,
+        report::bar_chart("Wrong rays over the avalanche", "a million rays, logarithmic; none: no bar", groups));
 }
 
 } // namespace raycontact::bench

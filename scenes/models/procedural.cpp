@@ -2,7 +2,7 @@
 #include <scenes/models/procedural.h>
 
 #include <raycontact/error.h>
-#include <scenes/models/mass_properties.h>
+#include <raycontact/mass.h>
 #include <scenes/models/rings.h>
 #include <scenes/models/trigonometry.h>
 
@@ -56,7 +56,7 @@ void normalise(Mesh& mesh) {
         high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
     }
     const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    const Vec3 centre = mass_of_solid(mesh.vertices, mesh.triangles).centre;
+    const Vec3 centre = mass_of(mesh.vertices, mesh.triangles).centre;
     // Rounded to float32 so that a mesh written to any format and read again is the same mesh. Volatile because g++ 12
     // at -O2 vectorises the coordinates and drops the pair of conversions: the golden hashes tell.
     const auto place = [extent](double value, double middle) {

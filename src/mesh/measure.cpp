@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/measure.h"
 
-#include <algorithm>
+#include <raycontact/mass.h>
 
 namespace raycontact {
 
@@ -14,15 +14,8 @@ void LongSum::add(double x) {
 
 Box box_of(std::span<const Vec3> points) {
     Box box{points.front(), points.front()};
-    for (const Vec3& p : points) {
-        box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-        box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-    }
+    for (const Vec3& p : points) box = {least(box.low, p), most(box.high, p)};
     return box;
-}
-
-double tetrahedron(const Vec3& near, const Vec3& a, const Vec3& b, const Vec3& c) {
-    return dot(a - near, cross(b - near, c - near)) / 6;
 }
 
 double area_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
@@ -32,12 +25,38 @@ double area_of(std::span<const Vec3> vertices, std::span<const Triangle> triangl
     return sum.value();
 }
 
-double volume_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-    const Box box = box_of(vertices);
-    const Vec3 near = 0.5 * (box.low + box.high);
-    LongSum sum;
-    for (const auto& [a, b, c] : triangles) sum.add(tetrahedron(near, vertices[a], vertices[b], vertices[c]));
-    return sum.value();
+// Sums over the tetrahedra (q, a, b, c), q near the mesh so that nothing cancels far from the origin. Seen from q, with
+// s = a + b + c, the integral of x over one is volume / 4 * s, that of x x^T is
+// volume / 20 * (s s^T + a a^T + b b^T + c c^T). The volume is the one that reports show; the centre is a quotient of
+// plain sums, on whose bits the procedural meshes rest.
+Mass mass_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    Mass mass;
+    if (triangles.empty()) return mass;
+    const Vec3 q = box_of(vertices).middle();
+    LongSum volume;
+    double six_volumes = 0;
+    Vec3 first;
+    std::array<double, 9> second{};
+    for (const auto& [i, j, k] : triangles) {
+        const Vec3 a = vertices[i] - q, b = vertices[j] - q, c = vertices[k] - q, s = a + b + c;
+        const double six = dot(a, cross(b, c));
+        volume.add(six / 6);
+        six_volumes += six;
+        first = first + six * s;
+        for (std::size_t m = 0; m < 9; ++m)
+            for (const Vec3& v : {s, a, b, c}) second[m] += six * axis(v, m / 3) * axis(v, m % 3);
+    }
+    mass.volume = volume.value();
+    if (six_volumes == 0) return mass;
+    const double quarter = 4 * six_volumes;
+    const Vec3 centre{first.x / quarter, first.y / quarter, first.z / quarter};
+    const auto about_centre = [&](std::size_t row, std::size_t column) {
+        return second[3 * row + column] / 120 - mass.volume * axis(centre, row) * axis(centre, column);
+    };
+    const double trace = about_centre(0, 0) + about_centre(1, 1) + about_centre(2, 2);
+    for (std::size_t m = 0; m < 9; ++m) mass.inertia[m] = (m % 4 == 0 ? trace : 0) - about_centre(m / 3, m % 3);
+    mass.centre = q + centre;
+    return mass;
 }
 
 } // namespace raycontact

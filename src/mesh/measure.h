@@ -21,14 +21,10 @@ private:
 
 struct Box {
     Vec3 low, high;
+    Vec3 middle() const { return 0.5 * (low + high); }
 };
 Box box_of(std::span<const Vec3> points);
 
-/// Signed volume of the tetrahedron from a near point to a triangle: summed over a closed surface it is the volume,
-/// m^3.
-double tetrahedron(const Vec3& near, const Vec3& a, const Vec3& b, const Vec3& c);
-
 double area_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
-double volume_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
 } // namespace raycontact

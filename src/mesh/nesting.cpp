@@ -140,12 +140,11 @@ std::vector<std::uint32_t> patches_around(std::uint32_t own, std::span<const std
 std::vector<char> patches_to_turn(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                                   const Patches& patches, const TriangleBvh& bvh) {
     const std::size_t count = patches.list.size();
-    const Box box = box_of(vertices);
-    const Vec3 near = 0.5 * (box.low + box.high);
+    const Vec3 near = box_of(vertices).middle();
     std::vector<LongSum> volumes(count), sizes(count);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const auto [a, b, c] = triangles[i];
-        const double volume = tetrahedron(near, vertices[a], vertices[b], vertices[c]);
+        const double volume = dot(vertices[a] - near, cross(vertices[b] - near, vertices[c] - near)) / 6;
         volumes[patches.of[i]].add(volume);
         sizes[patches.of[i]].add(std::fabs(volume));
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/error.h>
+#include <raycontact/mass.h>
 #include <raycontact/mesh.h>
 
 #include "executor/float_environment.h"
@@ -99,7 +100,7 @@ void fill_report(const Mesh& mesh, PreparedMesh& prepared, const std::vector<Vec
         report.outward =
             winds_outward(prepared.vertices, prepared.triangles, find_patches(prepared.triangles, edges), bvh);
     }
-    report.volume = report.closed ? volume_of(prepared.vertices, prepared.triangles) : 0;
+    report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
     report.area = area_of(prepared.vertices, prepared.triangles);
     const Box box = box_of(prepared.vertices);
     report.box_min = box.low;

@@ -3,6 +3,7 @@
 
 #include <raycontact/pose.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -25,6 +26,12 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline double length(const Vec3& a) {
     return std::sqrt(dot(a, a));
+}
+inline Vec3 least(const Vec3& a, const Vec3& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+inline Vec3 most(const Vec3& a, const Vec3& b) {
+    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 inline double axis(const Vec3& a, std::size_t k) {
     return k == 0 ? a.x : k == 1 ? a.y : a.z;

@@ -3,17 +3,10 @@
 
 #include <bit>
 #include <cstddef>
+#include <xxhash.h>
 
 namespace raycontact {
 namespace {
-
-std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
-    // The finalizer of splitmix64.
-    hash = (hash ^ word) + 0x9e3779b97f4a7c15ull;
-    hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
-    hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
-    return hash ^ (hash >> 31);
-}
 
 /// Open addressing; items are met in order, so the first of its kind is the lowest. No result depends on the hash.
 template <class Hash, class Equal>
@@ -34,9 +27,8 @@ std::vector<std::uint32_t> lowest_equal(std::size_t count, Hash&& hash, Equal&& 
 
 std::vector<std::uint32_t> lowest_at_same_place(std::span<const Vec3> points) {
     const auto hash = [&](std::size_t i) { // + 0.0 turns -0 into 0
-        std::uint64_t h = mix(0, std::bit_cast<std::uint64_t>(points[i].x + 0.0));
-        h = mix(h, std::bit_cast<std::uint64_t>(points[i].y + 0.0));
-        return mix(h, std::bit_cast<std::uint64_t>(points[i].z + 0.0));
+        const Vec3 p{points[i].x + 0.0, points[i].y + 0.0, points[i].z + 0.0};
+        return XXH3_64bits(&p, sizeof p);
     };
     return lowest_equal(points.size(), hash, [&](std::size_t i, std::size_t k) { return points[i] == points[k]; });
 }
@@ -47,8 +39,8 @@ std::vector<std::uint32_t> lowest_same_triangle(std::span<const Triangle> triang
         return a <= b && a <= c ? Triangle{a, b, c} : b <= a && b <= c ? Triangle{b, c, a} : Triangle{c, a, b};
     };
     const auto hash = [&](std::size_t i) {
-        const auto [a, b, c] = turned(i);
-        return mix(mix(a, b), c);
+        const Triangle t = turned(i);
+        return XXH3_64bits(&t, sizeof t);
     };
     return lowest_equal(triangles.size(), hash, [&](std::size_t i, std::size_t k) { return turned(i) == turned(k); });
 }

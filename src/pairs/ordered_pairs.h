@@ -20,6 +20,11 @@ struct PlacedBody {
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
 };
 
+/// The pose of the frame about the shape's centre.
+inline Pose centred_pose(const Shape& shape, const Pose& pose) {
+    return {pose.rotation, transform_point(pose, shape.centre())};
+}
+
 /// One direction of a pair. In a list of pairs it is numbered 2 x pair + 0 for a into b, + 1 for b into a.
 struct DirectedPair {
     const PlacedBody& source;

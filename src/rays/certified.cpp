@@ -121,12 +121,8 @@ void CertifiedRays::place(const Update& update) {
         for (const Due& due : slice.due) {
             numbers_[i] = due.ordered;
             for (std::uint32_t done = 0; done < due.own->count; done += SEGMENT_WATCHES)
-                segments_.in_place()[next++] = {static_cast<std::uint32_t>(i),
-                                                due.own->first + done,
-                                                std::min(SEGMENT_WATCHES, due.own->count - done),
-                                                due.now,
-                                                due.from,
-                                                due.margin};
+                segments_.in_place()[next++] = {static_cast<std::uint32_t>(i), due.own->first + done,
+                                                std::min(SEGMENT_WATCHES, due.own->count - done), due.now, due.margin};
             ++i;
         }
     });

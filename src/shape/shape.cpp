@@ -3,7 +3,7 @@
 
 #include "executor/float_environment.h"
 #include "mesh/adjacency.h"
-#include "mesh/vector.h"
+#include "mesh/measure.h"
 #include "shape/bvh.h"
 #include "shape/caps.h"
 #include "shape/clearance_grid.h"
@@ -24,15 +24,6 @@ namespace {
 
 constexpr double rounding = 1.1920929e-7; // 2^-23
 
-void place_box(ShapeData& shape) {
-    Vec3 low = shape.mesh.vertices[0], high = low;
-    for (const Vec3& v : shape.mesh.vertices) {
-        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    shape.centre = 0.5 * (low + high);
-}
-
 // From here on the shape is what float32 says: the double positions follow, so that every user sees one geometry.
 void round_vertices(ShapeData& shape) {
     shape.points.reserve(shape.mesh.vertices.size());
@@ -44,8 +35,8 @@ void round_vertices(ShapeData& shape) {
         v = shape.centre + Vec3{p.x, p.y, p.z};
         shape.radius = std::max(shape.radius, length(v));
         shape.reach = std::max(shape.reach, length(Vec3{p.x, p.y, p.z}));
-        low = {std::min(low.x, double(p.x)), std::min(low.y, double(p.y)), std::min(low.z, double(p.z))};
-        high = {std::max(high.x, double(p.x)), std::max(high.y, double(p.y)), std::max(high.z, double(p.z))};
+        low = least(low, {p.x, p.y, p.z});
+        high = most(high, {p.x, p.y, p.z});
     }
     shape.diagonal = length(high - low);
     shape.grain = shape.diagonal / std::sqrt(double(shape.mesh.triangles.size()));
@@ -90,7 +81,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
     shape.mesh = mesh;
-    place_box(shape);
+    shape.centre = box_of(shape.mesh.vertices).middle();
     round_vertices(shape);
 
     std::vector<Vec3> offsets;

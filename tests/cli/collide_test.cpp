@@ -26,6 +26,17 @@ protected:
     /// A cube at the origin and one at (0.8, 0.7, 0.6): one corner each is inside the other.
     static json corner_pair() { return {{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.8, 0.7, 0.6)}}; }
 
+    /// In each the second cube reaches a little deeper into the first.
+    static json fifty_pairs() {
+        json pairs = json::array();
+        for (int i = 0; i < 50; ++i) {
+            json pair = corner_pair();
+            pair["pose_b"] = translation(0.80 - 0.01 * i, 0.7, 0.6);
+            pairs.push_back(pair);
+        }
+        return pairs;
+    }
+
     TemporaryFolder folder_;
 };
 
@@ -121,12 +132,7 @@ TEST_F(Collide, ManyPairsAreAnsweredInTheirOrder) {
 }
 
 TEST_F(Collide, EveryCasterAndThreadCountGivesTheSameBits) {
-    json pairs = json::array();
-    for (int i = 0; i < 50; ++i) {
-        json pair = corner_pair();
-        pair["pose_b"] = translation(0.80 - 0.01 * i, 0.7, 0.6);
-        pairs.push_back(pair);
-    }
+    const json pairs = fifty_pairs();
     const auto expected = run(pairs).out;
     EXPECT_FALSE(expected.empty());
     EXPECT_EQ(run(pairs, {"--json", "--caster", "basic"}).out, expected);
@@ -139,12 +145,7 @@ TEST_F(Collide, EveryCasterAndThreadCountGivesTheSameBits) {
 
 // A batch is one step, the first: there is nothing yet that a method could have kept.
 TEST_F(Collide, EveryMethodAndThresholdGivesTheSameBits) {
-    json pairs = json::array();
-    for (int i = 0; i < 50; ++i) {
-        json pair = corner_pair();
-        pair["pose_b"] = translation(0.80 - 0.01 * i, 0.7, 0.6);
-        pairs.push_back(pair);
-    }
+    const json pairs = fifty_pairs();
     const auto expected = run(pairs, {"--json", "--method", "standard"}).out;
     EXPECT_FALSE(expected.empty());
     for (const char* method : {"certified", "iterative", "predictive"}) {

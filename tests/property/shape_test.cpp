@@ -82,25 +82,10 @@ TEST(shape, normals_and_exit_distances_of_the_open_meshes) {
 }
 
 TEST(shape, exit_is_zero_where_the_inward_normal_points_out) {
-    // Crooked six-sided pyramids: now and then the angle-weighted normal leaves the cone of its own triangles.
     Random random(7);
     Counts counts;
     for (int k = 0; k < 1000; ++k) {
-        Mesh mesh;
-        mesh.name = "crooked pyramid";
-        mesh.vertices.push_back({0, 0, 0});
-        for (int i = 0; i < 6; ++i) {
-            constexpr double x[6] = {1, 0.5, -0.5, -1, -0.5, 0.5};
-            constexpr double y[6] = {0, 0.75, 0.75, 0, -0.75, -0.75};
-            const double r = random.uniform(0.1, 1);
-            mesh.vertices.push_back({r * x[i], r * y[i], random.uniform(-2, 2)});
-        }
-        mesh.vertices.push_back({0, 0, -10});
-        for (std::uint32_t i = 1; i <= 6; ++i) {
-            mesh.triangles.push_back({0, i, i % 6 + 1});
-            mesh.triangles.push_back({7, i % 6 + 1, i});
-        }
-        expect_shape(Subject(mesh), counts);
+        expect_shape(Subject(crooked_pyramid_mesh(random)), counts);
     }
     report(counts);
     EXPECT_GE(counts.zero, 5);

@@ -178,6 +178,24 @@ Mesh open_box_mesh(std::uint32_t n) {
     return mesh; // the vertices inside the lid stay, in use by no triangle
 }
 
+Mesh crooked_pyramid_mesh(Random& random) {
+    Mesh mesh;
+    mesh.name = "crooked pyramid";
+    mesh.vertices.push_back({0, 0, 0});
+    for (int i = 0; i < 6; ++i) {
+        constexpr double x[6] = {1, 0.5, -0.5, -1, -0.5, 0.5};
+        constexpr double y[6] = {0, 0.75, 0.75, 0, -0.75, -0.75};
+        const double r = random.uniform(0.1, 1);
+        mesh.vertices.push_back({r * x[i], r * y[i], random.uniform(-2, 2)});
+    }
+    mesh.vertices.push_back({0, 0, -10});
+    for (std::uint32_t i = 1; i <= 6; ++i) {
+        mesh.triangles.push_back({0, i, i % 6 + 1});
+        mesh.triangles.push_back({7, i % 6 + 1, i});
+    }
+    return mesh;
+}
+
 Mesh moved(Mesh mesh, const Vec3& by) {
     for (Vec3& v : mesh.vertices) v = v + by;
     return mesh;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "reference/random.h"
+
 #include <raycontact/mesh.h>
 
 #include <cstdint>
@@ -18,6 +20,10 @@ Mesh bowl_mesh(std::uint32_t n);  ///< open: a paraboloid over a square of n x n
 Mesh sheet_mesh(std::uint32_t n); ///< open: a wavy square of n x n squares, normals up
 
 Mesh open_box_mesh(std::uint32_t n); ///< open: the grid box without its lid z = 1
+
+/// A crooked fan of six triangles about its apex (vertex 0), closed by a pyramid far below: now and then the
+/// angle-weighted normal leaves the cone of its own triangles.
+Mesh crooked_pyramid_mesh(Random& random);
 
 /// The positions moved by `by`; a mesh far from its own origin.
 Mesh moved(Mesh mesh, const Vec3& by);

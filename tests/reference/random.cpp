@@ -3,6 +3,8 @@
 
 #include "reference/vector.h"
 
+#include <scenes/random.h>
+
 namespace raycontact::reference {
 
 namespace {
@@ -20,10 +22,7 @@ Pose from_quaternion(double w, double x, double y, double z) {
 } // namespace
 
 std::uint64_t Random::bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    return scenes::splitmix64(state_);
 }
 
 double Random::uniform() {

@@ -7,7 +7,7 @@
 
 namespace raycontact::reference {
 
-/// SplitMix64: the same numbers from every compiler and standard library.
+/// By splitmix64: the same numbers from every compiler and standard library.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -88,26 +88,13 @@ TEST(reference_exits, are_infinite_where_nothing_is_met_from_inside) {
 }
 
 TEST(reference_exits, are_zero_where_the_inward_normal_points_out) {
-    // Crooked fans about an apex, closed by a pyramid far below: where the angle-weighted normal leaves the cone of its
-    // own triangles, the winding number just beside the apex says so too.
+    // Where the angle-weighted normal leaves the cone of its own triangles, the winding number just beside the apex
+    // says so too.
     Random random(7);
     int out = 0;
     int in = 0;
     for (int k = 0; k < 4000; ++k) {
-        Mesh mesh;
-        mesh.vertices.push_back({0, 0, 0});
-        for (int i = 0; i < 6; ++i) {
-            constexpr double x[6] = {1, 0.5, -0.5, -1, -0.5, 0.5};
-            constexpr double y[6] = {0, 0.75, 0.75, 0, -0.75, -0.75};
-            const double r = random.uniform(0.1, 1);
-            mesh.vertices.push_back({r * x[i], r * y[i], random.uniform(-2, 2)});
-        }
-        mesh.vertices.push_back({0, 0, -10});
-        for (std::uint32_t i = 1; i <= 6; ++i) {
-            mesh.triangles.push_back({0, i, i % 6 + 1});
-            mesh.triangles.push_back({7, i % 6 + 1, i});
-        }
-        const Solid s = solid(mesh);
+        const Solid s = solid(crooked_pyramid_mesh(random));
         if (s.exit_margins[0] < 1e-3) continue;
         const double inside = winding_number(s, -1e-5 * s.vertex_normals[0]);
         EXPECT_NEAR(inside, s.exits[0] > 0 ? 1 : 0, 1e-6);

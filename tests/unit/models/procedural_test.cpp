@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/error.h>
+#include <raycontact/mass.h>
 #include <scenes/models/cache.h>
 #include <scenes/models/model.h>
 #include <scenes/models/procedural.h>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -49,6 +51,8 @@ void expect_good(const char* kind, std::uint32_t triangles) {
     const double extent = std::max({report.box_max.x - report.box_min.x, report.box_max.y - report.box_min.y,
                                     report.box_max.z - report.box_min.z});
     EXPECT_NEAR(extent, 1, 1e-6);
+    const Vec3 centre = mass_of(prepared.vertices, prepared.triangles).centre;
+    EXPECT_NEAR(std::max({std::fabs(centre.x), std::fabs(centre.y), std::fabs(centre.z)}), 0, 1e-7);
     EXPECT_TRUE(triangles < 60 || concave(model.mesh));
 }
 
