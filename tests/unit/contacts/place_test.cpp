@@ -20,7 +20,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
     const OpenDevice opened = open_device("cpu", 2);
     reference::Random random(1);
     std::vector<PlacedBody> bodies;
-    std::vector<Pair> pairs;
+    std::vector<SlotPair> pairs;
     std::vector<kernels::LocalContact> local;
     for (const std::uint32_t count : {1u, 2u, 7u, 8u, 9u, 15u, 16u, 17u, 100u, 127u, 128u, 129u, 300u, 3u, 33u}) {
         ASSERT_LT(count, vertices);

@@ -121,7 +121,7 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
                 bodies[i].centred.translation = bodies[i].centred.translation + together;
             }
             motion.update(executor, bodies);
-            for (const Pair& pair : {Pair{0, 1}, Pair{0, 2}, Pair{1, 2}}) {
+            for (const SlotPair& pair : {SlotPair{0, 1}, SlotPair{0, 2}, SlotPair{1, 2}}) {
                 const auto [a, b] = pair;
                 const double bound = motion.pair_bound(pair);
                 const double moved = std::max(true_displacement(bodies[a], bodies[b], before[a], before[b]),
