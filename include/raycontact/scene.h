@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/contact.h>
+#include <raycontact/device.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
@@ -9,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace raycontact {
 
@@ -44,6 +46,7 @@ struct StepStats {
     double depth_max = 0;            ///< metres
     double broad_ms = 0;             ///< our broad phase; 0 when pairs were given
     double narrow_ms = 0;            ///< everything after the broad phase
+    std::vector<DeviceWork> work;    ///< one entry a device
 };
 
 /// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.
