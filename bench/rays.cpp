@@ -108,8 +108,8 @@ int main(int argc, char** argv) try {
     const std::size_t pair_count = argc > 2 ? std::stoul(argv[2]) : 2000;
     const int runs = argc > 3 ? std::stoi(argv[3]) : 9;
     const std::vector<rc::PlacedBody> bodies = random_pairs(*shape, pair_count);
-    std::vector<rc::Pair> pairs;
-    for (rc::BodyId i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
+    std::vector<rc::SlotPair> pairs;
+    for (rc::BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
 
     rc::Executor executor(1);
     std::vector<rk::OrderedPair> ordered;

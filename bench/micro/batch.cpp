@@ -41,7 +41,7 @@ Batch make_batch(std::uint32_t triangles, std::size_t pairs) {
         body.centred = body.pose;
         body.centred.translation = transform_point(body.pose, batch.shape->centre());
     }
-    for (BodyId i = 0; i < 2 * pairs; i += 2) batch.pairs.emplace_back(i, i + 1);
+    for (BodySlot i = 0; i < 2 * pairs; i += 2) batch.pairs.emplace_back(i, i + 1);
     Executor executor(1);
     order_pairs(executor, batch.bodies, batch.pairs, batch.ordered);
     std::vector<PlacedBody> later = batch.bodies;
@@ -63,7 +63,7 @@ std::vector<WorldBox> make_boxes(std::size_t count) {
     const double half = 0.5 * std::cbrt(8.0 * static_cast<double>(count) / 3);
     scenes::Random random(11);
     std::vector<WorldBox> boxes;
-    for (BodyId i = 0; i < count; ++i) {
+    for (BodySlot i = 0; i < count; ++i) {
         const double x = half * random.symmetric(), y = half * random.symmetric(), z = half * random.symmetric();
         boxes.push_back({i, {x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}});
     }

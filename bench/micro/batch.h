@@ -18,8 +18,8 @@ struct Batch {
     Mesh mesh;
     std::shared_ptr<const Shape> shape;
     std::vector<PlacedBody> bodies;
-    std::vector<Pair> pairs; ///< bodies 2 i and 2 i + 1, at random: turned anyhow, middles up to 0.35 box diagonals
-                             ///< apart along each axis
+    std::vector<SlotPair> pairs; ///< bodies 2 i and 2 i + 1, at random: turned anyhow, middles up to 0.35 box diagonals
+                                 ///< apart along each axis
     std::vector<kernels::OrderedPair> ordered;
     std::vector<kernels::OrderedPair> moved; ///< the same a step later: each body up to 0.3 % of the diagonal along
                                              ///< each axis and a third of a degree about it

@@ -151,7 +151,7 @@ void add_broad_phase(std::size_t count) {
     // The copy belongs to the work: the boxes are sorted where they lie.
     add("sweep_and_prune/" + std::to_string(count), {"box", static_cast<double>(count), 2 * sizeof(rc::WorldBox)},
         [boxes = rb::make_boxes(count), sorted = std::vector<rc::WorldBox>(),
-         pairs = std::vector<rc::Pair>()]() mutable {
+         pairs = std::vector<rc::SlotPair>()]() mutable {
             sorted = boxes;
             rc::SweepAndPrune().find_pairs(sorted, pairs);
         });

@@ -31,7 +31,9 @@ public:
             placed.pose = placed.centred = step.poses[body];
             placed.centred.translation = transform_point(placed.pose, placed.shape->centre());
         }
-        order_pairs(*opened_.executor, bodies_, step.pairs, ordered_);
+        slot_pairs_.clear();
+        for (const auto& [a, b] : step.pairs) slot_pairs_.emplace_back(slot_of(a), slot_of(b));
+        order_pairs(*opened_.executor, bodies_, slot_pairs_, ordered_);
         pairs_.write(*opened_.device, ordered_);
         queue_.fill(*opened_.device, shapes_.arrays(), pairs_, false);
     }
@@ -40,6 +42,7 @@ protected:
     OpenDevice opened_;
     ShapeStore shapes_;
     std::vector<PlacedBody> bodies_;
+    std::vector<SlotPair> slot_pairs_;
     std::vector<kernels::OrderedPair> ordered_;
     Array<kernels::OrderedPair> pairs_;
     RayQueue queue_;

@@ -16,7 +16,7 @@ using Found = std::vector<kernels::LocalContact>;
 TEST(StillContacts, AreFoundByPairAndDirection) {
     reference::Random random(1);
     for (int round = 0; round < 300; ++round) {
-        std::vector<Pair> before, now;
+        std::vector<SlotPair> before, now;
         std::vector<std::uint32_t> still;
         Found contacts;
         std::vector<std::tuple<std::uint32_t, std::uint32_t>> expected; // place in still, vertex
@@ -47,7 +47,7 @@ TEST(StillContacts, AreFoundByPairAndDirection) {
 
 TEST(StillContacts, OfAPairThatWasNotThereIsAMistake) {
     const Found last{{0, 7, 0, 0, 0, {}}};
-    const std::vector<Pair> last_pairs{{1, 2}}, others{{1, 3}};
+    const std::vector<SlotPair> last_pairs{{1, 2}}, others{{1, 3}};
     const std::vector<std::uint32_t> first{0};
     Found found;
     find_still_contacts(last_pairs, last, last_pairs, first, found);
