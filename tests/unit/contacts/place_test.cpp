@@ -26,7 +26,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         ASSERT_LT(count, vertices);
         const auto pair = static_cast<std::uint32_t>(pairs.size());
         pairs.emplace_back(2 * pair, 2 * pair + 1);
-        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, {}, {}});
+        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, 0, {}, {}});
         std::vector<std::uint32_t> chosen(vertices);
         std::iota(chosen.begin(), chosen.end(), 0u);
         for (std::uint32_t direction = 0; direction < 2; ++direction) {
