@@ -23,7 +23,7 @@ public:
         const auto keep = [this](std::size_t old, std::size_t now, std::size_t count) {
             std::copy_n(hot_.begin() + std::ptrdiff_t(old), count, next_hot_.begin() + std::ptrdiff_t(now));
         };
-        const auto open = [this](std::size_t now, std::uint32_t slot) {
+        const auto open = [this, pairs](std::size_t now, std::uint32_t slot) {
             if (slot == states_.size()) states_.emplace_back();
             const auto moved = std::find_if(incoming_.begin(), incoming_.end(),
                                             [&](const Incoming& other) { return other.pair == pairs[now]; });

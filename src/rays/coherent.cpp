@@ -295,7 +295,7 @@ std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& 
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
         if (!place) continue;
-        Moving moving{pair, table_.state(*place), table_.hot(*place)};
+        Moving moving{pair.first, pair.second, table_.state(*place), table_.hot(*place)};
         moving.state.looked = step_ - moving.state.looked; // as long ago; every device counts its own steps
         put_bytes(bytes, moving);
         for (std::uint32_t d = 0; d < 2; ++d) {
@@ -320,7 +320,7 @@ void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<co
         auto moving = take_bytes<Moving>(bytes);
         moving.state.looked = step_ - moving.state.looked;
         for (std::uint32_t d = 0; d < 2; ++d) {
-            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? moving.pair.first : moving.pair.second);
+            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? moving.first : moving.second);
             Kept& own = moving.hot.kept[d];
             own.first = static_cast<std::uint32_t>(candidates_kept_ + candidates.size());
             for (std::uint32_t i = 0; i < own.count; ++i) {
@@ -328,7 +328,7 @@ void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<co
                 candidates.back().slot += first;
             }
         }
-        table_.put_in(moving.pair, moving.state, moving.hot);
+        table_.put_in({moving.first, moving.second}, moving.state, moving.hot);
     }
     candidates_.append(device, std::span<const kernels::Candidate>(candidates));
     candidates_kept_ += candidates.size();

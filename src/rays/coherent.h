@@ -59,7 +59,7 @@ private:
         Kept kept[2];
     };
     struct Moving { ///< a pair between two devices; its candidates follow
-        SlotPair pair;
+        BodySlot first, second;
         PairState state;
         Hot hot;
     };

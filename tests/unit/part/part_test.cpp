@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs that change their part between two steps have the contacts that they would have had, bit for bit.
+#include "mesh/vector.h"
 #include "part/part.h"
 
 #include "reference/random.h"
