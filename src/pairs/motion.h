@@ -20,8 +20,6 @@ public:
     void prefetch(const SlotPair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
     /// No less than what any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const SlotPair& pair) const;
-    /// Neither body has moved by a bit since the last step.
-    bool is_still(const SlotPair& pair) const { return bodies_[pair.first].still && bodies_[pair.second].still; }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
@@ -39,7 +37,6 @@ private:
         float shift_lost = 0;
         float turn = 0;  ///< turn_bound
         float reach = 0; ///< of the shape, about its centre
-        bool still = false;
     };
     struct Last {
         Pose centred; ///< of the last step

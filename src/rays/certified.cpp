@@ -18,6 +18,10 @@ std::size_t segments_of(std::uint32_t watches) {
     return (watches + SEGMENT_WATCHES - 1) / SEGMENT_WATCHES;
 }
 
+bool casts_all(const Update& update) {
+    return update.settings.caster == Caster::basic;
+}
+
 // As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
 bool is_idle(const kernels::Holder& holder) {
     return holder.count == 0 && holder.radius <= 0 && holder.asks_caps == 0;
@@ -159,7 +163,7 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     fast_sums_ = fast_count_ > 0 ? sums[RayBatch::ray_sum] : kernels::Totals{};
     const kernels::uint fast = fast_sums_.results;
     batch.count = Count(std::size_t{fast} + sums[RayBatch::kept_sum].results);
-    batch.resize(device, batch.count.value, 3);
+    batch.resize(device, batch.count.value, casts_all(update) ? 2 : 3);
     launch<KernelId::write_rays>(device, fast_.blocks().size(), 0u, fast_.blocks(), fast_rays_.firsts(), batch.rays);
     launch<KernelId::write_watch_rays>(device, segments_.size(), fast, segments_, watches_, looks_, look_rays_.firsts(),
                                        batch.rays);
@@ -169,7 +173,7 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
 // What the pairs keep of this step, and what their rays are told of the last: where each lay, and how wide a tube may
 // be sought.
 void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
-    const bool holds = update.settings.caster != Caster::basic; // something will be known of the rays afterwards
+    const bool holds = !casts_all(update); // something will be known of the rays afterwards
     const auto looks = looks_.in_place();
     const auto firsts = look_rays_.firsts().in_place();
     const auto holders = holders_.in_place();
@@ -202,7 +206,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
 // bounds: either caster asks.
 void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     Device& device = update.device;
-    if (update.settings.caster == Caster::basic) {
+    if (casts_all(update)) {
         held_.resize(device, 0);
         return cast_in_full(update, batch, true);
     }
@@ -219,7 +223,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     if (packed_ != update.shapes.packed()) clear(); // lists name vertex blocks by their place
     packed_ = update.shapes.packed();
     open_pairs_ = update.pairs.size();
-    batch.resize(update.device, 0, 3);
+    batch.resize(update.device, 0);
     table_.match(update.pairs, [this](WatchedPair& state) { close(state); });
     wake_up_.run(update, table_);
     list_slices();

@@ -109,6 +109,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.exit_distances = measure_exits(shape, normals);
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) shape.exit_max = std::max(shape.exit_max, exit);
+    shape.header.ray_reach = shape.exit_max > 0 ? shape.exit_max : static_cast<float>(shape.diagonal);
     build_clusters(shape);
     build_outside_grid(shape);
     build_clearance_grid(shape);
