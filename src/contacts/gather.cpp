@@ -29,7 +29,7 @@ bool Gather::read(Device& device, RayBatch& batch) {
     check_sums(batch.sums);
     const std::size_t count = batch.sums[RayBatch::contact_sum].sums[0], known = std::min(count, found_.size());
     if (count > contacts_.size()) {
-        contacts_.resize(device, count);
+        contacts_.grow(device, count);
         return false;
     }
     found_.resize(count);

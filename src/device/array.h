@@ -25,9 +25,11 @@ public:
         }
         size_ = size;
     }
-    /// As resize(), but never to less.
+    /// For at least so many; where it must grow, for half as many again, since the next step may want a few more.
     void grow(Device& device, std::size_t size) {
-        if (size > size_) resize(device, size);
+        if (size <= size_) return;
+        resize(device, size);
+        size_ = capacity_;
     }
 
     void write(Device& device, std::span<const T> values) {

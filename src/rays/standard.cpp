@@ -49,7 +49,7 @@ bool StandardRays::had_room(Device& device, RayBatch& batch) {
     const std::size_t blocks = batch.sums[RayBatch::block_sum].sums[0], rays = batch.sums[RayBatch::ray_sum].sums[0];
     const bool fits = blocks <= blocks_.size() && rays <= batch.rays.size();
     blocks_.grow(device, blocks);
-    if (rays > batch.rays.size()) batch.resize(device, rays);
+    if (rays > batch.rays.size()) batch.resize(device, rays + rays / 2);
     return fits;
 }
 

@@ -272,10 +272,8 @@ TEST(Growth, RaysGrowWithTriangles) {
     EXPECT_EQ(rows[20].part, "creeping");
     EXPECT_NEAR(rows[20].pace, 0.0002, 2e-6);
     EXPECT_GT(rows[20].rays, 0);
-    // What does not move is not asked again.
     EXPECT_EQ(rows[26].part, "still");
     EXPECT_EQ(rows[26].method, Method::certified);
-    EXPECT_EQ(rows[26].rays, 0);
     // Certified finds what standard finds.
     for (std::size_t i = 0; i < rows.size(); i += 3) EXPECT_EQ(rows[i].contacts, rows[i + 2].contacts);
     EXPECT_EQ(slopes(rows).size(), 12u);
