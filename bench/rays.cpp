@@ -6,9 +6,9 @@
 
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
+#include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
-#include "rays/cast_standard.h"
-#include "rays/ray_queue.h"
+#include "rays/standard.h"
 #include "scenes/random.h"
 #include "shape/shape_data.h"
 
@@ -41,11 +41,10 @@ std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pai
 
 // Contacts found; the transform of the vertex is part of the work, as it is of ours.
 std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::OrderedPair>& pairs,
-                 const rc::ShapeData& shape, const std::vector<rk::Ray>& rays) {
+                 const std::vector<rk::VertexBlock>& blocks, const std::vector<rk::Ray>& rays) {
     std::size_t contacts = 0;
     for (const rk::Ray& ray : rays) {
-        const rk::prototype::SourceRay source =
-            rk::prototype::source_ray(&pairs[ray.pair], shape.vertex_blocks.data(), ray.slot);
+        const rk::prototype::SourceRay source = rk::prototype::source_ray(&pairs[ray.pair], blocks.data(), ray.slot);
         RTCRayHit hit;
         if (scene.cast(source.position, source.direction, source.reach, hit)) ++contacts;
     }
@@ -70,21 +69,101 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-// One instruction set with its own copy of everything.
-struct Contender {
-    std::unique_ptr<rc::Device> device;
-    std::unique_ptr<rc::ShapeStore> store;
-    rc::Array<rk::OrderedPair> pairs;
-    rc::RayQueue queue;
-    rc::Array<rk::Hit> hits;
-    std::vector<double> queue_ms, bvh_ms, basic_ms;
-    std::uint64_t hash = 0, basic_hash = 0;
+// Passes everything on to a device that works on this thread, and takes the time in which it casts rays.
+class CastClock : public rc::Device, private rc::Queue {
+public:
+    explicit CastClock(std::unique_ptr<rc::Device> inner) : inner_(std::move(inner)) {}
 
-    std::uint64_t hash_hits() {
-        std::vector<rk::Hit> host(hits.size());
-        hits.read(*device, host);
-        return XXH64(host.data(), host.size() * sizeof(rk::Hit), 0);
+    double cast_ms = 0;
+
+    const rc::DeviceInfo& info() const override { return inner_->info(); }
+    const rc::DeviceTraits& traits() const override { return inner_->traits(); }
+    std::unique_ptr<rc::Buffer> make_buffer(std::size_t bytes) override { return inner_->make_buffer(bytes); }
+    rc::Queue& queue() override { return *this; }
+
+private:
+    void write(rc::Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
+        inner_->queue().write(to, offset, from, bytes);
     }
+    void read(std::span<const rc::Piece> pieces) override { inner_->queue().read(pieces); }
+    void copy(rc::Buffer& to, const rc::Buffer& from, std::size_t bytes) override {
+        inner_->queue().copy(to, from, bytes);
+    }
+    void launch(rc::KernelId kernel, rc::Count count, std::span<const rc::Argument> arguments) override {
+        const double ms = milliseconds([&] { inner_->queue().launch(kernel, count, arguments); });
+        if (kernel == rc::KernelId::cast_rays_bvh || kernel == rc::KernelId::cast_rays_basic) cast_ms += ms;
+    }
+    rk::uint scan(const rc::ScanOf& scan) override { return inner_->queue().scan(scan); }
+    void finish() override { inner_->queue().finish(); }
+    double busy_ms() const override { return inner_->queue().busy_ms(); }
+
+    std::unique_ptr<rc::Device> inner_;
+};
+
+// One instruction set with its own copy of everything.
+class Contender {
+public:
+    Contender(rc::Executor& executor, std::string_view instruction_set, std::shared_ptr<const rc::Shape> shape,
+              std::span<const rc::PlacedBody> bodies, std::span<const rc::SlotPair> pairs)
+        : executor_(executor), device_(rc::cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
+          pairs_(pairs) {
+        store_.add(shape);
+        settings_.skip_outside = false; // every ray of the rule
+        standard_.begin(update(), batch_);
+        for (;;) {
+            batch_.totals.read(device_, batch_.sums);
+            if (standard_.had_room(device_, batch_)) break;
+            standard_.cast(update(), batch_);
+        }
+    }
+
+    void run_bvh() {
+        const double all = run(rc::Caster::bvh);
+        bvh_ms.push_back(device_.cast_ms);
+        queue_ms.push_back(all - device_.cast_ms);
+        hash = hash_hits();
+    }
+    void run_basic() {
+        run(rc::Caster::basic);
+        basic_ms.push_back(device_.cast_ms);
+        basic_hash = hash_hits();
+    }
+
+    const std::string& driver() const { return device_.info().driver; }
+    std::vector<rk::Ray> rays() { return read(batch_.rays, batch_.sums[rc::RayBatch::ray_sum].results); }
+    std::vector<rk::OrderedPair> ordered() { return read(*batch_.pairs, batch_.pairs->size()); }
+
+    std::vector<double> queue_ms, bvh_ms, basic_ms; ///< of each run; queue: finding the rays
+    std::uint64_t hash = 0, basic_hash = 0;         ///< of the last
+
+private:
+    double run(rc::Caster caster) {
+        settings_.caster = caster;
+        device_.cast_ms = 0;
+        return milliseconds([&] { standard_.cast(update(), batch_); });
+    }
+    rc::Update update() { return {device_, executor_, store_, bodies_, pairs_, motion_, settings_}; }
+
+    template <typename T>
+    std::vector<T> read(const rc::Array<T>& array, std::size_t count) {
+        std::vector<T> host(count);
+        array.read(device_, host);
+        return host;
+    }
+    std::uint64_t hash_hits() {
+        const std::vector<rk::Hit> hits = read(batch_.hits, batch_.sums[rc::RayBatch::ray_sum].results);
+        return XXH64(hits.data(), hits.size() * sizeof(rk::Hit), 0);
+    }
+
+    rc::Executor& executor_;
+    CastClock device_;
+    rc::ShapeStore store_;
+    std::span<const rc::PlacedBody> bodies_;
+    std::span<const rc::SlotPair> pairs_;
+    rc::Motion motion_;
+    rc::Settings settings_;
+    rc::StandardRays standard_;
+    rc::RayBatch batch_;
 };
 
 } // namespace
@@ -102,47 +181,23 @@ int main(int argc, char** argv) try {
     for (rc::BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
 
     rc::Executor executor(1);
-    std::vector<rk::OrderedPair> ordered;
-    rc::order_pairs(executor, bodies, pairs, ordered);
-    std::vector<Contender> contenders;
-    for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables()) {
-        Contender& c = contenders.emplace_back();
-        c.device = rc::cpu::open(executor, table->instruction_set);
-        c.store = std::make_unique<rc::ShapeStore>(*c.device);
-        c.store->add(shape);
-        c.pairs.write(*c.device, ordered);
-    }
+    std::vector<std::unique_ptr<Contender>> contenders;
+    for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables())
+        contenders.push_back(std::make_unique<Contender>(executor, table->instruction_set, shape, bodies, pairs));
+    const std::vector<rk::Ray> rays = contenders[0]->rays();
+    const std::vector<rk::OrderedPair> ordered = contenders[0]->ordered();
     const rc::bench::EmbreeDevice embree_device;
     const rc::bench::EmbreeScene embree(embree_device, *shape);
     std::vector<double> embree_ms;
-    std::vector<rk::Ray> rays;
     std::size_t embree_contacts = 0;
-    for (int run = 0; run <= runs; ++run) {
-        for (Contender& c : contenders) {
-            const double queue = milliseconds([&] { c.queue.fill(*c.device, c.store->arrays(), c.pairs, false); });
-            const double bvh = milliseconds([&] {
-                rc::cast_standard(*c.device, rc::Caster::bvh, c.store->arrays(), c.pairs, c.queue.rays(), c.hits,
-                                  false);
-            });
-            c.hash = c.hash_hits();
-            if (run == 0) continue; // warm-up
-            c.queue_ms.push_back(queue);
-            c.bvh_ms.push_back(bvh);
-        }
-        if (run == 0) {
-            rays.resize(contenders[0].queue.rays().size());
-            contenders[0].queue.rays().read(*contenders[0].device, rays);
-        }
-        const double theirs = milliseconds([&] { embree_contacts = cast(embree, ordered, shape->data(), rays); });
-        if (run > 0) embree_ms.push_back(theirs);
+    const auto cast_theirs = [&] { embree_contacts = cast(embree, ordered, shape->data().vertex_blocks, rays); };
+    cast_theirs(); // to warm up; ours have done so
+    for (int run = 0; run < runs; ++run) {
+        for (const auto& c : contenders) c->run_bvh();
+        embree_ms.push_back(milliseconds(cast_theirs));
     }
     for (int run = 0; run < 3; ++run)
-        for (Contender& c : contenders) {
-            c.basic_ms.push_back(milliseconds([&] {
-                rc::cast_standard(*c.device, rc::Caster::basic, c.store->arrays(), c.pairs, c.queue.rays(), c.hits);
-            }));
-            c.basic_hash = c.hash_hits();
-        }
+        for (const auto& c : contenders) c->run_basic();
 
     const double count = static_cast<double>(rays.size());
     const double triangles = static_cast<double>(shape->triangles().size());
@@ -151,11 +206,11 @@ int main(int argc, char** argv) try {
                 count, count / (2.0 * static_cast<double>(pair_count)), triangles, runs);
     std::printf("%-10s %12s %10s %10s %14s %18s\n", "", "queue ns/ray", "bvh ns/ray", "x Embree", "basic Mtri/s",
                 "hash");
-    for (const Contender& c : contenders)
-        std::printf("%-10s %12.1f %10.1f %10.2f %14.0f %016llx%s\n", c.device->info().driver.c_str(),
-                    1e6 * median(c.queue_ms) / count, 1e6 * median(c.bvh_ms) / count,
-                    1e6 * median(c.bvh_ms) / count / theirs, count * triangles / median(c.basic_ms) / 1e3,
-                    static_cast<unsigned long long>(c.hash), c.hash == c.basic_hash ? "" : "  basic differs!");
+    for (const auto& c : contenders)
+        std::printf("%-10s %12.1f %10.1f %10.2f %14.0f %016llx%s\n", c->driver().c_str(),
+                    1e6 * median(c->queue_ms) / count, 1e6 * median(c->bvh_ms) / count,
+                    1e6 * median(c->bvh_ms) / count / theirs, count * triangles / median(c->basic_ms) / 1e3,
+                    static_cast<unsigned long long>(c->hash), c->hash == c->basic_hash ? "" : "  basic differs!");
     std::printf("%-10s %12s %10.1f %10.2f   (%zu contacts)\n", "embree", "", theirs, 1.0, embree_contacts);
     return 0;
 } catch (const std::exception& error) {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs groups of kernels once each on a fixed input, for callgrind to count instructions; scripts/instructions reads
-// what is printed: the compiler, then a line `group,item,items` for each group. Everything is done once beforehand, so
-// that no array has to grow while it counts.
-#include "bench/micro/coherence.h"
-#include "bench/micro/pipeline.h"
+// Runs steps of each method on fixed inputs, and what the host does beside, for callgrind to count instructions;
+// scripts/instructions reads what is printed: the compiler, then a line `kernel,input,items` for each count. Everything
+// is done once beforehand, so that no array has to grow while it counts.
+#include "bench/instructions/batch.h"
+#include "bench/instructions/callgrind_device.h"
 
 #include "contacts/place.h"
-#include "shape/shape_data.h"
+#include "device/cpu/device.h"
+#include "part/part.h"
 
 #include <raycontact/error.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <stdexcept>
 #include <valgrind/callgrind.h>
 
 namespace rb = raycontact::bench;
@@ -21,71 +22,96 @@ namespace rk = raycontact::kernels;
 
 namespace {
 
-struct Group {
-    std::string name, item;
-    std::size_t items = 0;
-    std::function<void()> body;
-};
-
 // What valgrind 3.19 knows; it has no AVX-512.
 constexpr const char* instruction_set = "avx2";
 
-class Input {
+/// A part that does every step of a batch.
+class Run {
 public:
-    Input()
-        : small_batch_(rb::make_batch(902, 64)), large_batch_(rb::make_batch(20000, 8)),
-          small_(executor_, instruction_set, small_batch_), large_(executor_, instruction_set, large_batch_),
-          kept_(executor_, instruction_set, small_batch_) {}
+    Run(const rb::Batch& batch, const std::string& input, const rc::Settings& settings)
+        : batch_(batch), settings_(settings) {
+        rc::OpenDevice opened{std::make_unique<rc::Executor>(1), nullptr};
+        auto device = std::make_unique<rb::CallgrindDevice>(rc::cpu::open(*opened.executor, instruction_set), input);
+        device_ = device.get();
+        opened.device = std::move(device);
+        part_ = std::make_unique<rc::Part>(std::move(opened));
+        part_->shapes().add(batch.shape);
+    }
 
-    std::vector<Group> groups() {
-        return {
-            {"clusters", "ordered pair", small_.ordered_pairs(), [this] { small_.find_clusters(); }},
-            {"clusters_large", "ordered pair", large_.ordered_pairs(), [this] { large_.find_clusters(); }},
-            {"rays_grid", "vertex block", small_.vertex_blocks(), [this] { small_.find_rays(); }},
-            {"cast_bvh", "ray", small_.rays(), [this] { small_.cast_bvh(); }},
-            {"cast_bvh_large", "ray", large_.rays(), [this] { large_.cast_bvh(); }},
-            {"cast_basic", "ray", small_.basic_rays(), [this] { small_.cast_basic(); }},
-            {"near_clusters", "ordered pair", kept_.pairs(), [this] { kept_.count_near_clusters(); }},
-            {"near_rays", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_near_rays(); }},
-            {"follow_bvh", "ray", kept_.near_rays(), [this] { kept_.cast_near_rays(rc::Caster::bvh); }},
-            {"follow_basic", "ray", kept_.basic_rays(), [this] { kept_.cast_near_rays(rc::Caster::basic); }},
-            {"walk", "ray", kept_.walks(), [this] { kept_.walk(); }},
-            {"begin_watches", "vertex block", kept_.vertex_blocks(), [this] { kept_.begin_watches(); }},
-            {"look", "vertex block", kept_.vertex_blocks(), [this] { kept_.find_watch_rays(); }},
-            {"seek_tubes", "ray", kept_.watch_rays(), [this] { kept_.seek_tubes(); }},
-            {"held", "ray", kept_.watch_rays(), [this] { kept_.decide_held(); }},
-            {"contacts", "contact", small_.contacts(), [this] { contacts(); }},
-            {"order_pairs", "pair", small_batch_.pairs.size(), [this] { order_pairs(); }},
-            {"sweep", "box", boxes_.size(), [this] { sweep(); }},
-            {"shape", "triangle", small_batch_.mesh.triangles.size(), [this] { shape(); }},
-        };
+    void count() {
+        for (const auto& bodies : batch_.steps) step(bodies);
+        part_->forget();
+        for (auto bodies : batch_.steps) {
+            // Others in the same slots: that the bodies went back to where they began is no motion.
+            for (rc::PlacedBody& body : bodies) ++body.generation;
+            device_->start();
+            const std::size_t contacts = step(bodies).size();
+            device_->stop();
+            if (contacts == 0) throw std::logic_error("a step without contacts is nothing to count");
+        }
+        device_->print(batch_.pairs.size() * batch_.steps.size());
+    }
+
+    std::span<const rk::LocalContact> step(std::span<const rc::PlacedBody> bodies) {
+        part_->begin(bodies, batch_.pairs, settings_);
+        return part_->end();
     }
 
 private:
-    void contacts() {
-        small_.find_contacts();
-        local_ = small_.host_contacts();
-        placer_.run(executor_, rc::Direction::reprojected, small_batch_.bodies, small_batch_.pairs, local_, placed_);
-    }
-    void order_pairs() { rc::order_pairs(executor_, small_batch_.bodies, small_batch_.pairs, ordered_); }
-    void sweep() {
-        sorted_ = boxes_;
-        rc::SweepAndPrune().find_pairs(sorted_, pairs_);
-    }
-    void shape() { shape_ = rc::Shape::make(small_batch_.mesh); }
-
-    rc::Executor executor_{1};
-    rb::Batch small_batch_, large_batch_;
-    rb::Pipeline small_, large_;
-    rb::Coherence kept_;
-    std::vector<rk::LocalContact> local_;
-    rc::Placer placer_;
-    std::vector<rc::Contact> placed_;
-    std::vector<rk::OrderedPair> ordered_;
-    std::vector<rc::WorldBox> boxes_ = rb::make_boxes(4096), sorted_;
-    std::vector<rc::SlotPair> pairs_;
-    std::shared_ptr<const rc::Shape> shape_;
+    const rb::Batch& batch_;
+    rc::Settings settings_;
+    rb::CallgrindDevice* device_ = nullptr; ///< the part's
+    std::unique_ptr<rc::Part> part_;
 };
+
+/// Counts what needs no device.
+void count_host(const char* name, std::size_t items, const std::function<void()>& work) {
+    work();
+    CALLGRIND_START_INSTRUMENTATION;
+    work();
+    CALLGRIND_STOP_INSTRUMENTATION;
+    CALLGRIND_DUMP_STATS_AT(name);
+    std::printf("%s,%zu\n", name, items);
+}
+
+rc::Settings settings(rc::Method method, rc::Caster caster = rc::Caster::bvh) {
+    rc::Settings settings;
+    settings.method = method;
+    settings.caster = caster;
+    return settings;
+}
+
+void count_all() {
+    const rb::Batch small = rb::make_batch(902, 64, 4), large = rb::make_batch(20000, 8, 4);
+    for (const rb::Batch* batch : {&small, &large}) {
+        const std::string size = batch == &small ? "" : "_large";
+        Run(*batch, "standard" + size, settings(rc::Method::standard)).count();
+        Run(*batch, "certified" + size, settings(rc::Method::certified)).count();
+        Run(*batch, "predictive" + size, settings(rc::Method::predictive)).count();
+    }
+    // Every triangle for every ray; more of them would only be more of the same.
+    const rb::Batch few = rb::make_batch(902, 8, 2);
+    Run(few, "standard_basic", settings(rc::Method::standard, rc::Caster::basic)).count();
+    Run(few, "predictive_basic", settings(rc::Method::predictive, rc::Caster::basic)).count();
+
+    rc::Executor executor(1);
+    Run run(small, "", settings(rc::Method::standard));
+    const auto local = run.step(small.steps[0]);
+    rc::Placer placer;
+    std::vector<rc::Contact> placed;
+    count_host("place_contacts,standard", local.size(),
+               [&] { placer.run(executor, rc::Direction::reprojected, small.steps[0], small.pairs, local, placed); });
+
+    const std::vector<rc::WorldBox> boxes = rb::make_boxes(4096);
+    rc::SweepAndPrune sweep;
+    std::vector<rc::WorldBox> sorted;
+    std::vector<rc::SlotPair> pairs;
+    count_host("sweep,boxes", boxes.size(), [&] {
+        sorted = boxes;
+        sweep.find_pairs(sorted, pairs);
+    });
+    count_host("make_shape,knot", small.mesh.triangles.size(), [&] { rc::Shape::make(small.mesh); });
+}
 
 std::string compiler() {
 #ifdef __clang__
@@ -95,35 +121,11 @@ std::string compiler() {
 #endif
 }
 
-void count(const Group& group) {
-    group.body();
-    CALLGRIND_START_INSTRUMENTATION;
-    group.body();
-    CALLGRIND_STOP_INSTRUMENTATION;
-    // Names the dump after the group and sets the counters back to zero.
-    CALLGRIND_DUMP_STATS_AT(group.name.c_str());
-    std::printf("%s,%s,%zu\n", group.name.c_str(), group.item.c_str(), group.items);
-}
-
 } // namespace
 
-int main(int argc, char** argv) try {
-    Input input;
-    const std::vector<Group> groups = input.groups();
-    const auto named = [&](const char* name) {
-        return std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.name == name; });
-    };
-    for (int i = 1; i < argc; ++i)
-        if (named(argv[i]) == groups.end()) {
-            std::string known;
-            for (const Group& group : groups) known += " " + group.name;
-            std::fprintf(stderr, "raycontact_instructions: no group '%s'; known:%s\n", argv[i], known.c_str());
-            return 2;
-        }
+int main() try {
     std::printf("%s\n", compiler().c_str());
-    for (int i = 1; i < argc; ++i) count(*named(argv[i]));
-    if (argc == 1)
-        for (const Group& group : groups) count(group);
+    count_all();
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "raycontact_instructions: %s\n", error.what());

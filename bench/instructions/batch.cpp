@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/micro/batch.h"
+#include "bench/instructions/batch.h"
 
 #include "scenes/models/model.h"
 #include "scenes/random.h"
@@ -24,36 +24,40 @@ Matrix product(const Matrix& a, const Matrix& b) {
 
 } // namespace
 
-Batch make_batch(std::uint32_t triangles, std::size_t pairs) {
+Batch make_batch(std::uint32_t triangles, std::size_t pairs, std::size_t steps) {
     Batch batch;
-    batch.name = "knot_" + std::to_string(triangles);
     batch.mesh = scenes::scene_model("knot", triangles).mesh;
     batch.shape = Shape::make(batch.mesh);
-    const double apart = 0.35 * batch.shape->data().diagonal;
+    const double diagonal = batch.shape->data().diagonal;
     scenes::Random random(7);
+    std::vector<PlacedBody> bodies;
     for (std::size_t i = 0; i < 2 * pairs; ++i) {
         double at[3], turn[4];
-        for (double& x : at) x = apart * random.symmetric();
+        for (double& x : at) x = 0.35 * diagonal * random.symmetric();
         for (double& x : turn) x = random.symmetric();
-        PlacedBody& body = batch.bodies.emplace_back();
+        PlacedBody& body = bodies.emplace_back();
         body.shape = batch.shape.get();
         body.pose = pose_from_quaternion({at[0], at[1], at[2]}, turn[0], turn[1], turn[2], turn[3]);
-        body.centred = centred_pose(*batch.shape, body.pose);
     }
     for (BodySlot i = 0; i < 2 * pairs; i += 2) batch.pairs.emplace_back(i, i + 1);
-    Executor executor(1);
-    order_pairs(executor, batch.bodies, batch.pairs, batch.ordered);
-    std::vector<PlacedBody> later = batch.bodies;
-    for (PlacedBody& body : later) {
-        const double step = 0.003 * batch.shape->data().diagonal;
-        const Vec3 shift{step * random.symmetric(), step * random.symmetric(), step * random.symmetric()};
-        const std::array<double, 4> turn = random.tilt(0.006);
-        Pose small = pose_from_quaternion({}, turn[0], turn[1], turn[2], turn[3]);
-        body.centred.rotation = product(body.centred.rotation, small.rotation);
-        body.centred.translation = {body.centred.translation.x + shift.x, body.centred.translation.y + shift.y,
-                                    body.centred.translation.z + shift.z};
+
+    std::vector<Pose> ways; // a step's
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const double share = 0.0001 * static_cast<double>(1u << 2 * (i / 2 % 4));
+        const auto shift = [&] { return share * diagonal * random.symmetric(); };
+        const double x = shift(), y = shift(), z = shift();
+        const std::array<double, 4> turn = random.tilt(2 * share);
+        ways.push_back(pose_from_quaternion({x, y, z}, turn[0], turn[1], turn[2], turn[3]));
     }
-    order_pairs(executor, later, batch.pairs, batch.moved);
+    for (std::size_t step = 0; step < steps; ++step) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            Pose& pose = bodies[i].pose;
+            const Vec3 &at = pose.translation, &way = ways[i].translation;
+            if (step > 0) pose = {product(pose.rotation, ways[i].rotation), {at.x + way.x, at.y + way.y, at.z + way.z}};
+            bodies[i].centred = centred_pose(*batch.shape, pose);
+        }
+        batch.steps.push_back(bodies);
+    }
     return batch;
 }
 
