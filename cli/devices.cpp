@@ -18,6 +18,8 @@ void print_json(const std::vector<raycontact::DeviceInfo>& devices) {
     for (const auto& device : devices) {
         list.push_back({{"id", device.id},
                         {"kind", device.kind},
+                        {"type", device.type},
+                        {"bus", device.bus},
                         {"name", device.name},
                         {"driver", device.driver},
                         {"cores", device.cores},
