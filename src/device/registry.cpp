@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
 #include "device/device.h"
+#ifdef RAYCONTACT_OPENCL
+#include "device/opencl/device.h"
+#endif
 
 #include <raycontact/error.h>
 
 #include <charconv>
 #include <cstdlib>
-
-#ifdef RAYCONTACT_OPENCL
-#include "device/opencl/device.h"
-#endif
 
 namespace raycontact {
 

@@ -21,11 +21,20 @@ Context make_context(cl_device_id device) {
     return context;
 }
 
+// What a kernel is launched with where there is nothing to do.
+template <typename Function>
+struct Nothing;
+template <typename... Parameters>
+struct Nothing<void (*)(kernels::Range, kernels::uint, Parameters...)> {
+    static constexpr Argument arguments[] = {{nullptr, 0, !std::is_pointer_v<Parameters>}...};
+};
+
 class DriverDevice : public Device, private Queue {
 public:
     DriverDevice(const Listed& listed, const Source& source)
         : info_(listed.info), context_(make_context(listed.id)), program_(context_.get(), listed.id, source),
           launcher_(context_.get(), listed.id), scan_(program_, context_.get(), listed.id) {
+        launch_all();
         const Probed probed = probe(launcher_, program_, source, context_.get());
         if (info_.exact && !probed.differs.empty()) {
             info_.exact = info_.usable = false;
@@ -42,6 +51,19 @@ public:
     Queue& queue() override { return *this; }
 
 private:
+    // Some drivers compile a kernel when it is first launched; that is not to happen in the midst of a step.
+    void launch_all() {
+#define RAYCONTACT_KERNEL(name)                                                                                        \
+    if (program_.kernel(KernelId::name)) launch(KernelId::name, 0, Nothing<Prototype<KernelId::name>::type>::arguments);
+#define RAYCONTACT_CPU_KERNEL(name)
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+        for (const std::size_t most : {std::size_t{0}, std::size_t{SCAN_AT_ONCE} + 1})
+            scan({.count = {nullptr, 0, most}, .columns = 0});
+        finish();
+    }
+
     void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
         check(
             clEnqueueWriteBuffer(launcher_.queue(), memory_of(&to), CL_TRUE, offset, bytes, from, 0, nullptr, nullptr),
@@ -73,12 +95,16 @@ private:
         }
         launcher_.over_items(kernel, Program::name_of(id), count.most);
     }
-    kernels::uint scan(const ScanOf& scan) override { return scan_.run(launcher_, scan); }
+    kernels::uint scan(const ScanOf& scan) override {
+        return scan_.run(launcher_, scan);
+    }
     void finish() override {
         check(clFinish(launcher_.queue()), "clFinish");
         launcher_.add_up();
     }
-    double busy_ms() const override { return launcher_.busy_ms(); }
+    double busy_ms() const override {
+        return launcher_.busy_ms();
+    }
 
     DeviceInfo info_;
     DeviceTraits traits_;
@@ -104,7 +130,13 @@ std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::funct
     if (!listed.info.usable && !(inexact && listed.runs)) refuse(listed.info);
     Source source = exact_source(listed.id);
     if (change) change(source);
-    auto device = std::make_unique<DriverDevice>(listed, source);
+    std::unique_ptr<DriverDevice> device;
+    try {
+        device = std::make_unique<DriverDevice>(listed, source);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error("device '" + listed.info.id + "' (" + listed.info.name
+                                 + ") did not open: " + error.what());
+    }
     if (!device->info().usable && !inexact) refuse(device->info());
     return device;
 }
