@@ -112,7 +112,7 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
     std::size_t begin = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         std::size_t end = begin;
-        while (end < contacts.size() && contacts[end].body_a == list[i].first) ++end;
+        while (end < contacts.size() && contacts[end].body_a == slot_of(list[i].first)) ++end;
         const auto own = contacts.subspan(begin, end - begin);
         json ? print_json(first + i, own) : print_table(first + i, pairs[i], own);
         begin = end;

@@ -53,6 +53,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"caster", to_string(settings.caster)},
                 {"direction", to_string(settings.direction)},
                 {"devices", Json::array({settings.device == "auto" ? "cpu" : settings.device})},
+                {"work", work_of_devices(replay.steps)},
                 {"hash", replay.hash},
                 {"recorded_hash", nullptr},
                 {"hash_reproduced", nullptr},
@@ -100,7 +101,7 @@ std::string for_a_person(const Json& s) {
         s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
         s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(),
         s["narrow_ms"]["median"].get<double>());
-    text += work_for_a_person(s) + "hash       " + hash_for_a_person(s) + "\n";
+    text += work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + hash_for_a_person(s) + "\n";
     if (s.contains("wrong_rays")) {
         const Json& wrong = s["wrong_rays"];
         text +=

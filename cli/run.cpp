@@ -63,6 +63,7 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
         {"devices", Json::array({options.settings.device == "auto" ? "cpu" : options.settings.device})},
+        {"work", work_of_devices(log.rows)},
         {"hash", scene.hash()},
         {"mesh_source", log.mesh_source},
         {"pairs_last_second", quantile(last_second, 0.5, [](const StepRow& r) { return double(r.pairs); })},
@@ -96,7 +97,8 @@ std::string for_a_person(const Json& s) {
         s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(),
         s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
         s["narrow_ms_last_second"].get<double>());
-    return text + work_for_a_person(s) + "hash       " + s["hash"].get<std::string>() + "\n";
+    return text + work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + s["hash"].get<std::string>()
+           + "\n";
 }
 
 std::string steps_csv(const std::vector<StepRow>& rows) {

@@ -66,6 +66,18 @@ std::string work_for_a_person(const Json& s) {
                          static_cast<double>(count("pair_bytes_max")) / 1e6);
 }
 
+std::string devices_for_a_person(const Json& list) {
+    std::string text;
+    for (const Json& entry : list) {
+        const auto median = [&](const char* key) { return entry.at(key).at("median").get<double>(); };
+        text += fmt::format("device     {}: {:.0f} launches, {:.0f} reads, {:.3g} kB up and {:.3g} kB down, busy for "
+                            "{:.2f} ms a step (medians)\n",
+                            entry.at("device").get<std::string>(), median("launches"), median("reads"),
+                            median("bytes_up") / 1e3, median("bytes_down") / 1e3, median("busy_ms"));
+    }
+    return text;
+}
+
 std::string work_columns() {
     std::string text;
     for (const Count& count : counts) text += std::string(",") + count.name;

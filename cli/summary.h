@@ -44,6 +44,30 @@ private:
     raycontact::StepStats sum_;
 };
 
+/// What each device did: a list of {"device", "pairs": {"median", "max"}, "launches", ...} over the steps.
+template <class Row>
+nlohmann::ordered_json work_of_devices(const std::vector<Row>& rows) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t d = 0; !rows.empty() && d < rows.front().work.size(); ++d) {
+        nlohmann::ordered_json entry{{"device", rows.front().work[d].device}};
+        const auto put = [&](const char* key, auto raycontact::DeviceWork::*value) {
+            const auto of = [&](const Row& row) { return static_cast<double>(row.work[d].*value); };
+            entry[key] = {{"median", quantile(rows, 0.5, of)}, {"max", quantile(rows, 1, of)}};
+        };
+        put("pairs", &raycontact::DeviceWork::pairs);
+        put("launches", &raycontact::DeviceWork::launches);
+        put("reads", &raycontact::DeviceWork::reads);
+        put("bytes_up", &raycontact::DeviceWork::bytes_up);
+        put("bytes_down", &raycontact::DeviceWork::bytes_down);
+        put("busy_ms", &raycontact::DeviceWork::busy_ms);
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+/// A line for each entry of that list.
+std::string devices_for_a_person(const nlohmann::ordered_json& list);
+
 /// The settings that decide how much is looked at; lengths in metres, null where the library chooses.
 void put_settings(nlohmann::ordered_json& object, const raycontact::Settings& settings);
 

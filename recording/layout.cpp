@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <recording/layout.h>
 
+#include "body_slots.h"
+
 #include <raycontact/error.h>
 
 #include <nlohmann/json.hpp>
@@ -66,18 +68,38 @@ Bytes encode_events(std::span<const BodyEvent> events) {
     return to;
 }
 
-void apply_events(std::span<const unsigned char> payload, std::size_t shapes, std::vector<Body>& bodies) {
+void apply_events(std::span<const unsigned char> payload, std::size_t shapes, std::vector<BodyEvent>& events,
+                  std::vector<Body>& bodies) {
     ByteSource from(payload);
     while (from.left() > 0) {
         const auto step = from.get<std::uint32_t>(), kind = from.get<std::uint32_t>();
         const auto id = from.get<std::uint32_t>(), shape = from.get<std::uint32_t>();
-        if (kind == BodyEvent::comes && id == bodies.size() && shape < shapes) {
+        const bool in_order = events.empty() || events.back().step <= step;
+        if (in_order && kind == BodyEvent::comes && id == bodies.size() && shape < shapes) {
             bodies.push_back({shape, step, Body::never});
-        } else if (kind == BodyEvent::goes && id < bodies.size() && bodies[id].end_step == Body::never
-                   && bodies[id].first_step <= step) {
+        } else if (in_order && kind == BodyEvent::goes && id < bodies.size() && bodies[id].end_step == Body::never) {
             bodies[id].end_step = step;
         } else {
             throw Damage("has bodies that come or go in a way that cannot be");
+        }
+        events.push_back({step, static_cast<BodyEvent::Kind>(kind), id, shape});
+    }
+}
+
+void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vector<Body>& bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].id = i;
+    if (version == 1) return;
+    BodySlots slots;
+    std::uint32_t step = 0;
+    for (const BodyEvent& event : events) {
+        if (event.step > step) slots.step_done(); // one or many: the rule asks for one
+        step = event.step;
+        BodyId& id = bodies[event.body].id;
+        if (event.kind == BodyEvent::goes) {
+            slots.take_back(slot_of(id));
+        } else {
+            slots.next();
+            id = slots.give();
         }
     }
 }
@@ -103,9 +125,11 @@ Bytes encode_info(const Info& info) {
                      {"mesh_source", info.mesh_source}});
 }
 
-Info decode_info(std::span<const unsigned char> payload) {
+Info decode_info(std::span<const unsigned char> payload, std::uint32_t version) {
     try {
         const Json document = Json::parse(payload.begin(), payload.end());
+        // No checksum covers the chunk's own.
+        if (document.at("version").get<std::uint32_t>() != version) throw Damage("says another version than its chunk");
         Info info;
         info.scene = document.at("scene").get<std::string>();
         info.seed = document.at("seed").get<std::uint64_t>();

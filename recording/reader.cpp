@@ -67,17 +67,21 @@ struct Reader::State {
     bool is_whole(std::uint64_t offset) const;
     void enter(const Found& block);
     void read_blocks();
-    std::vector<BodyId> live_at(std::uint32_t step) const;
+    std::vector<std::uint32_t> live_at(std::uint32_t step) const;
     void open_steps(std::size_t block);
     void read_step(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs);
+    void place(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs) const;
 
     File file;
     std::uint64_t size;                 ///< when it was last asked
     std::uint64_t data = 0, length = 0; ///< of the side chunk, as far as it was committed
+    std::uint32_t version = 0;
     bool described = false;
     Info info;
     std::vector<std::shared_ptr<const Shape>> shapes;
+    std::vector<BodyEvent> events;
     std::vector<Body> bodies;
+    std::size_t slots = 0; ///< that bodies ever had
     std::vector<Found> step_blocks;
     std::uint32_t steps = 0;
     std::optional<std::string> hash;
@@ -85,7 +89,7 @@ struct Reader::State {
     StepDecoder decoder;
     std::size_t open_block = SIZE_MAX;
     std::uint32_t next_step = 0; ///< of the open block
-    std::vector<Pose> poses;     ///< of the step before
+    std::vector<Pose> poses;     ///< of the step before, by number
 };
 
 std::uint32_t Reader::State::word_at(std::uint64_t offset) const {
@@ -111,11 +115,14 @@ void Reader::State::find_side_chunk() {
     auto start = side_chunk_start;
     if (length < start.size()) fail_damaged(data, "the side chunk is too short");
     if (!file.read(data, start)) fail_truncated(data);
-    const std::uint32_t version = ByteSource(std::span(start).subspan(8, 4)).get<std::uint32_t>();
-    if (std::equal(start.begin(), start.begin() + 8, side_chunk_start.begin()) && version != format_version)
+    version = ByteSource(std::span(start).subspan(8, 4)).get<std::uint32_t>();
+    const bool known = version >= oldest_version && version <= format_version;
+    if (std::equal(start.begin(), start.begin() + 8, side_chunk_start.begin()) && !known)
         throw InputError(file.path().string() + ": is a recording of version " + std::to_string(version)
-                         + ", this program reads version " + std::to_string(format_version)
+                         + ", this program reads versions " + std::to_string(oldest_version) + " to "
+                         + std::to_string(format_version)
                          + "; use the program that made it, or copy it again if it is damaged");
+    start[8] = side_chunk_start[8];
     if (start != side_chunk_start) fail_damaged(data, "the side chunk does not start as it should");
 }
 
@@ -157,13 +164,13 @@ void Reader::State::enter(const Found& block) {
     if (described != (header.type != BlockType::info)) throw Damage("is not where it belongs");
     switch (header.type) {
     case BlockType::info:
-        info = decode_info(unpack(block));
+        info = decode_info(unpack(block), version);
         break;
     case BlockType::shape:
         shapes.push_back(Shape::make(decode_mesh(unpack(block))));
         break;
     case BlockType::bodies:
-        apply_events(unpack(block), shapes.size(), bodies);
+        apply_events(unpack(block), shapes.size(), events, bodies);
         break;
     case BlockType::steps:
         // Already here, though it is unpacked later: the count of steps must be right before any is read.
@@ -207,12 +214,14 @@ void Reader::State::read_blocks() {
     }
     if (!described) fail_damaged(data, "the side chunk is empty");
     if (at < committed) fail_damaged(at, "something follows the end block");
+    give_ids(version, events, bodies);
+    for (const Body& body : bodies) slots = std::max(slots, slot_of(body.id) + std::size_t{1});
 }
 
-std::vector<BodyId> Reader::State::live_at(std::uint32_t step) const {
-    std::vector<BodyId> live;
-    for (BodyId id = 0; id < bodies.size(); ++id)
-        if (bodies[id].alive(step)) live.push_back(id);
+std::vector<std::uint32_t> Reader::State::live_at(std::uint32_t step) const {
+    std::vector<std::uint32_t> live;
+    for (std::uint32_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i].alive(step)) live.push_back(i);
     return live;
 }
 
@@ -241,13 +250,28 @@ void Reader::State::read_step(std::uint32_t i, std::vector<Pose>& to_poses, std:
     try {
         if (index != open_block || i < next_step) open_steps(index);
         for (; next_step <= i; ++next_step) decoder.next(live_at(next_step), poses);
+        place(i, to_poses, to_pairs);
     } catch (const Damage& damage) {
         open_block = SIZE_MAX;
         const Found& block = step_blocks[index];
         fail_damaged(block.offset, std::string(name_of(block.header.type)) + " " + damage.what());
     }
-    to_poses = poses;
-    to_pairs = decoder.pairs();
+}
+
+// From numbers to slots and ids.
+void Reader::State::place(std::uint32_t i, std::vector<Pose>& to_poses, std::vector<Pair>& to_pairs) const {
+    to_poses.resize(slots);
+    for (const std::uint32_t body : live_at(i)) to_poses[slot_of(bodies[body].id)] = poses[body];
+    to_pairs.clear();
+    for (const auto& [first, second] : decoder.pairs()) {
+        const Body &a = bodies[first], &b = bodies[second];
+        if (!a.alive(i) || !b.alive(i)) throw Damage("pairs bodies that are not there");
+        const bool swapped = slot_of(a.id) > slot_of(b.id);
+        to_pairs.emplace_back(swapped ? b.id : a.id, swapped ? a.id : b.id);
+    }
+    const auto slots_of = [](const Pair& pair) { return std::pair(slot_of(pair.first), slot_of(pair.second)); };
+    std::sort(to_pairs.begin(), to_pairs.end(),
+              [&](const Pair& p, const Pair& q) { return slots_of(p) < slots_of(q); });
 }
 
 Reader::Reader(const std::filesystem::path& file) : state_(std::make_unique<State>(file)) {
@@ -267,6 +291,12 @@ const std::vector<std::shared_ptr<const Shape>>& Reader::shapes() const {
 }
 const std::vector<Body>& Reader::bodies() const {
     return state_->bodies;
+}
+const std::vector<BodyEvent>& Reader::events() const {
+    return state_->events;
+}
+std::uint32_t Reader::version() const {
+    return state_->version;
 }
 std::uint32_t Reader::steps() const {
     return state_->steps;

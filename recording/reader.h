@@ -29,14 +29,19 @@ public:
     const Info& info() const;
     /// The very shapes that were recorded, bit for bit.
     const std::vector<std::shared_ptr<const Shape>>& shapes() const;
+    /// Every body there ever was.
     const std::vector<Body>& bodies() const;
+    /// How they came and went, in that order.
+    const std::vector<BodyEvent>& events() const;
+    /// Of the format. In version 1 a slot was never given twice.
+    std::uint32_t version() const;
     std::uint32_t steps() const;
     /// The run's; none where the run did not end well.
     const std::optional<std::string>& hash() const;
 
-    /// Of step i < steps(): poses by body id, with something arbitrary for bodies that are not alive; pairs sorted,
-    /// each once, first < second. Cheap in ascending order; otherwise decodes a block from its start. Throws InputError
-    /// where the file is damaged.
+    /// Of step i < steps(): poses by slot, with something arbitrary for slots without a body; pairs of ids, sorted by
+    /// slots, each once, the lower slot first. Cheap in ascending order; otherwise decodes a block from its start.
+    /// Throws InputError where the file is damaged.
     void read_step(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs);
 
 private:

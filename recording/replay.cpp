@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <stdexcept>
 #include <tuple>
 
 namespace raycontact::recording {
@@ -17,16 +18,23 @@ auto ray_of(const Contact& c) {
 } // namespace
 
 void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
-    const std::vector<Body>& bodies = reader_.bodies();
-    for (BodyId id = 0; id < bodies.size(); ++id) {
-        const Body& body = bodies[id];
-        if (body.first_step == i) scene_.add(reader_.shapes()[body.shape], poses[id]);
-        // One that came and went between two steps was never in any, but has its id.
-        if (body.end_step == i)
-            scene_.remove(id);
-        else if (body.alive(i))
-            scene_.set_pose(id, poses[id]);
-    }
+    const std::vector<BodyEvent>& events = reader_.events();
+    for (; next_event_ < events.size() && events[next_event_].step <= i; ++next_event_)
+        happen(events[next_event_], poses);
+    for (const Body& body : reader_.bodies())
+        if (body.alive(i)) scene_.set_pose(body.id, poses[slot_of(body.id)]);
+}
+
+void Follower::happen(const BodyEvent& event, std::span<const Pose> poses) {
+    const Body& body = reader_.bodies()[event.body];
+    if (event.kind == BodyEvent::comes) {
+        // One that came and went between two steps has no pose, but it had its slot.
+        const Pose pose = body.alive(event.step) ? poses[slot_of(body.id)] : Pose{};
+        if (scene_.add(reader_.shapes()[body.shape], pose) != body.id)
+            throw std::logic_error("a replay gave a body another slot than the recording; report this");
+    } else if (reader_.version() > 1) {
+        scene_.remove(body.id);
+    } // in version 1 its slot was not given again: it stays, without pairs
 }
 
 void WrongRays::add(std::span<const Contact> found, std::span<const Contact> reference) {

@@ -19,13 +19,16 @@ class Follower {
 public:
     Follower(const Reader& reader, const Settings& settings) : reader_(reader), scene_(settings) {}
 
-    /// Sets up step i, ascending from 0: bodies come and go, poses are set.
+    /// Sets up step i, ascending from 0: bodies come and go, poses, by slot, are set.
     void place(std::uint32_t i, std::span<const Pose> poses);
     Scene& scene() { return scene_; }
 
 private:
+    void happen(const BodyEvent& event, std::span<const Pose> poses);
+
     const Reader& reader_;
     Scene scene_;
+    std::size_t next_event_ = 0;
 };
 
 /// How often contacts differ from those of every ray cast in full.

@@ -32,12 +32,13 @@ std::uint64_t unzigzag(std::uint64_t code) {
 
 } // namespace
 
-void StepEncoder::add(std::span<const BodyId> live, std::span<const Pose> poses_by_id, std::span<const Pair> pairs) {
-    last_.resize(poses_by_id.size());
+void StepEncoder::add(std::span<const std::uint32_t> live, std::span<const Pose> poses,
+                      std::span<const NumberPair> pairs) {
+    last_.resize(poses.size());
     for (std::size_t i = 0; i < numbers; ++i) {
-        for (const BodyId id : live) {
-            const auto bits = std::bit_cast<std::uint64_t>(number_of(poses_by_id[id], i));
-            std::uint64_t& last = last_[id][i];
+        for (const std::uint32_t body : live) {
+            const auto bits = std::bit_cast<std::uint64_t>(number_of(poses[body], i));
+            std::uint64_t& last = last_[body][i];
             residuals_.push_back(zigzag(bits - last));
             last = bits;
         }
@@ -47,8 +48,8 @@ void StepEncoder::add(std::span<const BodyId> live, std::span<const Pose> poses_
 }
 
 // The places in the list before that are gone, then the pairs that are new, both as gaps.
-void StepEncoder::add_pairs(std::span<const Pair> pairs) {
-    std::vector<Pair> fresh;
+void StepEncoder::add_pairs(std::span<const NumberPair> pairs) {
+    std::vector<NumberPair> fresh;
     std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(fresh));
     const std::size_t kept = pairs.size() - fresh.size();
     put_varint(pair_bytes_, pairs_.size() - kept);
@@ -60,8 +61,8 @@ void StepEncoder::add_pairs(std::span<const Pair> pairs) {
         put_varint(pair_bytes_, i - next);
         next = i + 1;
     }
-    Pair last{0, 0};
-    for (const Pair& pair : fresh) {
+    NumberPair last{0, 0};
+    for (const NumberPair& pair : fresh) {
         put_varint(pair_bytes_, pair.first - last.first);
         put_varint(pair_bytes_, pair.second - (pair.first == last.first ? last.second : pair.first));
         last = pair;
@@ -95,20 +96,20 @@ void StepDecoder::open(Bytes payload, std::uint64_t residuals, std::size_t bodie
     last_.assign(bodies, PoseBits{});
 }
 
-void StepDecoder::next(std::span<const BodyId> live, std::span<Pose> poses_by_id) {
+void StepDecoder::next(std::span<const std::uint32_t> live, std::span<Pose> poses) {
     if (live.size() * numbers > residuals_ - residual_at_) throw Damage("holds fewer poses than its steps have bodies");
     for (std::size_t i = 0; i < numbers; ++i) {
-        for (const BodyId id : live) {
+        for (const std::uint32_t body : live) {
             std::uint64_t code = 0;
             for (std::size_t plane = 0; plane < 8; ++plane)
                 code = code << 8 | payload_[plane * residuals_ + residual_at_];
             ++residual_at_;
-            std::uint64_t& last = last_[id][i];
+            std::uint64_t& last = last_[body][i];
             last += unzigzag(code);
-            number_of(poses_by_id[id], i) = std::bit_cast<double>(last);
+            number_of(poses[body], i) = std::bit_cast<double>(last);
         }
     }
-    next_pairs(poses_by_id.size());
+    next_pairs(poses.size());
 }
 
 void StepDecoder::next_pairs(std::size_t bodies) {
@@ -134,13 +135,13 @@ void StepDecoder::next_pairs(std::size_t bodies) {
             pairs_.push_back(before_[i]);
     }
     const auto middle = static_cast<std::ptrdiff_t>(pairs_.size());
-    Pair last{0, 0};
+    NumberPair last{0, 0};
     for (std::uint64_t i = 0; i < fresh; ++i) {
         const std::uint64_t step = from.get_varint(), gap = from.get_varint();
         if (step >= bodies || gap >= bodies) throw Damage("pairs bodies that do not exist");
         const std::uint64_t first = last.first + step, second = (step == 0 ? last.second : first) + gap;
         if (second >= bodies || first >= second) throw Damage("pairs bodies that do not exist");
-        last = {static_cast<BodyId>(first), static_cast<BodyId>(second)};
+        last = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)};
         pairs_.push_back(last);
     }
     std::inplace_merge(pairs_.begin(), pairs_.begin() + middle, pairs_.end());

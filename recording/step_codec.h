@@ -2,8 +2,9 @@
 #pragma once
 
 #include <recording/bytes.h>
+#include <recording/recording.h>
 
-#include <raycontact/scene.h>
+#include <raycontact/pose.h>
 
 #include <array>
 #include <cstdint>
@@ -20,20 +21,20 @@ using PoseBits = std::array<std::uint64_t, 12>;
 /// motions, zero in the bits that the poses do not use.
 class StepEncoder {
 public:
-    /// Of the bodies named in `live` (ascending); `pairs` sorted, each once, first < second.
-    void add(std::span<const BodyId> live, std::span<const Pose> poses_by_id, std::span<const Pair> pairs);
+    /// Of the bodies numbered in `live` (ascending); `pairs` sorted, each once, first < second.
+    void add(std::span<const std::uint32_t> live, std::span<const Pose> poses, std::span<const NumberPair> pairs);
     std::uint32_t steps() const { return steps_; }
     std::size_t bytes() const { return residuals_.size() * 8 + pair_bytes_.size(); }
     /// Payload: the residuals' highest bytes, then their next, ... the lowest; then the pairs. Starts a new block.
     Bytes take();
 
 private:
-    void add_pairs(std::span<const Pair> pairs);
+    void add_pairs(std::span<const NumberPair> pairs);
 
     std::vector<PoseBits> last_;           ///< by body, zero where the block has none yet
     std::vector<std::uint64_t> residuals_; ///< by step, then number of the pose, then body
     Bytes pair_bytes_;
-    std::vector<Pair> pairs_; ///< of the step before, in this block
+    std::vector<NumberPair> pairs_; ///< of the step before, in this block
     std::uint32_t steps_ = 0;
 };
 
@@ -42,9 +43,9 @@ class StepDecoder {
 public:
     /// `residuals`: how many the block's steps have: 12 per live body and step.
     void open(Bytes payload, std::uint64_t residuals, std::size_t bodies);
-    /// The next step's; poses_by_id[id] is written for the ids in `live` only.
-    void next(std::span<const BodyId> live, std::span<Pose> poses_by_id);
-    const std::vector<Pair>& pairs() const { return pairs_; }
+    /// The next step's; poses[body] is written for the bodies in `live` only.
+    void next(std::span<const std::uint32_t> live, std::span<Pose> poses);
+    const std::vector<NumberPair>& pairs() const { return pairs_; }
 
 private:
     void next_pairs(std::size_t bodies);
@@ -52,7 +53,7 @@ private:
     std::vector<PoseBits> last_; ///< by body, zero where the block has none yet
     Bytes payload_;
     std::size_t residuals_ = 0, residual_at_ = 0, pair_at_ = 0;
-    std::vector<Pair> pairs_, before_;
+    std::vector<NumberPair> pairs_, before_;
     std::vector<std::size_t> gone_;
 };
 

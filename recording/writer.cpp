@@ -8,6 +8,8 @@
 #include <recording/step_codec.h>
 #include <recording/viewer_part.h>
 
+#include "body_slots.h"
+
 #include <raycontact/error.h>
 
 #include <algorithm>
@@ -47,8 +49,9 @@ struct Writer::State {
     void begin();
     void commit(const Bytes& blocks);
     void flush();
-    void check_and_keep(std::span<const Pose> poses, std::span<const Pair> given);
-    void step(std::span<const Pose> poses, std::span<const Pair> given);
+    std::uint32_t number_of(BodyId body) const;
+    void check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given);
+    void step(std::span<const Pose> by_slot, std::span<const Pair> given);
     std::uint64_t place() const { return end - data; }
     std::uint32_t frame_stride() const;
     Bytes animated_part() const;
@@ -64,14 +67,17 @@ struct Writer::State {
     std::vector<ViewerMesh> meshes;
     std::vector<Bytes> waiting_shapes;
     std::vector<BodyEvent> waiting_events;
+    BodySlots slots;                      ///< as the scene has them
+    std::vector<std::uint32_t> number_in; ///< by slot: the body that has it, or had it last
     std::vector<Body> bodies;
-    std::vector<BodyId> live;
+    std::vector<std::uint32_t> live; ///< numbers, ascending
     std::vector<ViewerBody> viewer_bodies;
     std::vector<char> moves; ///< has left its first pose
     StepEncoder encoder;
     Clock::time_point oldest; ///< of the steps in the encoder
     std::uint32_t steps = 0;
-    std::vector<Pair> pairs;
+    std::vector<Pose> poses; ///< of the step, by number
+    std::vector<NumberPair> pairs;
     std::vector<Pose> scene_poses;
     double seconds = 0, finish_seconds = 0;
 };
@@ -123,36 +129,50 @@ void Writer::State::flush() {
     if (!blocks.empty()) commit(blocks);
 }
 
-void Writer::State::check_and_keep(std::span<const Pose> poses, std::span<const Pair> given) {
-    if (poses.size() != bodies.size())
-        throw InputError("recording: " + std::to_string(poses.size()) + " poses for " + std::to_string(bodies.size())
-                         + " bodies; give one per id, those of removed bodies too");
-    for (const BodyId id : live) check_pose(poses[id], ("recording, body " + std::to_string(id)).c_str());
-    const auto there = [&](BodyId id) { return id < bodies.size() && bodies[id].alive(steps); };
-    pairs.assign(given.begin(), given.end());
-    for (Pair& pair : pairs) {
-        if (pair.first > pair.second) std::swap(pair.first, pair.second);
-        if (pair.first == pair.second || !there(pair.first) || !there(pair.second))
-            throw InputError("recording: a pair of bodies " + std::to_string(pair.first) + " and "
-                             + std::to_string(pair.second) + "; pairs need two bodies that are there");
+// Throws InputError where no body has the id now.
+std::uint32_t Writer::State::number_of(BodyId body) const {
+    if (!slots.is_there(body))
+        throw InputError("recording: body " + std::to_string(slot_of(body)) + " (generation "
+                         + std::to_string(generation_of(body)) + ") is not there; use the ids that add_body() gave");
+    return number_in[slot_of(body)];
+}
+
+void Writer::State::check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given) {
+    poses.resize(bodies.size());
+    for (const std::uint32_t number : live) {
+        const std::uint32_t slot = slot_of(bodies[number].id);
+        if (slot >= by_slot.size())
+            throw InputError("recording: " + std::to_string(by_slot.size()) + " poses, and a body in slot "
+                             + std::to_string(slot) + "; give one for each slot, those without a body too");
+        check_pose(by_slot[slot], ("recording, body " + std::to_string(slot)).c_str());
+        poses[number] = by_slot[slot];
+    }
+    pairs.clear();
+    for (const auto& [first, second] : given) {
+        const std::uint32_t a = number_of(first), b = number_of(second);
+        if (a == b)
+            throw InputError("recording: body " + std::to_string(slot_of(first))
+                             + " is paired with itself; pairs need two bodies");
+        pairs.emplace_back(std::min(a, b), std::max(a, b));
     }
     if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const BodyId id : live) {
-        if (bodies[id].first_step == steps)
-            viewer_bodies[id].start = poses[id];
-        else if (!(viewer_bodies[id].start == poses[id]))
-            moves[id] = 1;
+    for (const std::uint32_t number : live) {
+        if (bodies[number].first_step == steps)
+            viewer_bodies[number].start = poses[number];
+        else if (!(viewer_bodies[number].start == poses[number]))
+            moves[number] = 1;
     }
 }
 
-void Writer::State::step(std::span<const Pose> poses, std::span<const Pair> given) {
+void Writer::State::step(std::span<const Pose> by_slot, std::span<const Pair> given) {
     if (finished) throw InputError("recording: a step after its end");
     const auto start = Clock::now();
-    check_and_keep(poses, given);
+    check_and_keep(by_slot, given);
     if (encoder.steps() == 0) oldest = start;
     encoder.add(live, poses, pairs);
     ++steps;
+    slots.step_done();
     // The first step at once: a recording exists from then on.
     if (!begun || encoder.steps() >= options.flush_steps || encoder.bytes() >= block_bytes
         || seconds_since(oldest) >= options.flush_seconds)
@@ -175,18 +195,18 @@ Bytes Writer::State::animated_part() const {
     const std::uint32_t stride = frame_stride();
     std::vector<float> times;
     std::vector<ViewerTrack> tracks(bodies.size());
-    std::vector<Pose> now, last(bodies.size());
-    for (std::size_t id = 0; id < bodies.size(); ++id) last[id] = viewer_bodies[id].start;
+    std::vector<Pose> now, last(bodies.size()); // by slot; by number
+    for (std::size_t i = 0; i < bodies.size(); ++i) last[i] = viewer_bodies[i].start;
     std::vector<Pair> ignored;
     for (std::uint32_t i = 0; i < steps; ++i) {
         if (i % stride != 0 && i + 1 != steps) continue;
         reader.read_step(i, now, ignored);
         times.push_back(static_cast<float>(i * info.dt));
-        for (std::size_t id = 0; id < bodies.size(); ++id) {
-            const Body& body = bodies[id];
-            if (body.alive(i)) last[id] = now[id];
-            if (moves[id]) tracks[id].add(last[id]);
-            if (body.first_step > 0 || body.end_step < steps) tracks[id].sizes.push_back(body.alive(i) ? 1.f : 0.f);
+        for (std::size_t k = 0; k < bodies.size(); ++k) {
+            const Body& body = bodies[k];
+            if (body.alive(i)) last[k] = now[slot_of(body.id)];
+            if (moves[k]) tracks[k].add(last[k]);
+            if (body.first_step > 0 || body.end_step < steps) tracks[k].sizes.push_back(body.alive(i) ? 1.f : 0.f);
         }
     }
     return viewer_part(meshes, viewer_bodies, times, tracks);
@@ -251,22 +271,25 @@ std::uint32_t Writer::add_shape(const Shape& shape) {
 BodyId Writer::add_body(std::uint32_t shape) {
     State& s = *state_;
     if (shape >= s.meshes.size()) throw InputError("recording: shape " + std::to_string(shape) + " was not added");
-    const auto id = static_cast<BodyId>(s.bodies.size());
-    s.bodies.push_back({shape, s.steps, Body::never});
-    s.waiting_events.push_back({s.steps, BodyEvent::comes, id, shape});
-    s.live.push_back(id);
+    const auto number = static_cast<std::uint32_t>(s.bodies.size());
+    const BodyId id = s.slots.next();
+    if (slot_of(id) >= s.number_in.size()) s.number_in.resize(slot_of(id) + std::size_t{1});
+    s.bodies.push_back({shape, s.steps, Body::never, id});
+    s.waiting_events.push_back({s.steps, BodyEvent::comes, number, shape});
+    s.live.push_back(number);
     s.viewer_bodies.push_back({shape, {}});
     s.moves.push_back(0);
-    return id;
+    s.number_in[slot_of(id)] = number;
+    return s.slots.give();
 }
 
 void Writer::remove_body(BodyId body) {
     State& s = *state_;
-    const auto at = std::find(s.live.begin(), s.live.end(), body);
-    if (at == s.live.end()) throw InputError("recording: body " + std::to_string(body) + " is not there to be removed");
-    s.live.erase(at);
-    s.bodies[body].end_step = s.steps;
-    s.waiting_events.push_back({s.steps, BodyEvent::goes, body, 0});
+    const std::uint32_t number = s.number_of(body);
+    s.waiting_events.push_back({s.steps, BodyEvent::goes, number, 0});
+    s.live.erase(std::lower_bound(s.live.begin(), s.live.end(), number));
+    s.bodies[number].end_step = s.steps;
+    s.slots.take_back(slot_of(body));
 }
 
 void Writer::step(std::span<const Pose> poses, std::span<const Pair> pairs) {
@@ -275,8 +298,11 @@ void Writer::step(std::span<const Pose> poses, std::span<const Pair> pairs) {
 
 void Writer::step(const Scene& scene) {
     std::vector<Pose>& poses = state_->scene_poses;
-    poses.resize(state_->bodies.size());
-    for (const BodyId id : state_->live) poses[id] = scene.pose(id);
+    poses.resize(state_->slots.end());
+    for (const std::uint32_t number : state_->live) {
+        const BodyId id = state_->bodies[number].id;
+        poses[slot_of(id)] = scene.pose(id);
+    }
     state_->step(poses, scene.pairs());
 }
 

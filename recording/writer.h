@@ -36,12 +36,13 @@ public:
 
     /// Its index. Shapes must be added before the bodies that have them.
     std::uint32_t add_shape(const Shape& shape);
-    /// Takes part from the next step on; the id counts up from 0, as Scene::add gives it.
+    /// Takes part from the next step on. Bodies come and go here in the order in which they do in the scene; the id is
+    /// then the one that Scene::add gives.
     BodyId add_body(std::uint32_t shape);
     void remove_body(BodyId body);
 
-    /// One step: the poses of all bodies by id (those of removed ones are ignored) and the pairs, as a scene was given
-    /// them. Throws InputError for a pose that is not rigid or a pair of bodies that are not there.
+    /// One step: poses by slot (those of slots without a body are ignored) and the pairs, as a scene was given them.
+    /// Throws InputError for a pose that is not rigid or a pair of bodies that are not there.
     void step(std::span<const Pose> poses, std::span<const Pair> pairs);
     /// The step that the scene has just done. It must have the bodies that were added here.
     void step(const Scene& scene);

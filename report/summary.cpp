@@ -69,6 +69,21 @@ constexpr Known known[] = {
     {"hash", "Hash", "", "XXH64 over every contact of every step: the same on every device and thread count"},
 };
 
+/// The same of an entry of "work", of which the median step is shown.
+struct DeviceKnown {
+    const char *key, *name, *unit, *meaning;
+    double scale = 1;
+};
+
+constexpr DeviceKnown device_known[] = {
+    {"pairs", "Pairs", "pairs", "of this device, median step"},
+    {"launches", "Launches", "", "kernels started, median step"},
+    {"reads", "Reads", "", "times the host waited for the device, median step"},
+    {"bytes_up", "Copied to the device", "kB", "median step", 1e-3},
+    {"bytes_down", "Copied from the device", "kB", "median step", 1e-3},
+    {"busy_ms", "Device busy", "ms", "its kernels ran, median step"},
+};
+
 std::string as_text(const Json& value, double scale) {
     if (value.is_number_float() || (value.is_number() && scale != 1)) return readable(value.get<double>() * scale);
     if (value.is_number_unsigned() || value.is_number_integer()) return readable(value.get<double>());
@@ -179,6 +194,11 @@ void describe(const scenes::RunLog& log, Page& page) {
             const std::string text = std::string_view(k.key) == "seed" ? value.dump() : as_text(value, k.scale);
             page.rows.push_back({k.name, text, k.unit, k.meaning});
         }
+    for (const Json& device : take("work")) // of each device
+        for (const DeviceKnown& k : device_known)
+            if (const auto at = device.find(k.key); at != device.end())
+                page.rows.push_back({fmt::format("{}, {}", k.name, word(device, "device", "device")),
+                                     as_text((*at)["median"], k.scale), k.unit, k.meaning});
     for (const auto& [key, value] : figures)
         page.rows.push_back({key, as_text(value, 1), "", "as `run --json` prints it"});
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/scene.h>
 
+#include "body_slots.h"
 #include "broadphase/sweep_and_prune.h"
 #include "executor/float_environment.h"
 #include "pose_fault.h"
@@ -16,8 +17,26 @@ namespace raycontact {
 
 namespace {
 
+// A generation is told where it says something: users see none before a slot is given again.
+std::string name_of(BodyId body) {
+    const std::string name = "body " + std::to_string(slot_of(body));
+    return generation_of(body) == 0 ? name : name + " (generation " + std::to_string(generation_of(body)) + ")";
+}
+
 void refuse_faulty(const Pose& pose, BodyId body) {
-    if (const char* fault = pose_fault(pose)) throw InputError("body " + std::to_string(body) + ": " + fault);
+    if (const char* fault = pose_fault(pose)) throw InputError(name_of(body) + ": " + fault);
+}
+
+bool by_slots(const Pair& p, const Pair& q) {
+    return SlotPair(slot_of(p.first), slot_of(p.second)) < SlotPair(slot_of(q.first), slot_of(q.second));
+}
+
+// What a peak has taken is given back once a small part of it is in use.
+template <class Element>
+void cut_to(std::vector<Element>& list, std::size_t size) {
+    if (size >= list.size()) return;
+    list.resize(size);
+    if (list.capacity() > 4 * size + 1024) list.shrink_to_fit();
 }
 
 } // namespace
@@ -30,10 +49,20 @@ struct Scene::State {
 
     explicit State(const Settings& settings) : narrow(settings) {}
 
-    const Body& existing(BodyId body) const {
-        if (body >= bodies.size() || !bodies[body].shape)
-            throw InputError("body " + std::to_string(body) + " is not in the scene; add() gives the ids that are");
-        return bodies[body];
+    /// where: what was asked for, for the message.
+    Body& existing(BodyId body, const char* where) {
+        if (!slots.is_there(body)) refuse_missing(body, where);
+        return bodies[slot_of(body)];
+    }
+
+    [[noreturn]] void refuse_missing(BodyId body, const char* where) const {
+        const BodySlot slot = slot_of(body);
+        std::string text = std::string(where) + ": body " + std::to_string(slot) + " (generation "
+                           + std::to_string(generation_of(body)) + ") ";
+        if (!slots.was_given(body)) throw InputError(text + "is not in the scene; add() gives the ids that are");
+        text += "was removed";
+        if (slots.is_taken(slot)) text += ", and its slot has " + name_of(slots.id_in(slot)) + " now";
+        throw InputError(text + "; forget its id, or add it again and use the id that add() gives");
     }
 
     /// Threads sleep while a solver runs; of a few pairs they take no part.
@@ -43,13 +72,13 @@ struct Scene::State {
 
     void place_bodies() {
         if (narrow.shapes().pack()) {
-            for (BodyId id = 0; id < bodies.size(); ++id)
-                if (bodies[id].shape) placed[id].shape_index = narrow.shapes().index_of(bodies[id].shape.get());
+            for (BodySlot i = 0; i < bodies.size(); ++i)
+                if (bodies[i].shape) placed[i].shape_index = narrow.shapes().index_of(bodies[i].shape.get());
         }
-        for (BodyId id = 0; id < bodies.size(); ++id) {
-            if (!bodies[id].shape) continue;
-            placed[id].pose = bodies[id].pose;
-            placed[id].centred = centred_pose(*bodies[id].shape, bodies[id].pose);
+        for (BodySlot i = 0; i < bodies.size(); ++i) {
+            if (!bodies[i].shape) continue;
+            placed[i].pose = bodies[i].pose;
+            placed[i].centred = centred_pose(*bodies[i].shape, bodies[i].pose);
         }
     }
 
@@ -67,44 +96,68 @@ struct Scene::State {
     void find_pairs() {
         double reach = -1;
         boxes.clear();
-        for (BodyId id = 0; id < bodies.size(); ++id) {
-            if (!bodies[id].shape) continue;
-            const Shape& shape = *bodies[id].shape;
+        for (BodySlot i = 0; i < bodies.size(); ++i) {
+            if (!bodies[i].shape) continue;
+            const Shape& shape = *bodies[i].shape;
             const bool open = shape.data().header.closed == 0;
             if (open && reach < 0) reach = reach_into_open();
-            boxes.push_back(world_box(id, shape.box_min(), shape.box_max(), bodies[id].pose, open ? reach : 0));
+            boxes.push_back(world_box(i, shape.box_min(), shape.box_max(), bodies[i].pose, open ? reach : 0));
         }
-        broad.find_pairs(boxes, pairs);
+        pairs_stand = false;
+        broad.find_pairs(boxes, slot_pairs);
+        pairs.clear();
+        for (const auto& [a, b] : slot_pairs) pairs.emplace_back(slots.id_in(a), slots.id_in(b));
+        pairs_stand = true;
+    }
+
+    void check_pair(const Pair& pair, std::size_t i) const {
+        for (const BodyId body : {pair.first, pair.second})
+            if (!slots.is_there(body)) refuse_missing(body, ("Scene::step, pair " + std::to_string(i)).c_str());
+        if (pair.first == pair.second)
+            throw InputError("Scene::step, pair " + std::to_string(i) + ": " + name_of(pair.first)
+                             + " is paired with itself; pairs need two bodies");
     }
 
     // As a caller may give them: in any order, either way round, more than once.
     void take_pairs(std::span<const Pair> given) {
         const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
-        if (same && !removed) return; // they were looked through in an earlier step
-        for (const Pair& pair : given) {
-            existing(pair.first);
-            existing(pair.second);
-            if (pair.first == pair.second)
-                throw InputError("body " + std::to_string(pair.first)
-                                 + " is paired with itself; pairs need two bodies");
-        }
-        pairs.assign(given.begin(), given.end());
+        if (same && pairs_stand) return; // they were looked through in an earlier step
+        for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
+        pairs_stand = false;
+        if (!same) pairs.assign(given.begin(), given.end()); // given may be this very list
         for (Pair& pair : pairs)
-            if (pair.first > pair.second) std::swap(pair.first, pair.second);
-        if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
+            if (slot_of(pair.first) > slot_of(pair.second)) std::swap(pair.first, pair.second);
+        if (!std::is_sorted(pairs.begin(), pairs.end(), by_slots)) std::sort(pairs.begin(), pairs.end(), by_slots);
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-        removed = false;
+        slot_pairs.clear();
+        for (const auto& [a, b] : pairs) slot_pairs.emplace_back(slot_of(a), slot_of(b));
+        pairs_stand = true;
+    }
+
+    void find_contacts(double broad_ms) {
+        place_bodies();
+        narrow.step(placed, slot_pairs, contacts, stats);
+        stats.broad_ms = broad_ms;
+        slots.step_done();
+        cut_to_slots();
+    }
+
+    void cut_to_slots() {
+        cut_to(bodies, slots.end());
+        cut_to(placed, slots.end());
     }
 
     NarrowPhase narrow;
     SweepAndPrune broad;
-    std::vector<Body> bodies;
-    std::vector<PlacedBody> placed;
+    BodySlots slots;
+    std::vector<Body> bodies;       ///< by slot
+    std::vector<PlacedBody> placed; ///< likewise
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
+    std::vector<SlotPair> slot_pairs; ///< the same
     std::vector<Contact> contacts;
     StepStats stats;
-    bool removed = false; ///< a body, since pairs were looked through
+    bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
 };
 
 Scene::Scene(const Settings& settings) {
@@ -114,32 +167,39 @@ Scene::Scene(const Settings& settings) {
 Scene::~Scene() = default;
 
 BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
-    const auto id = static_cast<BodyId>(state_->bodies.size());
-    if (!shape) throw InputError("body " + std::to_string(id) + ": the shape is null");
+    State& s = *state_;
+    const BodyId id = s.slots.next();
+    const BodySlot slot = slot_of(id);
+    if (!shape) throw InputError(name_of(id) + ": the shape is null");
     refuse_faulty(pose, id);
-    state_->narrow.shapes().add(shape);
-    state_->placed.resize(id); // should an earlier add have failed half-way
-    state_->placed.push_back({shape.get(), state_->narrow.shapes().index_of(shape.get()), pose, pose});
-    state_->bodies.push_back({std::move(shape), pose});
-    return id;
+    // Room first: an add that fails leaves slots without a body.
+    if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
+    if (slot >= s.placed.size()) s.placed.resize(slot + std::size_t{1});
+    s.narrow.shapes().add(shape);
+    s.placed[slot] = {shape.get(), s.narrow.shapes().index_of(shape.get()), generation_of(id), pose, pose};
+    s.bodies[slot] = {std::move(shape), pose};
+    return s.slots.give();
 }
 
 void Scene::remove(BodyId body) {
-    state_->existing(body);
-    state_->narrow.shapes().remove(state_->bodies[body].shape.get());
-    state_->bodies[body].shape.reset();
-    state_->removed = true;
-    state_->placed[body].shape = nullptr;
+    State& s = *state_;
+    State::Body& gone = s.existing(body, "Scene::remove");
+    s.narrow.shapes().remove(gone.shape.get());
+    gone.shape.reset();
+    s.placed[slot_of(body)].shape = nullptr;
+    s.pairs_stand = false;
+    s.slots.take_back(slot_of(body));
+    s.cut_to_slots();
 }
 
 void Scene::set_pose(BodyId body, const Pose& pose) {
-    state_->existing(body);
+    State::Body& moved = state_->existing(body, "Scene::set_pose");
     refuse_faulty(pose, body);
-    state_->bodies[body].pose = pose;
+    moved.pose = pose;
 }
 
 const Pose& Scene::pose(BodyId body) const {
-    return state_->existing(body).pose;
+    return state_->existing(body, "Scene::pose").pose;
 }
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
@@ -152,12 +212,18 @@ const Settings& Scene::settings() const {
     return state_->narrow.settings();
 }
 const Shape& Scene::shape(BodyId body) const {
-    return *state_->existing(body).shape;
+    return *state_->existing(body, "Scene::shape").shape;
+}
+
+BodyId Scene::body_in(std::uint32_t slot) const {
+    if (!state_->slots.is_taken(slot))
+        throw InputError("Scene::body_in: slot " + std::to_string(slot)
+                         + " has no body; ask for slots of contacts before their bodies are removed");
+    return state_->slots.id_in(slot);
 }
 
 std::uint32_t Scene::body_count() const {
-    return static_cast<std::uint32_t>(std::count_if(state_->bodies.begin(), state_->bodies.end(),
-                                                    [](const auto& body) { return body.shape != nullptr; }));
+    return state_->slots.count();
 }
 
 std::span<const Contact> Scene::step() {
@@ -166,9 +232,7 @@ std::span<const Contact> Scene::step() {
     state_->find_pairs();
     const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     state_->call_threads(state_->pairs.size());
-    state_->place_bodies();
-    state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
-    state_->stats.broad_ms = broad;
+    state_->find_contacts(broad);
     return state_->contacts;
 }
 
@@ -176,9 +240,7 @@ std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
     state_->take_pairs(pairs);
-    state_->place_bodies();
-    state_->narrow.step(state_->placed, state_->pairs, state_->contacts, state_->stats);
-    state_->stats.broad_ms = 0;
+    state_->find_contacts(0);
     return state_->contacts;
 }
 

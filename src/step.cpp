@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace raycontact {
 
@@ -17,10 +18,12 @@ void NarrowPhase::set_settings(const Settings& settings) {
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                        std::vector<Contact>& contacts, StepStats& stats) {
     const auto start = std::chrono::steady_clock::now();
+    std::vector<DeviceWork> work = std::move(stats.work); // its memory is used again
     stats = {};
     try {
-        part_.begin(bodies, pairs, settings_);
-        placer_.run(executor(), settings_.direction, bodies, pairs, part_.end(), contacts);
+        schedule_.assign(pairs);
+        part_.begin(bodies, schedule_.pairs_of(0), settings_);
+        placer_.run(executor(), settings_.direction, bodies, schedule_.pairs_of(0), part_.end(), contacts);
         changes_.mark(contacts);
     } catch (...) {
         part_.forget(); // what a step that failed half-way kept is worth nothing
@@ -29,6 +32,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
     }
 
     part_.count(stats);
+    work.assign(1, part_.work());
+    stats.work = std::move(work);
     stats.contacts = contacts.size();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();

@@ -4,6 +4,7 @@
 #include "contacts/changes.h"
 #include "contacts/place.h"
 #include "part/part.h"
+#include "schedule/schedule.h"
 
 namespace raycontact {
 
@@ -22,12 +23,11 @@ public:
     void step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, std::vector<Contact>& contacts,
               StepStats& stats);
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
-    /// Of the last step, one of each device.
-    std::span<const DeviceWork> work() const { return {&part_.work(), 1}; }
 
 private:
     Settings settings_;
     Part part_;
+    Schedule schedule_;
     Placer placer_;
     Changes changes_;
 };

@@ -83,7 +83,7 @@ private:
     std::vector<rc::Contact> placed_;
     std::vector<rk::OrderedPair> ordered_;
     std::vector<rc::WorldBox> boxes_ = rb::make_boxes(4096), sorted_;
-    std::vector<rc::Pair> pairs_;
+    std::vector<rc::SlotPair> pairs_;
     std::shared_ptr<const rc::Shape> shape_;
 };
 

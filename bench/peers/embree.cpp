@@ -36,8 +36,8 @@ public:
         contacts_.clear();
         Found found;
         for (const Pair& pair : step.pairs) {
-            cast(pair.first, pair.second, found);
-            cast(pair.second, pair.first, found);
+            cast(slot_of(pair.first), slot_of(pair.second), found);
+            cast(slot_of(pair.second), slot_of(pair.first), found);
         }
         for (const Contact& contact : contacts_) found.depth_sum += static_cast<double>(contact.depth);
         found.contacts = contacts_.size();
@@ -55,7 +55,7 @@ private:
         float position[3], direction[3], reach;
     };
 
-    void cast(BodyId source, BodyId target, Found& found) {
+    void cast(std::uint32_t source, std::uint32_t target, Found& found) {
         const Pose pose = relative_pose(centred_[target], centred_[source]);
         float r[9];
         for (std::size_t i = 0; i < 9; ++i) r[i] = static_cast<float>(pose.rotation[i]);
@@ -80,7 +80,7 @@ private:
     }
 
     /// As a caller wants it: in the world, re-projected on the face's normal.
-    void add(BodyId source, BodyId target, const float* p, const float* d, const RTCRayHit& hit) {
+    void add(std::uint32_t source, std::uint32_t target, const float* p, const float* d, const RTCRayHit& hit) {
         const float n[3] = {hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z};
         const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         const auto& r = centred_[target].rotation;

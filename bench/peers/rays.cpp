@@ -31,7 +31,8 @@ public:
             placed.pose = step.poses[body];
             placed.centred = centred_pose(*placed.shape, placed.pose);
         }
-        pairs_ = step.pairs;
+        pairs_.clear();
+        for (const auto& [a, b] : step.pairs) pairs_.emplace_back(slot_of(a), slot_of(b));
         find(false);
     }
 

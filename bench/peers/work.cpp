@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace raycontact::bench {
@@ -162,11 +163,22 @@ Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions
                   + " bodies, steps " + std::to_string(options.first) + " to " + std::to_string(end - 1) + "; "
                   + reader.info().mesh_source;
     work.stride = options.stride;
+    std::vector<Pose> poses;
+    std::vector<Pair> pairs;
+    std::map<BodyId, BodyId> body_of; ///< of ids in the recorded scene
     for (std::uint32_t k = options.first; k < end; ++k) {
         WorkStep& step = work.steps.emplace_back();
-        reader.read_step(k, step.poses, step.pairs);
-        for (std::size_t body = 0; body < step.poses.size(); ++body)
-            if (!reader.bodies()[body].alive(k)) step.poses[body] = {}; // arbitrary there, and no pair asks for it
+        reader.read_step(k, poses, pairs);
+        // Here every body keeps the place it has in the recording; one that is not there has no pair.
+        step.poses.resize(reader.bodies().size());
+        for (BodyId body = 0; body < step.poses.size(); ++body) {
+            const recording::Body& recorded = reader.bodies()[body];
+            if (!recorded.alive(k)) continue;
+            step.poses[body] = poses[slot_of(recorded.id)];
+            body_of[recorded.id] = body;
+        }
+        for (const auto& [a, b] : pairs) step.pairs.push_back(std::minmax(body_of.at(a), body_of.at(b)));
+        std::sort(step.pairs.begin(), step.pairs.end());
     }
     return work;
 }

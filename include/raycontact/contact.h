@@ -15,7 +15,7 @@ enum class VertexBody : std::uint32_t { a = 0, b = 1 };
 
 /// One ray that found the other mesh from inside (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and 3.2).
 struct Contact {
-    std::uint32_t body_a = 0;           ///< body_a < body_b
+    std::uint32_t body_a = 0;           ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
     std::uint32_t vertex = 0;           ///< source vertex, index of its file
@@ -27,9 +27,10 @@ struct Contact {
     bool is_new = true;                 ///< the step before had no contact with this key in this pair
 };
 
-/// A contact that the step before had and this one has not.
+/// A contact that the step before had and this one has not. To be read before the next add(): the slot of a body that
+/// was removed goes to another.
 struct LostContact {
-    std::uint32_t body_a = 0; ///< body_a < body_b
+    std::uint32_t body_a = 0; ///< its slot; body_a < body_b
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
     std::uint32_t vertex = 0; ///< source vertex, index of its file

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/body_id.h>
 #include <raycontact/contact.h>
+#include <raycontact/device.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
@@ -9,12 +11,11 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace raycontact {
 
-using BodyId = std::uint32_t;
-
-/// An unordered pair of bodies, first < second.
+/// An unordered pair of bodies; the first has the lower slot.
 using Pair = std::pair<BodyId, BodyId>;
 
 /// What the last step did.
@@ -44,6 +45,7 @@ struct StepStats {
     double depth_max = 0;            ///< metres
     double broad_ms = 0;             ///< our broad phase; 0 when pairs were given
     double narrow_ms = 0;            ///< everything after the broad phase
+    std::vector<DeviceWork> work;    ///< one entry a device
 };
 
 /// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.
@@ -55,13 +57,18 @@ public:
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    /// Ids count up from 0 and are never given twice. Throws InputError for a pose that is not finite and rigid.
+    /// Gives the lowest free slot; no id is ever given twice. The slot of a body that was in a step is free again after
+    /// the next one, that of any other at once. Throws InputError for a pose that is not finite and rigid.
     BodyId add(std::shared_ptr<const Shape> shape, const Pose& pose = {});
+    /// From here on the id is refused: like every function that takes one, throws InputError naming a body that is not
+    /// in the scene. Until the next step is done no other body has its slot.
     void remove(BodyId body);
     /// Throws InputError naming the body when the pose is not finite and rigid; the old pose then stays.
     void set_pose(BodyId body, const Pose& pose);
     const Pose& pose(BodyId body) const;
     const Shape& shape(BodyId body) const;
+    /// The body that a contact names. Throws InputError where that slot has none, as when it has been removed since.
+    BodyId body_in(std::uint32_t slot) const;
     std::uint32_t body_count() const;
     /// Changes method, caster, direction or thresholds between two steps; nothing that another method kept is used.
     /// Throws InputError for settings that make no sense, or for another device or number of threads than before.
@@ -79,7 +86,7 @@ public:
     /// Contacts of the step before that are gone, in the same order; `Contact::is_new` says which ones came.
     std::span<const LostContact> lost_contacts() const;
     const StepStats& stats() const;
-    /// The pairs of the last step, sorted.
+    /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;
 
 private:

@@ -35,7 +35,7 @@ struct Settings {
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
-    /// chosen again as it moves; a pair too fast for `predictive` is then left to `certified` (docs/design.md). With
+    /// chosen again as it moves; a pair too fast for `predictive` is then cast in full in each step (docs/design.md). With
     /// `certified` no contact depends on it.
     std::optional<double> displacement_threshold;
     /// How far ahead of a vertex its predictive ray looks, in displacement thresholds; at least 1 (paper equation 1).

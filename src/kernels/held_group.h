@@ -10,7 +10,7 @@
 typedef struct {
     Group rays;
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
-    float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP], back[RAYS_IN_GROUP], turn[RAYS_IN_GROUP];
+    float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
     uint triangle_slot[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
     uint cap[RAYS_IN_GROUP];           // of the triangle
@@ -32,8 +32,7 @@ DEVICE void clear_held(HeldGroup* group) {
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
-        group->rays.reach[r] = group->safe[r] = group->limit[r] = group->back[r] = group->turn[r] = 0.0f;
-        group->margin[r] = 0.0f;
+        group->rays.reach[r] = group->safe[r] = group->limit[r] = group->margin[r] = 0.0f;
         group->triangle_slot[r] = group->triangle[r] = NONE;
         group->cap[r] = group->asks_cap[r] = 0u;
     }
@@ -56,8 +55,6 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     }
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
-    group->back[r] = held->back;
-    group->turn[r] = held->turn;
     group->margin[r] = holder->margin;
     group->asks_cap[r] = holder->asks_caps;
     group->triangle_slot[r] = held->triangle;
@@ -86,25 +83,20 @@ DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT
 }
 
 // First whether any part of the ray has left its tube: none of its points has moved farther than one of its ends. Then
-// what the triangle says, as hit_lane() would have it, and whether that is all there is to say. Where all that is near
-// can only be left, the ray leaves it once at most: by the triangle that was met, if the ray's line still passes
-// through it, and by no edge that rounding could move it across.
+// what the triangle says, as hit_lane() would have it, and whether that is all there is to say.
 DEVICE void ask_held(HeldGroup* group) {
     Group* rays = &group->rays;
     frame_group(rays, false);
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = rays->position[0][r], py = rays->position[1][r], pz = rays->position[2][r];
-        const float limit = group->limit[r], turn = group->turn[r];
+        const float limit = group->limit[r];
         const float x = px - group->position[0][r], y = py - group->position[1][r], z = pz - group->position[2][r];
         const float turned_x = rays->direction[0][r] - group->direction[0][r];
         const float turned_y = rays->direction[1][r] - group->direction[1][r];
         const float turned_z = rays->direction[2][r] - group->direction[2][r];
         const float far_x = x + limit * turned_x, far_y = y + limit * turned_y, far_z = z + limit * turned_z;
         const float start = (x * x + y * y) + z * z, end = (far_x * far_x + far_y * far_y) + far_z * far_z;
-        const float turned = (turned_x * turned_x + turned_y * turned_y) + turned_z * turned_z;
-        const uint leaves = (uint)(turn > 0.0f);
-        const uint in_tube = (uint)(root_of(start > end ? start : end) < group->safe[r])
-                             & ((leaves ^ 1u) | (uint)(turned <= turn * turn));
+        const uint in_tube = (uint)(root_of(start > end ? start : end) < group->safe[r]);
 
         const uint to_x = rays->axis[0][r], to_y = rays->axis[1][r], to_z = rays->axis[2][r];
         const float shear_x = rays->shear[0][r], shear_y = rays->shear[1][r], shear_z = rays->shear[2][r];
@@ -133,26 +125,21 @@ DEVICE void ask_held(HeldGroup* group) {
         const uint within = (uint)(t <= least) & (uint)(t < UNBOUNDED);
         const uint taken = within & ((back & (uint)(t >= 0.0f)) | (front & (back ^ 1u) & (uint)(t >= -tolerance)));
         const uint met = taken & (away ^ 1u) & (uint)(area_of(e) != 0.0f) & (uint)(group->triangle_slot[r] != NONE);
-        const uint in_limit = (uint)(t + LIMIT_TOLERANCES * tolerance <= limit);
-        const uint alone = (met & in_limit) | (uint)(limit >= reach);
+        const uint alone = (met & (uint)(t + LIMIT_TOLERANCES * tolerance <= limit)) | (uint)(limit >= reach);
 
         const float near = EDGE_TOLERANCES * tolerance;
         const uint clear = (uint)(e.u < -near * (magnitude_of(x2 - x1) + magnitude_of(y2 - y1)))
                            & (uint)(e.v < -near * (magnitude_of(x0 - x2) + magnitude_of(y0 - y2)))
                            & (uint)(e.w < -near * (magnitude_of(x1 - x0) + magnitude_of(y1 - y0)));
-        const uint leaving = clear & (uint)(t >= -group->back[r]) & in_limit;
-
-        const uint known = in_tube & ((leaves & leaving) | ((leaves ^ 1u) & alone));
-        // Where the mesh can only be left, the triangle is one that does not lie apart.
         const uint left = within & (uint)(t >= 0.0f) & (uint) !(t > reach);
-        const uint hit = known & ((leaves & left) | ((leaves ^ 1u) & met & back & (uint) !(t > reach)));
+        const uint known = in_tube & alone;
         group->edge[0][r] = e.w; // as Face numbers them
         group->edge[1][r] = e.u;
         group->edge[2][r] = e.v;
         group->is_clear[r] = clear;
         group->is_left[r] = left;
         group->is_known[r] = known;
-        group->is_hit[r] = hit;
+        group->is_hit[r] = known & met & back & (uint) !(t > reach);
         group->distance[r] = t;
     }
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that need not be cast again (docs/certified.md). What is known by a tube (tube.h) lasts until a point of the ray
-// has moved as far as that is wide: either one triangle alone can be met, or all that are near can only be met from
-// inside, and then one at most is. What a triangle's cap says is asked anew in each step (cap_group.h).
+// has moved as far as that is wide: one triangle alone can be met, or none. What a triangle's cap says is asked anew in
+// each step (cap_group.h).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
-#define MOST_TURN 0.5f // of the least cosine: how far the direction may turn; so `back` moves by half of it at most
 
 // The place of a ray among those that its pair held, which ascend by slot, or of the first one after it. likely: its
 // place among those of this step, mostly the same.
@@ -28,7 +27,7 @@ DEVICE Held nothing_held(uint slot) {
     held.slot = slot;
     held.triangle = NONE;
     held.safe = 0.0f;
-    held.limit = held.back = held.turn = 0.0f;
+    held.limit = 0.0f;
     for (int i = 0; i < 3; ++i) held.position[i] = held.direction[i] = 0.0f;
     return held;
 }
@@ -41,7 +40,7 @@ DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
 // What is known of a ray from now on, where it had to be cast.
 DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+                           GLOBAL const TriangleBlock* RESTRICT blocks) {
     Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
@@ -50,20 +49,13 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
     const float met = own->back < own->front ? own->back : own->front;
     const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
     if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
-    // A vertex that nothing was met from may be a little outside, so what it left lies behind.
-    const float back = shape->outward != 0u && met >= UNBOUNDED ? 0.5f * holder->radius : 0.0f;
-    const Tube tube = tube_of(ray, back, end, holder->radius);
-    const Neighbours found = search_tube(&tube, shape->outward, shape, nodes, blocks, normals);
-    float safe = found.second - holder->margin;
-    const float leaving = holder->radius - MOST_TURN * back - holder->margin;
-    const bool leaves = found.facing > LEAST_FACING && found.least_of_axis <= 0.0f && leaving > safe;
-    if (leaves) safe = leaving;
+    const Tube tube = tube_of(ray, end, holder->radius);
+    const Neighbours found = search_tube(&tube, shape, nodes, blocks);
+    const float safe = found.second - holder->margin;
     if (safe > WORTH_HOLDING * holder->radius) {
         held.safe = safe;
         held.limit = end;
-        held.triangle = leaves ? found.slot_of_axis : found.slot;
-        held.back = leaves ? back : 0.0f;
-        held.turn = leaves ? MOST_TURN * found.facing : 0.0f;
+        held.triangle = found.slot;
     } else {
         held.limit = WAIT_STEPS;
     }
@@ -99,7 +91,7 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
             held = nothing_held(slot);
             held.triangle = slot_met;
         } else if (!(waits > 0.0f)) {
-            held = seek_tube(&source, own + r, holder, shape, nodes, blocks, normals);
+            held = seek_tube(&source, own + r, holder, shape, nodes, blocks);
         }
         held.slot = slot;
         after[at] = held;

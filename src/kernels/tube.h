@@ -1,42 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// The neighbourhood of a ray, up to a little behind what it met: which triangle is nearest, how far all others are, and
-// whether all of them face alike.
+// The neighbourhood of a ray, up to a little behind what it met: which triangle is nearest, and how far all others are.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
-
-#define LEAST_FACING 0.125f // cosine, below which triangles do not count as facing alike
 
 typedef struct {
     float origin[3];
     float along[3], u[3], v[3]; // unit vectors, square to each other
     float length;
-    float back; // of it, before the ray's origin
     float radius;
     float box[6]; // around the tube: lower x y z, upper x y z
 } Tube;
 
-// The triangle nearest to the ray, and how far the ray is from every other; the one nearest to the whole axis, and how
-// all in the tube face. Slots: TRIANGLE_LANES * block + lane.
+// The triangle nearest to the ray, and how far the ray is from every other. slot: TRIANGLE_LANES * block + lane.
 typedef struct {
     float least, second;
     uint slot;
-    float least_of_axis;
-    uint slot_of_axis;
-    float facing; // the least cosine of the axis and an outward normal
 } Neighbours;
 
-// From `back` before the ray's origin on, to `end`: in lengths of its direction.
-DEVICE Tube tube_of(const SourceRay* ray, float back, float end, float radius) {
+// To `end`, in lengths of the ray's direction.
+DEVICE Tube tube_of(const SourceRay* ray, float end, float radius) {
     Tube tube;
     tube.radius = radius;
     const float* d = ray->direction;
     // Rotations are rigid to 1e-4 only: not quite of unit length, and distances count in lengths of it.
     const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
     for (int i = 0; i < 3; ++i) {
-        tube.origin[i] = ray->position[i] - back * d[i];
+        tube.origin[i] = ray->position[i];
         tube.along[i] = d[i] / size;
     }
-    tube.length = (back + end) * size;
-    tube.back = back * size;
+    tube.length = end * size;
     const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
     const int across = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
     const int next = across == 2 ? 0 : across + 1, last = next == 2 ? 0 : next + 1;
@@ -65,15 +56,14 @@ DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv
 
 // No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
 // seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
-DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index,
-                          GLOBAL const Packed3* RESTRICT normals) {
-    float apart[TRIANGLE_LANES], off_start[TRIANGLE_LANES];
+DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index) {
+    float apart[TRIANGLE_LANES];
     int nearer[TRIANGLE_LANES];
     const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
     const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
     const float px = tube->u[0], py = tube->u[1], pz = tube->u[2];
     const float qx = tube->v[0], qy = tube->v[1], qz = tube->v[2];
-    const float length = tube->length, bound = found->facing > LEAST_FACING ? tube->radius : found->second;
+    const float length = tube->length, bound = found->second;
     FOR_LANES(k, TRIANGLE_LANES) {
         const float ax = block->corner[0][k] - ox, ay = block->corner[1][k] - oy, az = block->corner[2][k] - oz;
         const float bx = block->corner[3][k] - ox, by = block->corner[4][k] - oy, bz = block->corner[5][k] - oz;
@@ -106,39 +96,26 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
         const float gap = (above > below ? above : below) * scale;
         best = gap > best ? gap : best;
         apart[k] = best;
-        off_start[k] = tube->back - last;
         nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
     }
     for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
         const uint lane = lowest_bit(left);
-        if (found->facing > LEAST_FACING) {
-            const Packed3 normal = normals[block->triangle[lane]];
-            const float facing = (dx * normal.x + dy * normal.y) + dz * normal.z;
-            found->facing = facing < found->facing ? facing : found->facing;
-        }
-        if (apart[lane] < found->least_of_axis) {
-            found->least_of_axis = apart[lane];
-            found->slot_of_axis = TRIANGLE_LANES * index + lane;
-        }
-        const float off = apart[lane] > off_start[lane] ? apart[lane] : off_start[lane];
-        if (off < found->least) {
+        if (apart[lane] < found->least) {
             found->second = found->least;
-            found->least = off;
+            found->least = apart[lane];
             found->slot = TRIANGLE_LANES * index + lane;
-        } else if (off < found->second) {
-            found->second = off;
+        } else if (apart[lane] < found->second) {
+            found->second = apart[lane];
         }
     }
 }
 
-// Of all triangles in the tube. faced: whether `facing` is asked for.
-DEVICE_CALL Neighbours search_tube(const Tube* tube, uint faced, GLOBAL const ShapeHeader* RESTRICT shape,
-                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                                   GLOBAL const Packed3* RESTRICT normals) {
+// Of all triangles in the tube.
+DEVICE_CALL Neighbours search_tube(const Tube* tube, GLOBAL const ShapeHeader* RESTRICT shape,
+                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     Neighbours found;
-    found.least = found.second = found.least_of_axis = tube->radius;
-    found.slot = found.slot_of_axis = NONE;
-    found.facing = faced != 0u ? 1.0f : 0.0f;
+    found.least = found.second = tube->radius;
+    found.slot = NONE;
     GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
     Descent way = begin_descent(children_in(tube->box, tree));
     for (;;) {
@@ -146,8 +123,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, uint faced, GLOBAL const Sh
             const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
                 const uint index = child & ~LEAF;
-                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index,
-                              normals + shape->normal_first);
+                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index);
             } else {
                 go_down(&way, child, children_in(tube->box, tree + child));
             }

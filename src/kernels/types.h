@@ -176,21 +176,17 @@ typedef struct {
 } Look;
 WIRE_SIZE(Look, 16);
 
-// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. turn:
-// not 0 where the triangles around it can only be left, so that it meets one of them at most; then its direction may
-// change by no more than that. Without a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the
-// ray count in lengths of its direction.
+// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without a
+// tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its direction.
 typedef struct {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
     float safe;        // metres; 0: it has no tube
     float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
-    float back;        // before the ray's origin: where its tube begins
-    float turn;        // length of the change
     float position[3]; // when the tube was sought
     float direction[3];
 } Held;
-WIRE_SIZE(Held, 48);
+WIRE_SIZE(Held, 40);
 
 // A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
 // to be sought; 0: none, the pair moves too fast. asks_caps: of the target.

@@ -41,8 +41,10 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
                 continue;
             }
             const Pose& now = bodies[i].centred;
+            // Steps of a method that asks for no motion may have passed, and a body with them.
+            const bool known = last.known && last.generation == bodies[i].generation;
             const double shear = shear_bound(now);
-            const Pose& before = last.known ? last.centred : now;
+            const Pose& before = known ? last.centred : now;
             const Vec3 shift = now.translation - before.translation;
             round_to(body.shift, shift);
             round_to(body.centre, now.translation);
@@ -51,7 +53,7 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
             body.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
             body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
             body.reach = static_cast<float>(bodies[i].shape->data().reach);
-            last = {now, shear, true};
+            last = {now, shear, bodies[i].generation, true};
         }
     });
 }

@@ -44,6 +44,7 @@ private:
     struct Last {
         Pose centred; ///< of the last step
         double shear = 0;
+        std::uint32_t generation = 0;
         bool known = false;
     };
     std::vector<Body> bodies_;

@@ -16,6 +16,7 @@ namespace raycontact {
 struct PlacedBody {
     const Shape* shape = nullptr;
     kernels::uint shape_index = 0; ///< in the shape store
+    std::uint32_t generation = 0;  ///< tells it from another that had its slot
     Pose pose;                     ///< of the body frame
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,14 +23,28 @@ public:
         const auto keep = [this](std::size_t old, std::size_t now, std::size_t count) {
             std::copy_n(hot_.begin() + std::ptrdiff_t(old), count, next_hot_.begin() + std::ptrdiff_t(now));
         };
-        const auto open = [this](std::size_t now, std::uint32_t slot) {
+        const auto open = [this, pairs](std::size_t now, std::uint32_t slot) {
             if (slot == states_.size()) states_.emplace_back();
-            states_[slot] = State{};
-            next_hot_[now] = Hot{};
+            const auto moved = std::find_if(incoming_.begin(), incoming_.end(),
+                                            [&](const Incoming& other) { return other.pair == pairs[now]; });
+            const bool fresh = moved == incoming_.end();
+            states_[slot] = fresh ? State{} : moved->state;
+            next_hot_[now] = fresh ? Hot{} : moved->hot;
         };
         const bool changed = slots_.match(pairs, keep, open, [&](std::uint32_t slot) { closed(states_[slot]); });
         if (changed) hot_.swap(next_hot_);
+        incoming_.clear();
     }
+
+    /// The place of a pair of the last match; none: it was not open.
+    std::optional<std::size_t> place(const SlotPair& pair) const {
+        const std::span<const SlotPair> open = slots_.pairs();
+        const auto at = std::lower_bound(open.begin(), open.end(), pair);
+        if (at == open.end() || *at != pair) return std::nullopt;
+        return static_cast<std::size_t>(at - open.begin());
+    }
+    /// What another table kept for a pair that the next match opens.
+    void put_in(const SlotPair& pair, const State& state, const Hot& hot) { incoming_.push_back({pair, state, hot}); }
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_.slot(i)]; }
@@ -63,6 +78,7 @@ public:
         slots_.clear();
         states_.clear();
         hot_.clear();
+        incoming_.clear();
     }
 
     std::uint64_t bytes() const {
@@ -76,7 +92,14 @@ private:
         for (std::size_t at = 0; at < sizeof(State); at += line) __builtin_prefetch(bytes + at);
     }
 
+    struct Incoming {
+        SlotPair pair;
+        State state;
+        Hot hot;
+    };
+
     PairSlots slots_;
+    std::vector<Incoming> incoming_;
     std::vector<State> states_;       ///< by slot
     std::vector<Hot> hot_, next_hot_; ///< by pair; the other one is only ever a buffer
 };

@@ -63,6 +63,15 @@ std::span<const kernels::LocalContact> Part::end() {
     return local_.contacts();
 }
 
+std::vector<std::byte> Part::take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
+    if (settings_ == nullptr || finds(*settings_) != Finds::coherent) return {};
+    return coherent_.take_out(*device_, shapes_, bodies, pairs);
+}
+
+void Part::put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) coherent_.put_in(*device_, shapes_, bodies, bytes);
+}
+
 void Part::count(StepStats& stats) const {
     stats.pairs += pairs_.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];

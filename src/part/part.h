@@ -29,6 +29,12 @@ public:
     /// The contacts of the step, by pair: LocalContact::pair is 2 x place in `pairs` + direction. Valid until begin().
     std::span<const kernels::LocalContact> end();
 
+    /// What is kept of some pairs of the last step, which are to be another part's: that one goes on with it as this
+    /// one would have. bodies as in the last step. Empty where the contacts do not depend on what is kept.
+    std::vector<std::byte> take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs);
+    /// Before the begin() that first has these pairs; bodies as there.
+    void put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
+
     /// Adds what the last step did.
     void count(StepStats& stats) const;
     const DeviceWork& work() const { return work_; }

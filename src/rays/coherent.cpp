@@ -7,6 +7,8 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cstring>
+#include <stdexcept>
 
 namespace raycontact {
 
@@ -16,6 +18,26 @@ namespace {
 constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
 // Of the smaller body's diagonal: a pair that moves farther in a step is not worth following.
 constexpr double farthest = 0.015;
+
+template <class T>
+void put_bytes(std::vector<std::byte>& bytes, const T& value) {
+    const auto* const from = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), from, from + sizeof value);
+}
+
+template <class T>
+T take_bytes(std::span<const std::byte>& bytes) {
+    if (bytes.size() < sizeof(T)) throw std::logic_error("the state of a pair that changes its device is cut off");
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    bytes = bytes.subspan(sizeof value);
+    return value;
+}
+
+// Slots of vertices count from here in the shape store of a device.
+kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
+    return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertex_block_first;
+}
 
 } // namespace
 
@@ -261,6 +283,55 @@ void CoherentRays::cast(const Update& update, RayBatch& batch) {
     batch.numbers = active_;
     follow(update, batch);
     list_candidates(update, batch);
+}
+
+std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& shapes,
+                                              std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
+    std::vector<std::byte> bytes;
+    if (packed_ != shapes.packed()) return bytes;
+    std::vector<kernels::Candidate> candidates(candidates_kept_);
+    const Piece piece = candidates_.piece(candidates);
+    if (!candidates.empty()) device.queue().read({&piece, 1});
+    for (const SlotPair& pair : pairs) {
+        const std::optional<std::size_t> place = table_.place(pair);
+        if (!place) continue;
+        Moving moving{pair.first, pair.second, table_.state(*place), table_.hot(*place)};
+        moving.state.looked = step_ - moving.state.looked; // as long ago; every device counts its own steps
+        put_bytes(bytes, moving);
+        for (std::uint32_t d = 0; d < 2; ++d) {
+            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
+            const Kept& own = moving.hot.kept[d];
+            for (kernels::Candidate candidate : std::span(candidates).subspan(own.first, own.count)) {
+                candidate.slot -= first;
+                put_bytes(bytes, candidate);
+            }
+        }
+    }
+    return bytes;
+}
+
+void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                          std::span<const std::byte> bytes) {
+    if (packed_ != shapes.packed()) clear();
+    packed_ = shapes.packed();
+    candidates_.extend(device, candidates_kept_);
+    std::vector<kernels::Candidate> candidates;
+    while (!bytes.empty()) {
+        auto moving = take_bytes<Moving>(bytes);
+        moving.state.looked = step_ - moving.state.looked;
+        for (std::uint32_t d = 0; d < 2; ++d) {
+            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? moving.first : moving.second);
+            Kept& own = moving.hot.kept[d];
+            own.first = static_cast<std::uint32_t>(candidates_kept_ + candidates.size());
+            for (std::uint32_t i = 0; i < own.count; ++i) {
+                candidates.push_back(take_bytes<kernels::Candidate>(bytes));
+                candidates.back().slot += first;
+            }
+        }
+        table_.put_in({moving.first, moving.second}, moving.state, moving.hot);
+    }
+    candidates_.append(device, std::span<const kernels::Candidate>(candidates));
+    candidates_kept_ += candidates.size();
 }
 
 void CoherentRays::count(StepStats& stats) const {

@@ -9,6 +9,7 @@
 #include <raycontact/scene.h>
 
 #include <array>
+#include <cstddef>
 
 namespace raycontact {
 
@@ -21,6 +22,14 @@ public:
     /// Once the batch has been read: what each pair follows in the next step.
     void keep(const Update& update);
     void clear() { table_.clear(); }
+
+    /// What is kept of some pairs, for another device to go on with: those of the last step alone. Between two steps;
+    /// bodies as in the last.
+    std::vector<std::byte> take_out(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                                    std::span<const SlotPair> pairs);
+    /// Before the step that first has these pairs. bodies as in that step.
+    void put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                std::span<const std::byte> bytes);
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
@@ -48,6 +57,11 @@ private:
     struct Hot {
         double slack = -1; ///< metres that the pair may move, by a cheap bound, before the exact one is asked
         Kept kept[2];
+    };
+    struct Moving { ///< a pair between two devices; its candidates follow
+        BodySlot first, second;
+        PairState state;
+        Hot hot;
     };
     static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
                                  double follows, bool predictive);

@@ -63,7 +63,8 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         const double clock = own.clock + moved[d];
         // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
         stale[d] = fresh || !(clock < own.expiry);
-        wakes[d] = stale[d] || !(clock < own.wake);
+        // As the kernel will ask: nothing is looked at but from the reference pose.
+        wakes[d] = stale[d] || !(double(static_cast<float>(clock)) < own.wake);
         slack.casts = slack.casts || own.rays.count > 0;
         if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
     }

@@ -2,6 +2,11 @@
 // Rays, sweeps and contact tests of btCollisionWorld against our shape.
 #include "test_world.h"
 
+#include <query.h>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,6 +71,30 @@ TEST(Query, ContactPairTestOfTwoMeshes) {
     EXPECT_EQ(found.normal.z() > 0, found.first == &high); // from B to A
     w.world.contactTest(&high, other);
     EXPECT_EQ(other.count, 16);
+}
+
+// Two bodies a call, for one step: each takes the slots of those before.
+TEST(Query, AHundredThousandCallsNeedFourSlots) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
+    Settings settings;
+    settings.threads = 1;
+    bullet::ShapeCache shapes;
+    bullet::Queries queries(settings, shapes);
+    const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
+    const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
+    btPersistentManifold* manifold = w.dispatcher.getNewManifold(&low, &high);
+    for (int i = 0; i < 100000; ++i) {
+        btManifoldResult result(&a, &b);
+        result.setPersistentManifold(manifold);
+        queries.run(a, b, result);
+        ASSERT_EQ(queries.scene().contacts().size(), 4u) << i;
+        ASSERT_LT(queries.scene().contacts().front().body_b, 4u) << i;
+    }
+    EXPECT_EQ(manifold->getNumContacts(), 4);
+    EXPECT_EQ(queries.scene().body_count(), 0u);
+    w.dispatcher.releaseManifold(manifold);
 }
 
 TEST(Query, ContactPairTestWithPlaneBothWays) {

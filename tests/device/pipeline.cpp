@@ -29,10 +29,10 @@ PlacedBody place(const Work& work, std::size_t shape, const Pose& pose) {
 }
 
 // The pairs of [first, last) that are there in both directions.
-std::vector<Pair> whole_pairs(std::size_t first, std::size_t last) {
-    std::vector<Pair> pairs;
+std::vector<SlotPair> whole_pairs(std::size_t first, std::size_t last) {
+    std::vector<SlotPair> pairs;
     for (std::size_t i = (first + 1) / 2; i < (last + 1) / 2; ++i)
-        pairs.emplace_back(static_cast<BodyId>(2 * i), static_cast<BodyId>(2 * i + 1));
+        pairs.emplace_back(static_cast<BodySlot>(2 * i), static_cast<BodySlot>(2 * i + 1));
     return pairs;
 }
 
@@ -76,7 +76,7 @@ std::size_t known_by_caps(const std::vector<Written>& trace, std::size_t rays) {
 // A first look, rays repeated, a look at blocks that woke up, and new lists in the place of old ones.
 void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
                    std::size_t last, Outcome& outcome) {
-    const std::vector<Pair> pairs = whole_pairs(first, last);
+    const std::vector<SlotPair> pairs = whole_pairs(first, last);
     CertifiedRays certified;
     Gather gather;
     Array<kernels::Hit> hits;
@@ -97,7 +97,7 @@ void run_certified(TracingDevice& tracing, const ShapeStore& store, const Work& 
 // Rays in full, rays followed, and rays in full again; by either caster.
 void run_coherent(TracingDevice& tracing, const ShapeStore& store, const Work& work, std::size_t first,
                   std::size_t last) {
-    const std::vector<Pair> pairs = whole_pairs(first, last);
+    const std::vector<SlotPair> pairs = whole_pairs(first, last);
     for (const Caster caster : {Caster::bvh, Caster::basic}) {
         Settings settings;
         settings.method = Method::predictive;
@@ -148,8 +148,8 @@ Work make_work(std::size_t random_pairs, bool fine) {
             bodies.push_back(place(work, partner, beside));
         }
     }
-    std::vector<Pair> pairs;
-    for (BodyId i = 0; i < bodies.size(); i += 2) pairs.emplace_back(i, i + 1);
+    std::vector<SlotPair> pairs;
+    for (BodySlot i = 0; i < bodies.size(); i += 2) pairs.emplace_back(i, i + 1);
     Executor executor(1);
     order_pairs(executor, bodies, pairs, work.pairs);
     return work;

@@ -8,10 +8,12 @@
 #include <atomic>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <new>
 
 namespace {
 std::atomic<std::uint64_t> allocations{0};
+std::atomic<std::int64_t> bytes_held{0};
 std::atomic<std::int64_t> allocations_left{-1}; // before one fails; below 0: none does
 
 void* counted(std::size_t bytes, std::size_t alignment) {
@@ -19,7 +21,13 @@ void* counted(std::size_t bytes, std::size_t alignment) {
     if (allocations_left >= 0 && allocations_left-- == 0) throw std::bad_alloc();
     void* memory = nullptr;
     if (posix_memalign(&memory, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
+    bytes_held += static_cast<std::int64_t>(malloc_usable_size(memory));
     return memory;
+}
+
+void free_counted(void* memory) {
+    bytes_held -= static_cast<std::int64_t>(malloc_usable_size(memory));
+    std::free(memory);
 }
 } // namespace
 
@@ -30,16 +38,16 @@ void* operator new(std::size_t bytes, std::align_val_t alignment) {
     return counted(bytes, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    free_counted(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    free_counted(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    free_counted(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    free_counted(memory);
 }
 
 namespace raycontact {
@@ -48,9 +56,9 @@ namespace {
 // Bodies that swing back and forth, so that every state returns.
 void move(Scene& scene, int step) {
     const int phase = step % 16;
-    for (BodyId body = 0; body < 64; ++body) {
+    for (std::uint32_t body = 0; body < 64; ++body) {
         const double sway = 0.02 * (phase < 8 ? phase : 16 - phase);
-        const BodyId column = body % 4, row = body / 4 % 4, layer = body / 16;
+        const std::uint32_t column = body % 4, row = body / 4 % 4, layer = body / 16;
         const Vec3 at{0.7 * column + sway, 0.7 * row - sway, 0.7 * layer};
         scene.set_pose(body, pose_from_quaternion(at, 1, 0.1 * body, sway, 0.3));
     }
@@ -118,12 +126,54 @@ TEST(Allocations, NoneForPairsThatReturn) {
     }
 }
 
+// Bodies that come and go, with steps and without: not a byte more, and lists by slot are no longer.
+TEST(Allocations, NoneForAMillionBodiesThatComeAndGo) {
+    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    Settings settings;
+    settings.threads = 1;
+    Scene scene(settings);
+    for (BodyId body = 0; body < 8; ++body)
+        scene.add(shape, pose_from_quaternion({0.7 * double(body), 0, 0}, 1, 0, 0, 0));
+    const auto round = [&](int i) {
+        BodyId guests[4];
+        for (int k = 0; k < 4; ++k)
+            guests[k] = scene.add(shape, pose_from_quaternion({0.7 * k, 0.5, 0.1 * (i % 4)}, 1, 0.1 * k, 0, 0));
+        if (i % 64 == 0) scene.step();
+        if (i % 64 == 1) scene.step(); // with others
+        for (const BodyId guest : guests) {
+            EXPECT_LT(slot_of(guest), 16u);
+            scene.remove(guest);
+        }
+    };
+    for (int i = 0; i < 2048; ++i) round(i);
+    const std::uint64_t before = allocations;
+    for (int i = 2048; i < 250000; ++i) round(i);
+    EXPECT_EQ(allocations - before, 0u);
+}
+
+TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
+    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    Scene scene;
+    const BodyId stays = scene.add(shape);
+    scene.step(std::span<const Pair>{});
+    const std::int64_t before = bytes_held;
+    std::vector<BodyId> guests;
+    for (int i = 0; i < 100000; ++i) guests.push_back(scene.add(shape));
+    const std::int64_t most = bytes_held - before;
+    for (const BodyId guest : guests) scene.remove(guest);
+    guests = std::vector<BodyId>();
+    scene.step(std::span<const Pair>{});
+    EXPECT_GT(most, 100000 * 200);
+    EXPECT_LT(bytes_held - before, 100000 * 40); // which generation each slot is in
+    EXPECT_EQ(scene.pose(stays), Pose{});
+}
+
 // Whichever allocation of a step fails: the step repeated, and repeated again, gives the contacts of a fresh scene.
 TEST(Allocations, AStepThatFailsLeavesNothing) {
     const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
-    constexpr BodyId bodies = 27;
-    const auto pose_of = [](BodyId body, double spacing) {
-        const BodyId column = body % 3, row = body / 3 % 3, layer = body / 9;
+    constexpr std::uint32_t bodies = 27;
+    const auto pose_of = [](std::uint32_t body, double spacing) {
+        const std::uint32_t column = body % 3, row = body / 3 % 3, layer = body / 9;
         const Vec3 at{spacing * column, spacing * row, spacing * layer};
         return pose_from_quaternion(at, 1, 0.1 * body, 0.2, 0.3);
     };
@@ -134,9 +184,9 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
         std::uint64_t failures = 0;
         for (std::int64_t k = 0;; ++k) {
             Scene scene(settings);
-            for (BodyId body = 0; body < bodies; ++body) scene.add(shape, pose_of(body, 0.8));
+            for (std::uint32_t body = 0; body < bodies; ++body) scene.add(shape, pose_of(body, 0.8));
             ASSERT_GT(scene.step().size(), 0u);
-            for (BodyId body = 0; body < bodies; ++body) scene.set_pose(body, pose_of(body, 0.6));
+            for (std::uint32_t body = 0; body < bodies; ++body) scene.set_pose(body, pose_of(body, 0.6));
             bool failed = false;
             allocations_left = k;
             try {
@@ -149,7 +199,7 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
             ++failures;
             EXPECT_TRUE(scene.contacts().empty());
             Scene fresh(settings);
-            for (BodyId body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
+            for (std::uint32_t body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
             const auto expected = fresh.step();
             for (int again = 0; again < 2; ++again) {
                 const auto found = scene.step();

@@ -4,11 +4,15 @@
 
 #include <recording/replay.h>
 #include <scenes/avalanche.h>
+#include <scenes/models/model.h>
+
+#include <raycontact/error.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
+#include <random>
 #include <utility>
 
 using namespace raycontact;
@@ -205,6 +209,120 @@ TEST(Replay, BodiesComeAndGo) {
     ReplayOptions options;
     options.settings = reader.info().settings;
     EXPECT_EQ(replay(reader, options).hash, hash.hex());
+}
+
+// Bodies come, go, and come into slots of others, some between two steps; the writer knows their ids.
+TEST(Replay, SlotsAreThoseOfTheRun) {
+    const std::vector<std::shared_ptr<const Shape>> shapes{Shape::make(scenes::scene_model("knot", 60).mesh),
+                                                           Shape::make(scenes::scene_model("torus", 60).mesh)};
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified}) {
+        std::mt19937 random(9);
+        const auto below = [&](std::size_t n) { return static_cast<std::uint32_t>(random() % n); };
+        const auto somewhere = [&] {
+            const auto number = [&] { return 0.01 * (double(below(100)) - 50); };
+            return pose_from_quaternion({number(), number(), number()}, 1, number(), number(), number());
+        };
+        const TemporaryFile file;
+        Info info;
+        info.settings = settings_of(method);
+        Scene scene(info.settings);
+        Writer writer(file.path(), info);
+        for (const auto& shape : shapes) writer.add_shape(*shape);
+        ContactHash hash;
+        std::vector<BodyId> live;
+        std::vector<std::vector<Pair>> pairs;
+        std::uint32_t last_generation = 0;
+        std::uint64_t contacts = 0;
+        for (std::uint32_t i = 0; i < 120; ++i) {
+            for (std::uint32_t events = below(5); events > 0 || live.size() < 4;) {
+                if (events > 0) --events;
+                if (live.size() < 4 || (live.size() < 10 && below(2))) {
+                    const std::uint32_t shape = below(2);
+                    live.push_back(scene.add(shapes[shape], somewhere()));
+                    ASSERT_EQ(writer.add_body(shape), live.back());
+                    last_generation = std::max(last_generation, generation_of(live.back()));
+                } else {
+                    std::swap(live[below(live.size())], live.back());
+                    scene.remove(live.back());
+                    writer.remove_body(live.back());
+                    EXPECT_THROW(writer.remove_body(live.back()), InputError);
+                    live.pop_back();
+                }
+            }
+            for (const BodyId id : live) {
+                if (below(3) == 0) scene.set_pose(id, somewhere());
+            }
+            hash.add(i, scene.step());
+            contacts += scene.contacts().size();
+            writer.step(scene);
+            pairs.emplace_back(scene.pairs().begin(), scene.pairs().end());
+        }
+        writer.finish(hash.hex());
+        EXPECT_GT(last_generation, 3u);
+        EXPECT_GT(contacts, 1000u);
+
+        Reader reader(file.path());
+        EXPECT_EQ(reader.version(), 2u);
+        std::vector<Pose> poses;
+        std::vector<Pair> read;
+        for (std::uint32_t i = 0; i < reader.steps(); ++i) {
+            reader.read_step(i, poses, read);
+            ASSERT_EQ(read, pairs[i]);
+        }
+        for (const BodyId id : live) EXPECT_EQ(poses[slot_of(id)], scene.pose(id));
+        ReplayOptions options;
+        options.settings = reader.info().settings;
+        EXPECT_EQ(replay(reader, options).hash, hash.hex()) << to_string(method);
+    }
+}
+
+// In recordings of version 1 the third of these has slot 2, and that is in the hash.
+TEST(Replay, OlderRecordingsKeepTheirSlots) {
+    const auto shape = Shape::make(scenes::scene_model("sphere", 60).mesh);
+    const auto pose = [](double x) { return pose_from_quaternion({x, 0, 0}, 1, 0.1 * x, 0, 0); };
+    const TemporaryFile file;
+    {
+        Writer writer(file.path(), {});
+        writer.add_shape(*shape);
+        const BodyId first = writer.add_body(0), second = writer.add_body(0);
+        const std::vector<Pose> poses{pose(0), pose(0.3)};
+        writer.step(poses, std::vector<Pair>{{first, second}});
+        writer.remove_body(first);
+        writer.step(poses, {});
+        const BodyId third = writer.add_body(0);
+        EXPECT_EQ(third, body_id(0, 1));
+        writer.step(std::vector<Pose>{pose(0.1), pose(0.3)}, std::vector<Pair>{{third, second}});
+        writer.finish("0123456789abcdef");
+    }
+    const auto hash_of = [&](bool older) {
+        Scene scene;
+        ContactHash hash;
+        const BodyId first = scene.add(shape, pose(0)), second = scene.add(shape, pose(0.3));
+        hash.add(0, scene.step(std::vector<Pair>{{first, second}}));
+        EXPECT_GT(scene.contacts().size(), 0u);
+        if (!older) scene.remove(first);
+        hash.add(1, scene.step(std::span<const Pair>{}));
+        const BodyId third = scene.add(shape, pose(0.1));
+        EXPECT_EQ(third, older ? 2u : body_id(0, 1));
+        hash.add(2, scene.step(std::vector<Pair>{{third, second}}));
+        EXPECT_GT(scene.contacts().size(), 0u);
+        return hash.hex();
+    };
+    const auto replayed = [&] {
+        Reader reader(file.path());
+        return replay(reader, {}).hash;
+    };
+    EXPECT_EQ(replayed(), hash_of(false));
+
+    edit_json(file.path(), BlockType::info, [](nlohmann::ordered_json& info) { info["version"] = 1; });
+    EXPECT_THROW(replayed(), InputError) << "a version that was damaged";
+    auto bytes = bytes_of(file.path());
+    bytes[side_chunk_at(bytes) + 8 + 8] = 1;
+    write_bytes(file.path(), bytes);
+    EXPECT_EQ(Reader(file.path()).version(), 1u);
+    EXPECT_EQ(Reader(file.path()).bodies()[2].id, 2u);
+    EXPECT_EQ(replayed(), hash_of(true));
+    EXPECT_NE(hash_of(true), hash_of(false));
 }
 
 TEST(Replay, WrongRaysAreCounted) {

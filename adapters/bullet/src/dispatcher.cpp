@@ -15,6 +15,9 @@ namespace raycontact::bullet {
 
 namespace {
 
+/// A pair as contacts name it.
+using Slots = std::pair<std::uint32_t, std::uint32_t>;
+
 /// Where the contacts of one pair in the batch belong.
 struct BatchEntry {
     Pair pair;
@@ -83,7 +86,7 @@ struct CollisionDispatcher::State {
     std::vector<btBroadphasePair*> ours; ///< of this dispatch
     std::vector<PairState*> work;        ///< this dispatch's pairs, in the broad phase's order
     std::vector<BatchEntry> batch;
-    std::vector<std::pair<Pair, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
+    std::vector<std::pair<Slots, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs;
     std::vector<PlaneContact> below;
 };
@@ -220,7 +223,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
             switch (work_for(la.kind, lb.kind, *la.shape, *lb.shape)) {
             case Work::batch: {
-                const bool swapped = la.body > lb.body;
+                const bool swapped = slot_of(la.body) > slot_of(lb.body);
                 const Pair pair = swapped ? Pair{lb.body, la.body} : Pair{la.body, lb.body};
                 const btScalar reach = manifolds.patch_reach * btMin(diagonal(la), diagonal(lb));
                 batch.push_back({pair, &state, i, j, swapped, reach});
@@ -266,18 +269,21 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
 // Contacts come sorted by pair: sort the batch the same way, by small keys, and hand_out() walks both once.
 void CollisionDispatcher::State::sort_batch() {
     order.clear();
-    for (std::size_t i = 0; i < batch.size(); ++i) order.emplace_back(batch[i].pair, static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+        const auto [first, second] = batch[i].pair;
+        order.emplace_back(Slots{slot_of(first), slot_of(second)}, static_cast<std::uint32_t>(i));
+    }
     std::sort(order.begin(), order.end());
     pairs.clear();
-    for (const auto& [pair, index] : order) pairs.push_back(pair);
+    for (const auto& [slots, index] : order) pairs.push_back(batch[index].pair);
 }
 
 void CollisionDispatcher::State::hand_out() {
     std::size_t at = 0;
     for (const Contact& c : scene.contacts()) {
-        const Pair pair{c.body_a, c.body_b};
-        while (at < order.size() && order[at].first < pair) ++at;
-        if (at == order.size() || order[at].first != pair) continue;
+        const Slots slots{c.body_a, c.body_b};
+        while (at < order.size() && order[at].first < slots) ++at;
+        if (at == order.size() || order[at].first != slots) continue;
         const BatchEntry* entry = &batch[order[at].second];
         Candidate candidate;
         const int source = c.vertex_body == VertexBody::a ? 0 : 1;

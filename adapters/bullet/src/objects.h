@@ -21,7 +21,7 @@ struct Leaf {
     Kind kind = Kind::other;
     Converted converted;   ///< mesh or field
     BodyId body = no_body; ///< in the scene; mesh or field
-    static constexpr BodyId no_body = 0xffffffffu;
+    static constexpr BodyId no_body = ~BodyId{0};
 };
 
 /// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.

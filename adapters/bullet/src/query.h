@@ -17,6 +17,7 @@ public:
 
     /// Every contact between two leaves, given to `result`.
     void run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btManifoldResult& result);
+    const Scene& scene() const { return scene_; } ///< with the contacts of the last call, its bodies gone
 
 private:
     Scene scene_; ///< its own: the dispatcher's keeps the last step's contacts

@@ -13,8 +13,8 @@ bool overlap(const WorldBox& a, const WorldBox& b) {
            && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-std::vector<Pair> all_pairs(const std::vector<WorldBox>& boxes) {
-    std::vector<Pair> pairs;
+std::vector<SlotPair> all_pairs(const std::vector<WorldBox>& boxes) {
+    std::vector<SlotPair> pairs;
     for (const WorldBox& a : boxes)
         for (const WorldBox& b : boxes)
             if (a.body < b.body && overlap(a, b)) pairs.emplace_back(a.body, b.body);
@@ -29,12 +29,12 @@ TEST(SweepAndPrune, AgreesWithEveryPairTested) {
         // Integer corners, so that many boxes only touch.
         std::uniform_int_distribution<int> place(0, round % 2 ? 40 : 8), size(0, 4);
         std::vector<WorldBox> boxes;
-        for (BodyId body = 0; body < 80; ++body) {
+        for (BodySlot body = 0; body < 80; ++body) {
             const Vec3 low{double(place(random)), double(place(random)), double(round % 3 ? place(random) : 0)};
             boxes.push_back({body, low, {low.x + size(random), low.y + size(random), low.z + size(random)}});
         }
-        const std::vector<Pair> expected = all_pairs(boxes);
-        std::vector<Pair> pairs, again;
+        const std::vector<SlotPair> expected = all_pairs(boxes);
+        std::vector<SlotPair> pairs, again;
         SweepAndPrune().find_pairs(boxes, pairs);
         EXPECT_EQ(pairs, expected);
         std::shuffle(boxes.begin(), boxes.end(), random);

@@ -20,13 +20,13 @@ TEST(Placer, SortsTheContactsOfEachPair) {
     const OpenDevice opened = open_device("cpu", 2);
     reference::Random random(1);
     std::vector<PlacedBody> bodies;
-    std::vector<Pair> pairs;
+    std::vector<SlotPair> pairs;
     std::vector<kernels::LocalContact> local;
     for (const std::uint32_t count : {1u, 2u, 7u, 8u, 9u, 15u, 16u, 17u, 100u, 127u, 128u, 129u, 300u, 3u, 33u}) {
         ASSERT_LT(count, vertices);
         const auto pair = static_cast<std::uint32_t>(pairs.size());
         pairs.emplace_back(2 * pair, 2 * pair + 1);
-        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, {}, {}});
+        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, 0, {}, {}});
         std::vector<std::uint32_t> chosen(vertices);
         std::iota(chosen.begin(), chosen.end(), 0u);
         for (std::uint32_t direction = 0; direction < 2; ++direction) {

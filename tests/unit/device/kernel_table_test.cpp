@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "executor/float_environment.h"
 #include "device/cpu/kernel_table.h"
+#include "executor/float_environment.h"
 
 #include <raycontact/error.h>
 #include <raycontact/scene.h>
@@ -20,8 +20,7 @@ TEST(KernelTable, BaselineIsAlwaysThere) {
 
 void fill(Scene& scene) {
     const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
-    for (int i = 0; i < 6; ++i)
-        scene.add(shape, pose_from_quaternion({0.2 * i, 0.1 * (i % 3), 0.05 * i}, 1, i, 2, -i));
+    for (int i = 0; i < 6; ++i) scene.add(shape, pose_from_quaternion({0.2 * i, 0.1 * (i % 3), 0.05 * i}, 1, i, 2, -i));
 }
 
 std::string hash_of_step(Scene& scene) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rounding took from a product: by splitting, as a processor without fused operations has it, with the bits of a
-// fused one, the signs of zeros too.
+// What rounding took from a product: in double, as a processor without fused operations has it, with the bits of a
+// fused one, whatever the floats and the signs of zeros.
 #include "device/host_kernels.h"
 #include "reference/random.h"
 
@@ -35,6 +35,28 @@ TEST(ProductError, HasTheBitsOfAFusedOperation) {
         inexact += (bits_of(a, b) & 0x7fffffffU) != 0;
     }
     EXPECT_GT(inexact, 900000U);
+}
+
+// Products that overflow, or lose bits to denormals, and operands of every exponent.
+TEST(ProductError, HasThemForEveryFloat) {
+    const auto same = [](std::uint32_t a, std::uint32_t b) {
+        return a == b || (std::isnan(std::bit_cast<float>(a)) && std::isnan(std::bit_cast<float>(b)));
+    };
+    reference::Random random(16);
+    std::uint64_t tiny = 0, huge = 0;
+    for (int i = 0; i < 4000000; ++i) {
+        const auto a = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()));
+        auto b = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()));
+        // Half of them with a product near the least float, where the error itself is rounded, or near the greatest.
+        if (i % 4 == 0) b = std::ldexp(1 + static_cast<float>(random.uniform()), -130 - std::ilogb(a));
+        if (i % 4 == 1) b = std::ldexp(1 + static_cast<float>(random.uniform()), 127 - std::ilogb(a));
+        ASSERT_TRUE(same(bits_of(a, b), fused_bits_of(a, b))) << a << " * " << b;
+        tiny += std::fabs(a * b) < 1e-30F && bits_of(a, b) != 0;
+        huge += std::isinf(a * b);
+    }
+    EXPECT_GT(tiny, 100000U);
+    EXPECT_GT(huge, 100000U);
+    EXPECT_EQ(bits_of(1e35F, 2), fused_bits_of(1e35F, 2));
 }
 
 } // namespace

@@ -121,7 +121,7 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
                 bodies[i].centred.translation = bodies[i].centred.translation + together;
             }
             motion.update(executor, bodies);
-            for (const Pair& pair : {Pair{0, 1}, Pair{0, 2}, Pair{1, 2}}) {
+            for (const SlotPair& pair : {SlotPair{0, 1}, SlotPair{0, 2}, SlotPair{1, 2}}) {
                 const auto [a, b] = pair;
                 const double bound = motion.pair_bound(pair);
                 const double moved = std::max(true_displacement(bodies[a], bodies[b], before[a], before[b]),
@@ -145,6 +145,30 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
     }
     std::printf("[ counts   ] pair bounds are %.4f to %.1f times what was moved\n", tightest, worst);
     EXPECT_GE(tightest, 1.0);
+}
+
+// In the place of a small one, to the bit, while no update looked: it has not stood still, and nothing is small.
+TEST(Motion, ABodyDoesNotInheritFromTheOneBeforeInItsSlot) {
+    Executor executor(1);
+    const auto small = Shape::make(box_mesh({1, 1, 1})), large = Shape::make(box_mesh({40, 1, 1}));
+    std::vector<PlacedBody> bodies(2);
+    for (PlacedBody& body : bodies) body.shape = small.get();
+    Motion motion;
+    motion.update(executor, bodies);
+    motion.update(executor, bodies);
+    EXPECT_TRUE(motion.is_still({0, 1}));
+    bodies[1].shape = large.get();
+    bodies[1].generation = 1;
+    bodies[0].centred = pose_from_quaternion({0, 0, 0}, 1, 0, 0, 0.01);
+    const std::vector<PlacedBody> before{{small.get(), 0, 0, {}, {}}, bodies[1]};
+    motion.update(executor, bodies);
+    EXPECT_FALSE(motion.is_still({1, 1}));
+    EXPECT_GE(motion.pair_bound({0, 1}), true_displacement(bodies[1], bodies[0], before[1], before[0]));
+    bodies[1].centred.translation.x = 100;
+    bodies[1].generation = 2;
+    motion.update(executor, bodies);
+    EXPECT_EQ(motion.pair_speed({1, 1}), 0.0);
+    EXPECT_LT(motion.pair_bound({0, 1}), 10.0) << "another body's way";
 }
 
 TEST(Motion, KnowsHowFarARelativeRotationIsSheared) {

@@ -27,23 +27,23 @@ struct State {
 TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     Random random(1);
     PairTable<State, Hot> table;
-    std::map<Pair, double> model; // a mark for each open pair
+    std::map<SlotPair, double> model; // a mark for each open pair
     double mark = 0;
     std::uint64_t most_bytes = 0;
     for (int step = 0; step < 400; ++step) {
-        std::set<Pair> wanted;
+        std::set<SlotPair> wanted;
         const std::uint32_t count = step % 50 == 49 ? 0 : random.below(60);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const BodyId a = random.below(12);
+            const BodySlot a = random.below(12);
             wanted.insert({a, a + 1 + random.below(6)});
         }
-        const std::vector<Pair> pairs(wanted.begin(), wanted.end());
+        const std::vector<SlotPair> pairs(wanted.begin(), wanted.end());
         std::multiset<double> closed, expected;
         for (const auto& [pair, its_mark] : model)
             if (!wanted.contains(pair)) expected.insert(its_mark);
         table.match(pairs, [&](State& state) { closed.insert(state.mark); });
         ASSERT_EQ(closed, expected);
-        std::map<Pair, double> next;
+        std::map<SlotPair, double> next;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             State& state = table.state(i);
             if (const auto found = model.find(pairs[i]); found != model.end()) {
@@ -69,7 +69,7 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     table.clear();
     EXPECT_EQ(table.bytes(), 0u);
     bool closed = false;
-    const std::vector<Pair> one{{0, 1}};
+    const std::vector<SlotPair> one{{0, 1}};
     table.match(one, [&](State&) { closed = true; });
     EXPECT_FALSE(closed) << "what was cleared is not open any more";
     EXPECT_EQ(table.state(0).mark, 0.0);
@@ -77,26 +77,26 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
 
 TEST(PairTable, AsksOfThePairsThatWantItInTheirOrder) {
     PairTable<State, Hot> table;
-    std::vector<Pair> pairs;
-    for (BodyId i = 0; i < 500; ++i) pairs.emplace_back(i, i + 1);
+    std::vector<SlotPair> pairs;
+    for (BodySlot i = 0; i < 500; ++i) pairs.emplace_back(i, i + 1);
     table.match(pairs, [](State&) {});
     Random random(3);
-    std::vector<Wanted> wanted(pairs.size());
-    for (Wanted& each : wanted) each = static_cast<Wanted>(random.below(3));
-    for (const auto& [begin, end] : {Pair{0, 500}, Pair{7, 130}, Pair{499, 500}, Pair{40, 40}}) {
-        std::vector<std::pair<std::uint32_t, Wanted>> asked, expected;
+    std::vector<bool> wanted(pairs.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = random.below(3) == 0;
+    for (const auto& [begin, end] : {SlotPair{0, 500}, SlotPair{7, 130}, SlotPair{499, 500}, SlotPair{40, 40}}) {
+        std::vector<std::uint32_t> asked, expected;
         std::vector<int> sent_for(pairs.size()), looked_at(pairs.size());
         for (std::uint32_t i = begin; i < end; ++i)
-            if (wanted[i] != Wanted::nothing) expected.emplace_back(i, wanted[i]);
+            if (wanted[i]) expected.push_back(i);
         table.sift(
             begin, end, [&](std::uint32_t i) { ++sent_for[i]; },
             [&](std::uint32_t i, Hot& hot) {
                 EXPECT_EQ(&hot, &table.hot(i));
                 EXPECT_EQ(sent_for[i], 1);
                 ++looked_at[i];
-                return wanted[i];
+                return bool(wanted[i]);
             },
-            [&](std::uint32_t i, Wanted of) { asked.emplace_back(i, of); });
+            [&](std::uint32_t i) { asked.push_back(i); });
         EXPECT_EQ(asked, expected);
         for (std::uint32_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(looked_at[i], i >= begin && i < end ? 1 : 0);
     }

@@ -87,7 +87,7 @@ inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, c
                                      const kernels::Holder& holder) {
     const kernels::prototype::Closest met = closest(ray, target);
     return kernels::prototype::seek_tube(&ray, &met, &holder, &target.header, target.nodes.data(),
-                                         target.triangle_blocks.data(), target.face_normals.data());
+                                         target.triangle_blocks.data());
 }
 
 inline bool differ(const kernels::Hit& said, const kernels::Hit& truth) {

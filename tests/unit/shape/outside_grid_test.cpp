@@ -20,12 +20,10 @@ Mesh cube(double half) {
 TEST(OutsideGrid, HoldsTheCellOfTheUpperCorner) {
     for (int i = 1; i <= 200; ++i) {
         const auto shape = Shape::make(cube(0.01 * i));
-        const ShapeData& data = shape->data();
-        const kernels::ShapeHeader& header = data.header;
+        const kernels::ShapeHeader& header = shape->data().header;
         ASSERT_GT(header.grid_size[0], 0u);
-        const float high[3] = {data.high.x, data.high.y, data.high.z};
         for (int axis = 0; axis < 3; ++axis) // as the kernels look it up
-            EXPECT_LT(static_cast<int>((high[axis] - header.grid_low[axis]) * header.grid_scale),
+            EXPECT_LT(static_cast<int>((header.high[axis] - header.grid_low[axis]) * header.grid_scale),
                       static_cast<int>(header.grid_size[axis]))
                 << "half " << 0.01 * i << ", axis " << axis;
     }

@@ -44,6 +44,7 @@ class ScarceDevice : public Device {
 public:
     ScarceDevice(Device& real, int buffers) : left(buffers), real_(real) {}
     const DeviceInfo& info() const override { return real_.info(); }
+    const DeviceTraits& traits() const override { return real_.traits(); }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
         if (left-- == 0) throw std::bad_alloc();
         return real_.make_buffer(bytes);

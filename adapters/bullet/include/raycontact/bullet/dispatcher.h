@@ -58,8 +58,8 @@ public:
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
 
-    /// Optional: gives the object's meshes their place in scene() at once and keeps it when no pair needs it, so body
-    /// ids follow the caller's order; returns the id of its first mesh. The object must be removed by remove_body
+    /// Optional: gives the object's meshes their place in scene() at once and keeps it when no pair needs it, so slots
+    /// follow the caller's order; returns the id of its first mesh. The object must be removed by remove_body
     /// before it is deleted.
     BodyId add_body(const btCollisionObject& object);
     void remove_body(const btCollisionObject& object);

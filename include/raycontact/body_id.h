@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace raycontact {
+
+/// Names one body of one scene for good: the slot it is in (the low 32 bits), and how many bodies had that slot before
+/// it, its generation (the high 32). As long as nothing has been removed ids count 0, 1, 2, ..., as slots do. Contacts
+/// name slots: compare them with slot_of(id), never with the id itself.
+using BodyId = std::uint64_t;
+
+constexpr std::uint32_t slot_of(BodyId body) {
+    return static_cast<std::uint32_t>(body);
+}
+constexpr std::uint32_t generation_of(BodyId body) {
+    return static_cast<std::uint32_t>(body >> 32);
+}
+constexpr BodyId body_id(std::uint32_t slot, std::uint32_t generation) {
+    return BodyId{generation} << 32 | slot;
+}
+
+} // namespace raycontact
