@@ -54,11 +54,15 @@ DeviceName read_device(std::string_view word) {
     return device;
 }
 
-/// Every GPU this version can use, or the CPU where there is none.
+/// Every GPU this version can use, each card once, or the CPU where there is none. CUDA devices are listed first.
 std::string every_gpu() {
     std::string list;
+    std::vector<std::string> cards;
     for (const auto& device : raycontact::list_devices()) {
-        if (device.usable && device.kind != "cpu") list += (list.empty() ? "" : ",") + device.id;
+        if (!device.usable || device.type != "gpu") continue;
+        if (!device.bus.empty() && std::find(cards.begin(), cards.end(), device.bus) != cards.end()) continue;
+        cards.push_back(device.bus);
+        list += (list.empty() ? "" : ",") + device.id;
     }
     return list.empty() ? "cpu" : list;
 }
@@ -152,7 +156,7 @@ std::string device_from_list(std::string_view list) {
     }
     if (devices.size() > 1) {
         throw InputError("--devices: \"" + std::string(list)
-                         + "\" names several devices, this version uses one at a time; name one");
+                         + "\" names several devices; several at a time come later, name one");
     }
     const DeviceName& one = devices.front();
     return one.is_part ? one.whole + "/" + std::to_string(one.part) : one.whole;
@@ -196,9 +200,12 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
                      "predictive: cast a ray in full (the default) or give it up where following it ends "
                      "nowhere");
     add_word(command, "--devices",
-             "auto, all, or a device as `raycontact devices` lists it; cpu/k is its k-th core alone", "LIST",
-             settings.device, [&](const std::string& word) { settings.device = device_from_list(word); });
-    command.add_option("--threads", settings.threads, "threads of the CPU device, 0: one per core; changes no result")
+             "auto, all (every GPU), or a device as `raycontact devices` lists it; cpu/k and opencl:i/k are its k-th "
+             "core alone",
+             "LIST", settings.device, [&](const std::string& word) { settings.device = device_from_list(word); });
+    command.add_flag("--inexact", settings.inexact,
+                     "also use a device that rounds otherwise, whose contacts may differ from all others'");
+    command.add_option("--threads", settings.threads, "threads of the host, 0: one per core; changes no result")
         ->type_name("N")
         ->default_str("0")
         ->check(CLI::Range(0u, 1024u));

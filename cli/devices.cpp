@@ -18,6 +18,8 @@ void print_json(const std::vector<raycontact::DeviceInfo>& devices) {
     for (const auto& device : devices) {
         list.push_back({{"id", device.id},
                         {"kind", device.kind},
+                        {"type", device.type},
+                        {"bus", device.bus},
                         {"name", device.name},
                         {"driver", device.driver},
                         {"cores", device.cores},
@@ -33,9 +35,9 @@ void print_json(const std::vector<raycontact::DeviceInfo>& devices) {
 void print_table(const std::vector<raycontact::DeviceInfo>& devices) {
     for (const auto& device : devices) {
         std::cout << fmt::format(
-            "{:<10} {} ({}), {} cores, {:.1f} GiB, {}, {}\n", device.id, device.name, device.driver, device.cores,
-            static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.exact ? "exact" : "not exact",
-            device.usable ? "usable" : "not usable: " + device.why_not);
+            "{:<10} {}: {} ({}), {} cores, {:.1f} GiB, {}, {}\n", device.id, device.type, device.name, device.driver,
+            device.cores, static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0),
+            device.exact ? "exact" : "not exact", device.usable ? "usable" : "not usable: " + device.why_not);
     }
 }
 

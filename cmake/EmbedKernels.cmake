@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# The kernels' text for compilers that run later: one dialect, the types and every kernel, joined at build time into a
-# generated header; never committed. Included, it defines raycontact_embed_kernels(target): the target may then include
-# "kernels_opencl.h" and "kernels_cuda.h" (raycontact::opencl_text(), raycontact::cuda_text()). Run as a script
-# (cmake -P), it writes one of them.
+# The kernels' text for compilers that run later: one dialect, the types, every kernel that runs on all devices and the
+# scan, in pieces in a generated header; never committed. Included, it defines raycontact_embed_kernels(target
+# DIALECT...): the target may then include "kernels_<dialect>.h" (raycontact::opencl_pieces, raycontact::cuda_pieces).
+# Run as a script (cmake -P), it writes one of them.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
     set(raycontact_embed_script ${CMAKE_CURRENT_LIST_FILE})
 
     function(raycontact_embed_kernels target)
         set(source_folder ${PROJECT_SOURCE_DIR}/src)
         set(folder ${CMAKE_CURRENT_BINARY_DIR}/kernels_text)
-        file(GLOB kernels CONFIGURE_DEPENDS ${source_folder}/kernels/*.h)
-        foreach(dialect opencl cuda)
+        file(GLOB kernels CONFIGURE_DEPENDS ${source_folder}/kernels/*.h ${source_folder}/device/gpu/*.h)
+        foreach(dialect ${ARGN})
             set(header ${folder}/kernels_${dialect}.h)
             add_custom_command(OUTPUT ${header}
                 COMMAND ${CMAKE_COMMAND} -D SOURCE_FOLDER=${source_folder} -D DIALECT=${dialect} -D OUTPUT=${header}
@@ -27,7 +27,7 @@ endif()
 # A stretch of one file as a raw string. Stretches stay well below the 65536 characters that a compiler must accept.
 function(add_piece text first_line file)
     if(NOT text STREQUAL "")
-        string(APPEND pieces "    R\"raycontact(#line ${first_line} \"${file}\"\n${text})raycontact\",\n")
+        string(APPEND pieces "    {\"${file}\", R\"raycontact(#line ${first_line} \"${file}\"\n${text})raycontact\"},\n")
         set(pieces "${pieces}" PARENT_SCOPE)
     endif()
 endfunction()
@@ -57,23 +57,19 @@ set(pieces "")
 embed(device/${DIALECT}/dialect.h)
 embed(kernels/types.h)
 embed(kernels/kernels.h)
+embed(device/gpu/scan.h)
+embed(device/gpu/probe.h)
+embed(device/gpu/probe_double.h)
 file(WRITE ${OUTPUT} "// SPDX-License-Identifier: Apache-2.0
-// Generated from src/device/${DIALECT}/dialect.h and src/kernels by cmake/EmbedKernels.cmake.
+// Generated from src/device/${DIALECT}/dialect.h, src/kernels and src/device/gpu by cmake/EmbedKernels.cmake.
 #pragma once
 
-#include <string>
+#include \"device/kernel_text.h\"
 
 namespace raycontact {
 
-inline constexpr const char* ${DIALECT}_pieces[] = {
+inline constexpr KernelPiece ${DIALECT}_pieces[] = {
 ${pieces}};
-
-/// Dialect, types and kernels in one text.
-inline std::string ${DIALECT}_text() {
-    std::string text;
-    for (const char* piece : ${DIALECT}_pieces) text += piece;
-    return text;
-}
 
 } // namespace raycontact
 ")

@@ -8,7 +8,7 @@
 namespace raycontact {
 
 NarrowPhase::NarrowPhase(const Settings& settings)
-    : settings_(settings), part_(open_device(settings.device, settings.threads)) {}
+    : settings_(settings), part_(open_device(settings.device, settings.threads, settings.inexact)) {}
 
 void NarrowPhase::set_settings(const Settings& settings) {
     settings_ = settings;

@@ -11,11 +11,15 @@ namespace raycontact {
 struct DeviceInfo {
     std::string id;   ///< as Settings::device takes it
     std::string kind; ///< its back end: the id up to a colon
+    std::string type; ///< "cpu", "gpu" or "other"
+    std::string bus;  ///< address of the card, as "0000:65:00.0"; empty where none is known
     std::string name;
     std::string driver;
     std::uint32_t cores = 0;
     std::uint64_t memory_bytes = 0;
-    bool exact = false; ///< correctly rounded division and root, denormals: same bits as every other exact device
+    /// Correctly rounded division and root, denormals: same bits as every other exact device, by what its driver says;
+    /// opening it tries whether that is true.
+    bool exact = false;
     bool usable = false;
     std::string why_not; ///< empty when usable
 };
@@ -31,7 +35,7 @@ struct DeviceWork {
     double busy_ms = 0;           ///< in which its kernels ran
 };
 
-/// Every device that this version knows how to use: the CPU alone so far. Never throws for a missing driver.
+/// The CPU, and every device of every OpenCL driver here, in the same order each time. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact

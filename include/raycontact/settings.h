@@ -53,8 +53,12 @@ struct Settings {
     /// Of `standard` with caster bvh: leave out the rays of vertices that a mesh's outside grid knows to be outside
     /// (docs/design.md). No contact depends on it; off, every ray is cast.
     bool skip_outside = true;
-    std::string device = "auto"; ///< "auto", "cpu" or "cpu/k" (the k-th core alone)
-    std::uint32_t threads = 0;   ///< of the CPU device; 0: one per core. No count changes a bit of the result
+    /// "auto", "cpu", "cpu/k" (the k-th core alone), or another that list_devices() names: "opencl:i", "opencl:i/k"
+    /// (the k-th core of it alone, where its driver divides it).
+    std::string device = "auto";
+    /// Take a device that rounds otherwise: its contacts may differ from those of every other.
+    bool inexact = false;
+    std::uint32_t threads = 0; ///< of the host; 0: one per core. No count changes a bit of the result
 };
 
 /// Throws InputError naming the setting that makes no sense, and what would.

@@ -97,7 +97,7 @@ struct OpenDevice {
 };
 
 /// Opens what `--devices` names. Throws InputError for a device that is unknown or that this version cannot use.
-/// threads: of the host, 0 for one per core.
-OpenDevice open_device(std::string_view name, std::uint32_t threads);
+/// threads: of the host, 0 for one per core. inexact: also a device that gives other bits than the rest.
+OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
 
 } // namespace raycontact

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
 #include "device/device.h"
+#ifdef RAYCONTACT_OPENCL
+#include "device/opencl/device.h"
+#endif
 
 #include <raycontact/error.h>
 
@@ -9,11 +12,31 @@
 
 namespace raycontact {
 
+namespace {
+
+#ifdef RAYCONTACT_OPENCL
+std::unique_ptr<Device> open_opencl(std::string_view name, bool inexact) {
+    return opencl::open(name, inexact);
+}
+#else
+std::unique_ptr<Device> open_opencl(std::string_view name, bool) {
+    throw InputError("device '" + std::string(name)
+                     + "': this raycontact was not built with OpenCL (on Debian: apt-get install ocl-icd-opencl-dev "
+                       "opencl-c-headers, then configure with RAYCONTACT_OPENCL=ON)");
+}
+#endif
+
+} // namespace
+
 std::vector<DeviceInfo> list_devices() {
-    return {cpu::describe()};
+    std::vector<DeviceInfo> devices = {cpu::describe()};
+#ifdef RAYCONTACT_OPENCL
+    for (DeviceInfo& info : opencl::describe()) devices.push_back(std::move(info));
+#endif
+    return devices;
 }
 
-OpenDevice open_device(std::string_view name, std::uint32_t threads) {
+OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact) {
     // For tests and measurements: a narrower instruction set gives the same bits.
     const char* wanted = std::getenv("RAYCONTACT_INSTRUCTION_SET");
     const std::string_view instruction_set = wanted ? wanted : "";
@@ -33,9 +56,13 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads) {
         throw InputError("device '" + std::string(name) + "': this machine has " + std::to_string(usable_cores())
                          + " cores; use cpu/0 to cpu/" + std::to_string(usable_cores() - 1));
     }
-    throw InputError(
-        "device '" + std::string(name)
-        + "' is unknown or not usable in this version; use auto, cpu or cpu/k (`raycontact devices` lists them)");
+    if (name.starts_with("opencl:")) {
+        auto device = open_opencl(name, inexact);
+        return {std::make_unique<Executor>(threads), std::move(device)};
+    }
+    throw InputError("device '" + std::string(name)
+                     + "' is unknown or not usable in this version; use auto, cpu, cpu/k, opencl:i or opencl:i/k "
+                       "(`raycontact devices` lists them)");
 }
 
 } // namespace raycontact

@@ -88,14 +88,7 @@ typedef struct {
 } ShapeHeader;
 WIRE_SIZE(ShapeHeader, 192);
 
-// A body in the world: the frame about its shape's centre, in double, as the host has it.
-typedef struct {
-    double rotation[9];
-    double translation[3];
-    uint shape;
-    uint slot;
-} BodyPlace;
-WIRE_SIZE(BodyPlace, 104);
+#include "kernels/body_place.h"
 
 // The bodies of a pair; NONE: the slot has no pair.
 typedef struct {

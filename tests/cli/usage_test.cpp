@@ -141,8 +141,8 @@ TEST_F(Usage, DevicesHaveTheirKeys) {
     const auto devices = nlohmann::json::parse(result.out);
     ASSERT_TRUE(devices.is_array());
     ASSERT_GE(devices.size(), 1u);
-    const std::set<std::string> keys{"id",    "kind",         "name",   "driver", "cores",
-                                     "exact", "memory_bytes", "usable", "why_not"};
+    const std::set<std::string> keys{"id",    "kind",  "type",         "bus",    "name",   "driver",
+                                     "cores", "exact", "memory_bytes", "usable", "why_not"};
     bool cpu = false;
     for (const auto& device : devices) {
         EXPECT_EQ(keys_of(device), keys);
@@ -150,6 +150,7 @@ TEST_F(Usage, DevicesHaveTheirKeys) {
         if (device["id"] == "cpu") {
             cpu = true;
             EXPECT_EQ(device["kind"], "cpu");
+            EXPECT_EQ(device["type"], "cpu");
             EXPECT_TRUE(device["usable"].get<bool>());
             EXPECT_TRUE(device["exact"].get<bool>());
             EXPECT_GE(device["cores"].get<int>(), 1);

@@ -155,6 +155,7 @@ DeviceInfo describe() {
     DeviceInfo info;
     info.id = "cpu";
     info.kind = "cpu";
+    info.type = "cpu";
     info.name = processor_name();
     info.driver = "native, " + std::string(usable_tables().front()->instruction_set);
     info.cores = usable_cores();

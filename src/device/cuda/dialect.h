@@ -23,6 +23,15 @@ typedef unsigned long long ulong;
          i += gridDim.x * blockDim.x)
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
+// Of kernels whose threads work together (gpu/scan.h).
+#define SCAN_GROUP 1024u
+#define GROUP_KERNEL extern "C" __global__ __launch_bounds__(SCAN_GROUP)
+#define GROUP blockIdx.x
+#define THREAD threadIdx.x
+#define LOCAL
+#define SHARED(type, name, size) __shared__ type name[size]
+#define BARRIER __syncthreads()
+
 DEVICE uint lowest_bit(uint bits) {
     return (uint)__ffs((int)bits) - 1u;
 }

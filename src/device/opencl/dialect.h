@@ -21,6 +21,15 @@
     for (uint i = (uint)get_global_id(0), few = 1u, i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
+// Of kernels whose threads work together (gpu/scan.h).
+#define SCAN_GROUP 256u
+#define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1)))
+#define GROUP ((uint)get_group_id(0))
+#define THREAD ((uint)get_local_id(0))
+#define LOCAL __local
+#define SHARED(type, name, size) __local type name[size]
+#define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
+
 DEVICE uint lowest_bit(uint bits) {
     return 31u - clz(bits & (0u - bits));
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/opencl/buffer.h"
+
+namespace raycontact::opencl {
+
+inline void set_argument(cl_kernel kernel, cl_uint at, cl_mem memory) {
+    check(clSetKernelArg(kernel, at, sizeof memory, &memory), "clSetKernelArg");
+}
+inline void set_argument(cl_kernel kernel, cl_uint at, kernels::uint number) {
+    check(clSetKernelArg(kernel, at, sizeof number, &number), "clSetKernelArg");
+}
+/// The first two: where the count is, or null and the count.
+inline void set_count(cl_kernel kernel, const Count& count) {
+    set_argument(kernel, 0, memory_of(count.buffer));
+    set_argument(kernel, 1, count.value);
+}
+template <typename... Given>
+void set_arguments(cl_kernel kernel, const Count& count, Given... given) {
+    set_count(kernel, count);
+    cl_uint at = 2;
+    (set_argument(kernel, at++, given), ...);
+}
+
+} // namespace raycontact::opencl

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CL/cl.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace raycontact::opencl {
+
+/// Throws std::runtime_error naming what failed, and how.
+void check(cl_int status, std::string_view what);
+
+template <auto release>
+struct Release {
+    template <typename T>
+    void operator()(T* object) const {
+        release(object);
+    }
+};
+template <typename T, auto release>
+using Owned = std::unique_ptr<std::remove_pointer_t<T>, Release<release>>;
+
+using Context = Owned<cl_context, clReleaseContext>;
+using CommandQueue = Owned<cl_command_queue, clReleaseCommandQueue>;
+using Memory = Owned<cl_mem, clReleaseMemObject>;
+using BuiltProgram = Owned<cl_program, clReleaseProgram>;
+using Kernel = Owned<cl_kernel, clReleaseKernel>;
+using Event = Owned<cl_event, clReleaseEvent>;
+
+/// What a device says of itself; empty or zero where it does not know the question.
+std::string text_of(cl_device_id device, cl_device_info what);
+template <typename T>
+T value_of(cl_device_id device, cl_device_info what) {
+    T value{};
+    return clGetDeviceInfo(device, what, sizeof value, &value, nullptr) == CL_SUCCESS ? value : T{};
+}
+
+} // namespace raycontact::opencl

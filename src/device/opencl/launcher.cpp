@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/opencl/launcher.h"
+
+#include <algorithm>
+
+namespace raycontact::opencl {
+
+namespace {
+
+// One size for all: some drivers compile a kernel anew for each (PoCL: 83 ms).
+constexpr std::size_t items_in_group = 64;
+
+// Enough to keep every unit busy to the end; more only cost time where there are few items.
+std::size_t groups_for(cl_device_id device) {
+    const bool is_cpu = (value_of<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
+    const std::size_t units = std::max<cl_uint>(value_of<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS), 1);
+    return units * (is_cpu ? 16 : 64);
+}
+
+cl_ulong time_of(cl_event event, cl_profiling_info what) {
+    cl_ulong time = 0;
+    check(clGetEventProfilingInfo(event, what, sizeof time, &time, nullptr), "clGetEventProfilingInfo");
+    return time;
+}
+
+} // namespace
+
+Launcher::Launcher(cl_context context, cl_device_id device) : most_groups_(groups_for(device)) {
+    cl_int status = CL_SUCCESS;
+    queue_.reset(clCreateCommandQueue(context, device, CL_QUEUE_PROFILING_ENABLE, &status));
+    check(status, "clCreateCommandQueue");
+}
+
+void Launcher::over_items(cl_kernel kernel, const char* name, kernels::uint most) {
+    in_groups(kernel, name, items_in_group,
+              std::clamp<std::size_t>((most + items_in_group - 1) / items_in_group, 1, most_groups_));
+}
+
+void Launcher::in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups) {
+    const std::size_t all = group_size * groups;
+    cl_event event = nullptr;
+    check(clEnqueueNDRangeKernel(queue_.get(), kernel, 1, nullptr, &all, &group_size, 0, nullptr, &event), name);
+    started_.emplace_back(event);
+}
+
+void Launcher::add_up() {
+    for (const Event& event : started_)
+        busy_ns_ += time_of(event.get(), CL_PROFILING_COMMAND_END) - time_of(event.get(), CL_PROFILING_COMMAND_START);
+    started_.clear();
+}
+
+} // namespace raycontact::opencl

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/host_kernels.h"
+#include "device/opencl/handle.h"
+
+#include <vector>
+
+namespace raycontact::opencl {
+
+/// Starts kernels in order, and adds up how long they ran.
+class Launcher {
+public:
+    Launcher(cl_context context, cl_device_id device);
+
+    cl_command_queue queue() const { return queue_.get(); }
+    /// As many threads as the device has use for, and no more than there may be items.
+    void over_items(cl_kernel kernel, const char* name, kernels::uint most);
+    void in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups);
+
+    /// Once all that was started has been waited for.
+    void add_up();
+    double busy_ms() const { return static_cast<double>(busy_ns_) * 1e-6; }
+
+private:
+    CommandQueue queue_;
+    std::size_t most_groups_ = 1;
+    std::vector<Event> started_;
+    cl_ulong busy_ns_ = 0;
+};
+
+} // namespace raycontact::opencl

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/opencl/program.h"
+
+#include "kernels_opencl.h"
+
+#include <stdexcept>
+
+namespace raycontact::opencl {
+
+namespace {
+
+// By KernelId; null: needs the host's memory.
+constexpr const char* names[] = {
+#define RAYCONTACT_KERNEL(name) #name,
+#define RAYCONTACT_CPU_KERNEL(name) nullptr,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+};
+
+bool is_built(KernelId id, bool has_double) {
+    const bool in_double = id == KernelId::apply_changes || id == KernelId::place_pairs;
+    return names[static_cast<std::size_t>(id)] && (has_double || !in_double);
+}
+
+bool claims_double(cl_device_id device) {
+    const auto config = value_of<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG);
+    const cl_device_fp_config needed = CL_FP_ROUND_TO_NEAREST | CL_FP_DENORM | CL_FP_INF_NAN;
+    return (config & needed) == needed;
+}
+
+} // namespace
+
+Source exact_source(cl_device_id device) {
+    const auto config = value_of<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
+    const bool rounds = (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    const bool has_double = claims_double(device);
+    return {kernel_text(opencl_pieces, has_double),
+            rounds ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" : "-cl-std=CL1.2", has_double};
+}
+
+Program::Program(cl_context context, cl_device_id device, const Source& source) {
+    cl_int status = CL_SUCCESS;
+    const char* text = source.text.c_str();
+    program_.reset(clCreateProgramWithSource(context, 1, &text, nullptr, &status));
+    check(status, "clCreateProgramWithSource");
+    status = clBuildProgram(program_.get(), 1, &device, source.options.c_str(), nullptr, nullptr);
+    if (status != CL_SUCCESS) {
+        std::size_t size = 0;
+        clGetProgramBuildInfo(program_.get(), device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+        std::string log(size, '\0');
+        clGetProgramBuildInfo(program_.get(), device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+        log.resize(log.find_last_not_of(std::string_view("\0\n ", 3)) + 1);
+        check(status, "clBuildProgram" + (log.empty() ? "" : ":\n" + log + "\n"));
+    }
+    for (std::size_t i = 0; i < kernels_.size(); ++i)
+        if (is_built(static_cast<KernelId>(i), source.has_double)) kernels_[i] = entry(names[i]);
+}
+
+const char* Program::name_of(KernelId id) {
+    return names[static_cast<std::size_t>(id)];
+}
+
+Kernel Program::entry(const char* name) const {
+    cl_int status = CL_SUCCESS;
+    Kernel kernel(clCreateKernel(program_.get(), name, &status));
+    check(status, name);
+    return kernel;
+}
+
+} // namespace raycontact::opencl

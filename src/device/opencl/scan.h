@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/device.h"
+#include "device/opencl/launcher.h"
+#include "device/opencl/program.h"
+
+namespace raycontact::opencl {
+
+/// Queue::scan(), by the kernels of device/gpu/scan.h.
+class Scan {
+public:
+    Scan(const Program& program, cl_context context, cl_device_id device);
+
+    /// Returns how many kernels that takes.
+    kernels::uint run(Launcher& launcher, const ScanOf& scan);
+
+private:
+    Kernel at_once_, blocks_, sums_, firsts_;
+    std::size_t group_size_ = 0; ///< as the text has it
+    Memory block_sums_;
+};
+
+} // namespace raycontact::opencl
