@@ -103,7 +103,7 @@ private:
 // One instruction set with its own copy of everything.
 class Contender {
 public:
-    Contender(rc::Executor& executor, std::string_view instruction_set, std::shared_ptr<const rc::Shape> shape,
+    Contender(rc::Executor& executor, std::string_view instruction_set, const std::shared_ptr<const rc::Shape>& shape,
               std::span<const rc::PlacedBody> bodies, std::span<const rc::SlotPair> pairs)
         : executor_(executor), device_(rc::cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
           pairs_(pairs) {
