@@ -159,7 +159,8 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     fast_sums_ = fast_count_ > 0 ? sums[RayBatch::ray_sum] : kernels::Totals{};
     const kernels::uint fast = fast_sums_.results;
     batch.count = Count(std::size_t{fast} + sums[RayBatch::kept_sum].results);
-    batch.resize(device, batch.count.value, 3);
+    // The third column is hold_rays' own: nobody else writes it.
+    batch.resize(device, batch.count.value, update.settings.caster == Caster::basic ? 2 : 3);
     launch<KernelId::write_rays>(device, fast_.blocks().size(), 0u, fast_.blocks(), fast_rays_.firsts(), batch.rays);
     launch<KernelId::write_watch_rays>(device, segments_.size(), fast, segments_, watches_, looks_, look_rays_.firsts(),
                                        batch.rays);
@@ -219,7 +220,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     if (packed_ != update.shapes.packed()) clear(); // lists name vertex blocks by their place
     packed_ = update.shapes.packed();
     open_pairs_ = update.pairs.size();
-    batch.resize(update.device, 0, 3);
+    batch.resize(update.device, 0);
     table_.match(update.pairs, [this](WatchedPair& state) { close(state); });
     wake_up_.run(update, table_);
     list_slices();
