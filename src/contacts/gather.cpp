@@ -23,20 +23,22 @@ void Gather::run(const Update& update, const RayBatch& batch) {
 }
 
 bool Gather::read(Device& device, RayBatch& batch) {
-    found_.resize(std::min(expected_, contacts_.size()));
-    const Piece pieces[] = {batch.totals.piece(batch.sums), contacts_.piece(std::span(found_))};
+    const std::size_t expected = std::min(expected_, contacts_.size());
+    if (found_.size() < expected) found_.resize(expected);
+    const Piece pieces[] = {batch.totals.piece(batch.sums), contacts_.piece(std::span(found_).first(expected))};
     device.queue().read(pieces);
     check_sums(batch.sums);
-    const std::size_t count = batch.sums[RayBatch::contact_sum].sums[0], known = std::min(count, found_.size());
+    const std::size_t count = batch.sums[RayBatch::contact_sum].sums[0], known = std::min(count, expected);
     if (count > contacts_.size()) {
         contacts_.grow(device, count);
         return false;
     }
-    found_.resize(count);
     if (known < count) {
-        const Piece rest = contacts_.piece(std::span(found_).subspan(known), known);
+        if (found_.size() < count) found_.resize(count);
+        const Piece rest = contacts_.piece(std::span(found_).first(count).subspan(known), known);
         device.queue().read({&rest, 1});
     }
+    count_ = count;
     expected_ = count + count / 4;
     return true;
 }

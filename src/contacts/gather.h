@@ -17,12 +17,13 @@ public:
     /// there is more now, and they are to be written again.
     bool read(Device& device, RayBatch& batch);
     /// In the order of their rays.
-    std::span<const kernels::LocalContact> contacts() const { return found_; }
+    std::span<const kernels::LocalContact> contacts() const { return std::span(found_).first(count_); }
 
 private:
     Array<kernels::LocalContact> contacts_;
-    std::vector<kernels::LocalContact> found_;
-    std::size_t expected_ = 0;
+    std::vector<kernels::LocalContact> found_; ///< only ever longer
+    std::size_t count_ = 0;                    ///< of found_
+    std::size_t expected_ = 0;                 ///< in the next step
 };
 
 } // namespace raycontact

@@ -17,6 +17,10 @@ namespace {
 const std::vector<std::string> exact_options = {"--fmad=false", "--prec-div=true", "--prec-sqrt=true", "--ftz=false",
                                                 "--std=c++17"};
 
+std::string text() {
+    return kernel_text(cuda_pieces, true);
+}
+
 const Nvrtc& nvrtc() {
     static const Nvrtc loaded;
     return loaded;
@@ -31,7 +35,7 @@ std::vector<std::string> with(std::vector<std::string> options, const std::vecto
 PtxReport without_intended_fma(const std::vector<std::string>& options, std::string* ptx = nullptr) {
     const std::string marked = "extern \"C\" __device__ float marked_fma(float, float, float);\n"
                                "#define __fmaf_rn marked_fma\n"
-                               + cuda_text();
+                               + text();
     const std::string made = nvrtc().compile(marked, with(options, {"--relocatable-device-code=true"}));
     if (ptx) *ptx = made;
     return read_ptx(made);
@@ -50,21 +54,24 @@ std::vector<std::string> target(const std::string& architecture) {
 class Architecture : public testing::TestWithParam<const char*> {};
 
 TEST_P(Architecture, has_every_kernel_and_rounds_every_operation) {
-    const std::string ptx = nvrtc().compile(cuda_text(), with(exact_options, target(GetParam())));
+    const std::string ptx = nvrtc().compile(text(), with(exact_options, target(GetParam())));
     EXPECT_NE(ptx.find(std::string(".target sm_") + GetParam()), std::string::npos);
     const PtxReport report = read_ptx(ptx);
     std::vector<std::string> expected = {
 #define RAYCONTACT_KERNEL(name) #name,
+#define RAYCONTACT_CPU_KERNEL(name)
 #include "kernels/kernels.def"
 #undef RAYCONTACT_KERNEL
-    };
+#undef RAYCONTACT_CPU_KERNEL
+        "scan_at_once", "scan_blocks", "scan_sums", "scan_firsts", "probe_float", "probe_double"};
     std::vector<std::string> entries = report.entries;
     std::sort(expected.begin(), expected.end());
     std::sort(entries.begin(), entries.end());
     EXPECT_EQ(entries, expected);
     EXPECT_EQ(joined(report.inexact), "");
     EXPECT_GT(report.rounded, 500u);
-    EXPECT_GT(report.fused, 0u); // product_error
+    EXPECT_GT(report.rounded_double, 20u); // place_pairs: no fused one among them
+    EXPECT_GT(report.fused, 0u);           // product_error
 }
 
 TEST_P(Architecture, fuses_only_in_product_error) {
@@ -101,8 +108,9 @@ TEST(ptx, sees_what_does_not_round_as_ours) {
     const auto report = [](const char* line) { return read_ptx(line); };
     for (const char* wrong :
          {"\tadd.f32 \t%f1, %f2, %f3;", "\tmul.ftz.f32 %f1, %f2, %f3;", "@%p1 mad.rn.f32 %f1, %f2, %f3, %f4;",
-          "\tdiv.full.f32 %f1, %f2, %f3;", "\tsqrt.approx.f32 %f1, %f2;", "\tadd.rn.f64 %fd1, %fd2, %fd3;",
-          "\tadd.rz.f32 %f1, %f2, %f3;", "\tsin.approx.f32 %f1, %f2;", "\tsetp.lt.ftz.f32 %p1, %f1, %f2;"})
+          "\tdiv.full.f32 %f1, %f2, %f3;", "\tsqrt.approx.f32 %f1, %f2;", "\tfma.rn.f64 %fd1, %fd2, %fd3, %fd4;",
+          "\tdiv.rn.f64 %fd1, %fd2, %fd3;", "\tadd.rz.f32 %f1, %f2, %f3;", "\tsin.approx.f32 %f1, %f2;",
+          "\tsetp.lt.ftz.f32 %p1, %f1, %f2;"})
         EXPECT_EQ(report(wrong).inexact.size(), 1u) << wrong;
     for (const char* right : {"\tadd.rn.f32 %f1, %f2, %f3;", "@!%p2 sub.rn.f32 %f1, %f2, %f3;"}) {
         EXPECT_EQ(report(right).inexact.size(), 0u) << right;

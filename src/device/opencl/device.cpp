@@ -34,7 +34,6 @@ public:
     DriverDevice(const Listed& listed, const Source& source)
         : info_(listed.info), context_(make_context(listed.id)), program_(context_.get(), listed.id, source),
           launcher_(context_.get(), listed.id), scan_(program_, context_.get(), listed.id) {
-        launch_all();
         const Probed probed = probe(launcher_, program_, source, context_.get());
         if (info_.exact && !probed.differs.empty()) {
             info_.exact = info_.usable = false;
@@ -43,14 +42,6 @@ public:
         traits_.has_double = probed.exact_double;
     }
 
-    const DeviceInfo& info() const override { return info_; }
-    const DeviceTraits& traits() const override { return traits_; }
-    std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
-        return std::make_unique<DeviceBuffer>(context_.get(), bytes);
-    }
-    Queue& queue() override { return *this; }
-
-private:
     // Some drivers compile a kernel when it is first launched; that is not to happen in the midst of a step.
     void launch_all() {
 #define RAYCONTACT_KERNEL(name)                                                                                        \
@@ -64,6 +55,20 @@ private:
         finish();
     }
 
+    const DeviceInfo& info() const override {
+        return info_;
+    }
+    const DeviceTraits& traits() const override {
+        return traits_;
+    }
+    std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
+        return std::make_unique<DeviceBuffer>(context_.get(), bytes);
+    }
+    Queue& queue() override {
+        return *this;
+    }
+
+private:
     void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
         check(
             clEnqueueWriteBuffer(launcher_.queue(), memory_of(&to), CL_TRUE, offset, bytes, from, 0, nullptr, nullptr),
@@ -133,6 +138,7 @@ std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::funct
     std::unique_ptr<DriverDevice> device;
     try {
         device = std::make_unique<DriverDevice>(listed, source);
+        if (device->info().usable || inexact) device->launch_all();
     } catch (const std::runtime_error& error) {
         throw std::runtime_error("device '" + listed.info.id + "' (" + listed.info.name
                                  + ") did not open: " + error.what());

@@ -47,17 +47,20 @@ std::string bus_of(cl_device_id id) {
         std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%x", domain, bus, device, function);
         return std::string(text.data());
     };
-    std::array<cl_uint, 4> khr{};
-    if (clGetDeviceInfo(id, pci_khr, sizeof khr, khr.data(), nullptr) == CL_SUCCESS)
-        return address(khr[0], khr[1], khr[2], khr[3]);
-    cl_uint bus = 0;
-    if (clGetDeviceInfo(id, bus_nv, sizeof bus, &bus, nullptr) == CL_SUCCESS) {
-        const auto slot = value_of<cl_uint>(id, slot_nv); // device and function in one
-        return address(value_of<cl_uint>(id, domain_nv), bus, slot >> 3, slot & 7);
+    const std::string extensions = text_of(id, CL_DEVICE_EXTENSIONS);
+    const auto has = [&](const char* extension) { return extensions.find(extension) != std::string::npos; };
+    if (has("cl_khr_pci_bus_info")) {
+        const auto at = value_of<std::array<cl_uint, 4>>(id, pci_khr);
+        return address(at[0], at[1], at[2], at[3]);
     }
-    std::array<unsigned char, 24> amd{}; // the address is in its last bytes
-    if (clGetDeviceInfo(id, topology_amd, sizeof amd, amd.data(), nullptr) == CL_SUCCESS && amd[0] == 1)
-        return address(0, amd[21], amd[22], amd[23]);
+    if (has("cl_nv_device_attribute_query")) {
+        const auto slot = value_of<cl_uint>(id, slot_nv); // device and function in one
+        return address(value_of<cl_uint>(id, domain_nv), value_of<cl_uint>(id, bus_nv), slot >> 3, slot & 7);
+    }
+    if (has("cl_amd_device_attribute_query")) {
+        const auto topology = value_of<std::array<unsigned char, 24>>(id, topology_amd); // its last bytes, if of PCI
+        if (topology[0] == 1) return address(0, topology[21], topology[22], topology[23]);
+    }
     return "";
 }
 

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// One hash of every scene, method and caster, whatever the device; and what a scene may hold little or nothing of.
+#include "reference/meshes.h"
+#include "reference/random.h"
+#include "reference/vector.h"
+#include "scenes/models/model.h"
+
+#include "part/part.h"
+
+#include <raycontact/contact.h>
+#include <raycontact/device.h>
+#include <raycontact/scene.h>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <thread>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+std::vector<std::shared_ptr<const Shape>> shapes_of(const std::vector<Mesh>& meshes) {
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Mesh& mesh : meshes) shapes.push_back(Shape::make(mesh));
+    return shapes;
+}
+
+struct Crowd {
+    std::string name;
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    std::uint32_t bodies = 0;
+    double spread = 1, speed = 0.02;
+    std::size_t least_contacts = 0;
+};
+
+const std::vector<Crowd>& crowds() {
+    static const std::vector<Crowd> made = {
+        {"closed", shapes_of({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()}), 16, 1.2,
+         0.02, 500},
+        {"open", shapes_of({bowl_mesh(8), sheet_mesh(8), open_box_mesh(4)}), 12, 0.8, 0.01, 100},
+        {"mixed, slow",
+         shapes_of({scenes::scene_model("knot", 302).mesh, scenes::scene_model("gear", 302).mesh, bowl_mesh(8)}), 14,
+         0.8, 0.0005, 500},
+        {"far apart", shapes_of({tetrahedron_mesh()}), 5, 1e6, 1, 0},
+    };
+    return made;
+}
+
+std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std::string& device) {
+    Settings settings;
+    settings.method = method;
+    settings.caster = caster;
+    settings.device = device;
+    settings.threads = 2;
+    Scene scene(settings);
+    Random random(2013);
+    std::vector<Pose> poses;
+    for (std::uint32_t i = 0; i < crowd.bodies; ++i) {
+        poses.push_back(random.rotation());
+        poses.back().translation = crowd.spread * random.in_ball();
+        scene.add(crowd.shapes[i % crowd.shapes.size()], poses.back());
+    }
+    ContactHash hash;
+    std::size_t contacts = 0;
+    for (std::uint32_t step = 0; step < 5; ++step) {
+        hash.add(step, scene.step());
+        contacts += scene.contacts().size();
+        for (BodyId body = 0; body < poses.size(); ++body) {
+            poses[body].translation = poses[body].translation + crowd.speed * random.in_ball();
+            scene.set_pose(body, poses[body]);
+        }
+    }
+    EXPECT_GE(contacts, crowd.least_contacts) << crowd.name;
+    return hash.hex();
+}
+
+void expect_the_cpus_hash(const std::string& device) {
+    for (const Crowd& crowd : crowds())
+        for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified})
+            for (const Caster caster : {Caster::bvh, Caster::basic})
+                EXPECT_EQ(hash_of(crowd, method, caster, device), hash_of(crowd, method, caster, "cpu"))
+                    << crowd.name << ", " << to_string(method) << ", " << to_string(caster) << ", " << device;
+}
+
+std::vector<std::string> opencl_devices() {
+    std::vector<std::string> ids;
+    for (const DeviceInfo& info : list_devices())
+        if (info.kind == "opencl" && info.usable) ids.push_back(info.id);
+    return ids;
+}
+
+bool has_parts() {
+    try {
+        open_device("opencl:0/1", 1);
+        return true;
+    } catch (const std::exception& error) {
+        std::printf("[ no parts ] %s\n", error.what());
+        return false;
+    }
+}
+
+TEST(scenes, have_one_hash_on_the_first_device) {
+    ASSERT_FALSE(opencl_devices().empty()) << "on Debian: apt-get install pocl-opencl-icd";
+    expect_the_cpus_hash(opencl_devices().front());
+}
+
+// Two devices, or parts of one, at the same time, each with its own scene.
+void expect_side_by_side(const std::string& one, const std::string& other) {
+    const Crowd& crowd = crowds().front();
+    const std::string expected = hash_of(crowd, Method::standard, Caster::bvh, "cpu");
+    std::string a, b;
+    std::thread thread([&] { a = hash_of(crowd, Method::standard, Caster::bvh, one); });
+    b = hash_of(crowd, Method::standard, Caster::bvh, other);
+    thread.join();
+    EXPECT_EQ(a, expected) << one;
+    EXPECT_EQ(b, expected) << other;
+}
+
+TEST(scenes, have_one_hash_on_two_devices) {
+    const std::vector<std::string> devices = opencl_devices();
+    if (devices.size() < 2) GTEST_SKIP() << "one OpenCL device; POCL_DEVICES=\"pthread pthread\" makes two";
+    expect_side_by_side(devices[0], devices[1]);
+}
+
+TEST(scenes, have_one_hash_on_parts_of_a_device) {
+    if (!has_parts()) GTEST_SKIP() << "the driver does not divide the device";
+    expect_side_by_side("opencl:0/0", "opencl:0/1");
+}
+
+// Pairs that go from the CPU to another device and back have the contacts that they would have had.
+TEST(parts, of_different_devices_hand_pairs_over) {
+    const Crowd& crowd = crowds()[2];
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive}) {
+        Settings settings;
+        settings.method = method;
+        Part whole(open_device("cpu", 1)), on_cpu(open_device("cpu", 1)), elsewhere(open_device("opencl:0", 1));
+        std::vector<PlacedBody> bodies(crowd.bodies);
+        std::vector<SlotPair> pairs;
+        for (Part* part : {&whole, &on_cpu, &elsewhere})
+            for (const auto& shape : crowd.shapes) part->shapes().add(shape);
+        Random random(3);
+        for (BodySlot i = 0; i < crowd.bodies; ++i) {
+            bodies[i].shape = crowd.shapes[i % crowd.shapes.size()].get();
+            bodies[i].shape_index = whole.shapes().index_of(bodies[i].shape);
+            bodies[i].pose = random.rotation();
+            bodies[i].pose.translation = crowd.spread * random.in_ball();
+            bodies[i].centred = centred_pose(*bodies[i].shape, bodies[i].pose);
+            for (BodySlot j = i + 1; j < crowd.bodies; ++j) pairs.emplace_back(i, j);
+        }
+        std::vector<bool> is_elsewhere(pairs.size());
+        std::size_t contacts = 0;
+        for (int step = 0; step < 12; ++step) {
+            std::vector<SlotPair> go, come, stay, away;
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                if (step > 0 && random.below(5) == 0) {
+                    (is_elsewhere[i] ? come : go).push_back(pairs[i]);
+                    is_elsewhere[i] = !is_elsewhere[i];
+                }
+                (is_elsewhere[i] ? away : stay).push_back(pairs[i]);
+            }
+            const auto going = on_cpu.take_out(bodies, go), coming = elsewhere.take_out(bodies, come);
+            elsewhere.put_in(bodies, going);
+            on_cpu.put_in(bodies, coming);
+            for (PlacedBody& body : bodies) {
+                body.pose.translation = body.pose.translation + crowd.speed * random.in_ball();
+                body.centred = centred_pose(*body.shape, body.pose);
+            }
+            whole.begin(bodies, pairs, settings);
+            on_cpu.begin(bodies, stay, settings);
+            elsewhere.begin(bodies, away, settings);
+            const auto expected = whole.end(), here = on_cpu.end(), there = elsewhere.end();
+            auto next_here = here.begin(), next_there = there.begin();
+            for (const kernels::LocalContact& contact : expected) {
+                auto& next = is_elsewhere[contact.pair / 2] ? next_there : next_here;
+                ASSERT_NE(next, is_elsewhere[contact.pair / 2] ? there.end() : here.end());
+                kernels::LocalContact same = *next++;
+                same.pair = contact.pair;
+                ASSERT_EQ(std::memcmp(&same, &contact, sizeof same), 0) << to_string(method) << ", step " << step;
+            }
+            EXPECT_EQ(expected.size(), here.size() + there.size());
+            contacts += there.size();
+        }
+        EXPECT_GT(contacts, 100u);
+    }
+}
+
+// ---- little or nothing
+
+class Nothing : public testing::TestWithParam<Method> {
+protected:
+    static Settings settings(const char* device) {
+        Settings settings;
+        settings.method = GetParam();
+        settings.device = device;
+        return settings;
+    }
+};
+
+TEST_P(Nothing, is_no_contact) {
+    Scene scene(settings("opencl:0"));
+    EXPECT_EQ(scene.step().size(), 0u) << "no body";
+    const auto shape = Shape::make(tetrahedron_mesh());
+    Pose far;
+    far.translation = {100, 0, 0};
+    scene.add(shape);
+    EXPECT_EQ(scene.step().size(), 0u) << "one body";
+    const BodyId other = scene.add(shape, far);
+    EXPECT_EQ(scene.step().size(), 0u) << "no pair";
+    const Pair pair{0, other};
+    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "a pair out of reach";
+    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "again";
+    scene.set_pose(other, Pose{});
+    const std::size_t touching = scene.step({&pair, 1}).size();
+    scene.set_pose(other, far);
+    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "gone, after " << touching;
+    scene.remove(other);
+    EXPECT_EQ(scene.step().size(), 0u);
+}
+
+// Their arrays of the grids that know an outside are empty.
+TEST_P(Nothing, is_known_of_the_outside_of_open_meshes) {
+    std::string hashes[2];
+    for (int i = 0; i < 2; ++i) {
+        Scene scene(settings(i == 0 ? "cpu" : "opencl:0"));
+        const auto sheet = Shape::make(sheet_mesh(6));
+        Random random(5);
+        for (int k = 0; k < 6; ++k) {
+            Pose pose = random.rotation();
+            pose.translation = 0.3 * random.in_ball();
+            scene.add(sheet, pose);
+        }
+        ContactHash hash;
+        for (std::uint32_t step = 0; step < 3; ++step) hash.add(step, scene.step());
+        EXPECT_GT(scene.contacts().size(), 0u);
+        hashes[i] = hash.hex();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(methods, Nothing,
+                         testing::Values(Method::standard, Method::iterative, Method::predictive, Method::certified),
+                         [](const auto& method) { return std::string(to_string(method.param)); });
+
+} // namespace
