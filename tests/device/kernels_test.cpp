@@ -65,7 +65,7 @@ TEST(opencl, every_exact_device_leaves_the_same_bytes) {
 
 // Blocks, rays and contacts, in this order, have no room in the first step; each time all is done again.
 TEST(opencl, what_has_no_room_is_done_again) {
-    const Work heap = make_heap(12);
+    const Work heap = make_heap(20);
     const std::vector<Way> standard = {{Method::standard, Caster::bvh, false}};
     const Outcome on_cpu = run_on_cpu(heap, standard), outcome = run_work(open_device("opencl:0", 1), heap, standard);
     EXPECT_EQ(launches_of(on_cpu.trace, "place_pairs"), 4u) << "once a step";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hash of every scene, method and caster, whatever the device; and what a scene may hold little or nothing of.
+#include "device/work.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
 #include "reference/vector.h"
@@ -13,16 +14,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <thread>
 
 using namespace raycontact;
 using namespace raycontact::reference;
+using raycontact::device_test::same_bits;
 
 namespace {
 
 std::vector<std::shared_ptr<const Shape>> shapes_of(const std::vector<Mesh>& meshes) {
     std::vector<std::shared_ptr<const Shape>> shapes;
+    shapes.reserve(meshes.size());
     for (const Mesh& mesh : meshes) shapes.push_back(Shape::make(mesh));
     return shapes;
 }
@@ -177,7 +179,7 @@ TEST(parts, of_different_devices_hand_pairs_over) {
                 ASSERT_NE(next, is_elsewhere[contact.pair / 2] ? there.end() : here.end());
                 kernels::LocalContact same = *next++;
                 same.pair = contact.pair;
-                ASSERT_EQ(std::memcmp(&same, &contact, sizeof same), 0) << to_string(method) << ", step " << step;
+                ASSERT_TRUE(same_bits({same}, {contact})) << to_string(method) << ", step " << step;
             }
             EXPECT_EQ(expected.size(), here.size() + there.size());
             contacts += there.size();

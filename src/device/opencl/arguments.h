@@ -6,7 +6,7 @@
 namespace raycontact::opencl {
 
 inline void set_argument(cl_kernel kernel, cl_uint at, cl_mem memory) {
-    check(clSetKernelArg(kernel, at, sizeof memory, &memory), "clSetKernelArg");
+    check(clSetKernelArg(kernel, at, sizeof(cl_mem), &memory), "clSetKernelArg");
 }
 inline void set_argument(cl_kernel kernel, cl_uint at, kernels::uint number) {
     check(clSetKernelArg(kernel, at, sizeof number, &number), "clSetKernelArg");
