@@ -2,6 +2,7 @@
 // How many launches and waits a step takes, of the vertex rule. These ceilings only ever fall.
 #include "property/shapes.h"
 #include "reference/random.h"
+#include "reference/vector.h"
 
 #include <raycontact/scene.h>
 
