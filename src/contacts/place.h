@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "executor/executor.h"
 #include "pairs/ordered_pairs.h"
 
 #include <raycontact/scene.h>

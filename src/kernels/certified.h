@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of the certified method (docs/certified.md), which only devices run that share the host's memory; included
-// after kernels.h.
+// The kernels of the certified method (docs/certified.md), which only devices run that share the host's memory;
+// included after kernels.h.
 #include "kernels/watch.h"
 
 #include "kernels/look.h"

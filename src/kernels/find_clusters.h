@@ -206,52 +206,33 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     }
 }
 
+// horizons: without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0, or without
+// horizons: all that may reach into the bounds. clears, where there are horizons: of a pair without blocks, how far its
+// vertices can move before one could be in contact; may be less, also negative.
 KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
-                           GLOBAL uint* RESTRICT counts, GLOBAL ulong* RESTRICT small) {
+                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
+                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
+                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears, GLOBAL ulong* RESTRICT small) {
     FOR_EACH(p, count) {
+        counts[p] = 0u;
+        if (pairs[p].source == NONE) continue;
         float clear;
-        counts[p] = pairs[p].source == NONE
-                        ? 0u
-                        : count_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, &clear, small);
+        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
+        counts[p] = horizon < 0.0f
+                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, small)
+                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, small);
+        if (horizons != 0) clears[p] = clear;
     }
 }
 
 KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT clusters,
+                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
+                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                            GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
                            GLOBAL PairBlock* RESTRICT found) {
     FOR_EACH(p, count) {
-        if (pairs[p].source != NONE)
-            write_reached(p, pairs, shapes, clusters, false, (GLOBAL const uint*)0, 0.0f, small[p], firsts[p], found);
-    }
-}
-
-// The same without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0: by the
-// bounds alone. clears: of a pair without blocks, how far its vertices can move before one could be in contact; may be
-// less, also negative.
-KERNEL void count_near_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                                GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                                GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                                GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears,
-                                GLOBAL ulong* RESTRICT small) {
-    FOR_EACH(p, count) {
-        float clear;
-        const float horizon = horizons[p];
-        counts[p] = horizon < 0.0f
-                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, small)
-                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, small);
-        clears[p] = clear;
-    }
-}
-
-KERNEL void write_near_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                                GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                                GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                                GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
-                                GLOBAL PairBlock* RESTRICT found) {
-    FOR_EACH(p, count) {
-        const float horizon = horizons[p];
+        if (pairs[p].source == NONE) continue;
+        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
         if (horizon < 0.0f)
             write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, small[p], firsts[p], found);
         else

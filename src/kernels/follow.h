@@ -18,20 +18,6 @@ typedef struct {
     uint how;
 } Outcome;
 
-DEVICE uint is_inside(GLOBAL const float* RESTRICT bounds, const float* p) {
-    return (uint)(p[0] >= bounds[0]) & (uint)(p[0] <= bounds[3]) & (uint)(p[1] >= bounds[1]) & (uint)(p[1] <= bounds[4])
-           & (uint)(p[2] >= bounds[2]) & (uint)(p[2] <= bounds[5]);
-}
-
-DEVICE Hit no_hit(uint sides) {
-    Hit hit;
-    hit.triangle = NONE;
-    hit.distance = 0.0f;
-    hit.facing = 0.0f;
-    hit.sides = sides;
-    return hit;
-}
-
 // The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
 // (paper equation 1), where the ray is cut (paper section 5.3).
 DEVICE uint predicted(const Closest* ahead, float culling) {
@@ -52,7 +38,7 @@ DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive,
         traverse_basic(&closest, &frame, 1u, shape, blocks);
     }
     Outcome end;
-    end.hit = own != 0u ? decide(CASTER_BASIC, ray, &closest, shape, nodes, blocks, normals) : no_hit(0u);
+    end.hit = own != 0u ? decide(CASTER_BASIC, ray, &closest, shape, nodes, blocks, normals) : no_contact();
     end.next = end.hit.triangle != NONE ? end.hit.triangle : predicted(&ahead, culling);
     end.how = CAST;
     return end;
@@ -106,7 +92,7 @@ DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_i
                     float culling, GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Face* RESTRICT faces,
                     GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
     Outcome end;
-    end.hit = no_hit(0u);
+    end.hit = no_contact();
     end.next = NONE;
     end.how = WALKED | LOST;
     const RayFrame frame = frame_ray(ray->position, ray->direction);
@@ -147,7 +133,7 @@ DEVICE Outcome follow_ray(const SourceRay* ray, uint inside, uint start, uint ma
                           GLOBAL const Face* RESTRICT faces, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals) {
     Outcome end;
-    end.hit = no_hit(0u);
+    end.hit = no_contact();
     end.next = NONE;
     end.how = CAST;
     if (start < AHEAD_ONLY) {
@@ -268,7 +254,7 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
         const float culling = cullings[ray.pair];
         GLOBAL const ShapeHeader* shape = shapes + target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
-        const uint inside = is_inside(pairs[ray.pair].bounds, source.position);
+        const uint inside = (uint)in_bounds(pairs + ray.pair, source.position);
         const Outcome end = follow_ray(&source, inside, starts[i], max_iterations, predictive, cast_lost, culling,
                                        shape, faces, blocks, normals);
         record_hit(end.hit, i, stride, hits, outcomes);
@@ -305,7 +291,7 @@ KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive
         GLOBAL const ShapeHeader* shape = shapes + pair->target;
         const float culling = cullings[rays[i].pair];
         const SourceRay ray = source_ray(pair, vertices, rays[i].slot);
-        const uint inside = is_inside(pair->bounds, ray.position);
+        const uint inside = (uint)in_bounds(pair, ray.position);
         Outcome end = follow_ray(&ray, inside, starts[i], max_iterations, predictive, cast_lost, culling, shape, faces,
                                  blocks, normals);
         if ((end.how & CAST) != 0u) {

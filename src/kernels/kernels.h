@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels that every device runs, in the order of the pipeline; included after one dialect.h and types.h. No include guards: the CPU
-// device compiles this text once per instruction set.
+// The kernels that every device runs, in the order of the pipeline; included after one dialect.h and types.h. No
+// include guards: the CPU device compiles this text once per instruction set.
 #include "kernels/triangle.h"
 
 #include "kernels/traverse.h"

@@ -176,8 +176,9 @@ typedef struct {
 } Look;
 WIRE_SIZE(Look, 16);
 
-// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without a
-// tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its direction.
+// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without
+// a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its
+// direction.
 typedef struct {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known

@@ -3,8 +3,6 @@
 
 #include "shape/shape_data.h"
 
-#include <limits>
-#include <stdexcept>
 
 namespace raycontact {
 
@@ -34,32 +32,6 @@ void widen(kernels::OrderedPair& pair, float by) {
         pair.bounds[k] -= by;
         pair.bounds[3 + k] += by;
     }
-}
-
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                 std::vector<kernels::OrderedPair>& ordered) {
-    if (pairs.size() >= std::numeric_limits<std::uint32_t>::max() / 2)
-        throw std::length_error("more than 2^31 pairs in one step; give fewer");
-    ordered.resize(2 * pairs.size());
-    executor.run(static_cast<std::uint32_t>(pairs.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t p = begin; p < end; ++p) {
-            const PlacedBody& a = bodies[pairs[p].first];
-            const PlacedBody& b = bodies[pairs[p].second];
-            order_pair(a, b, ordered[2 * p]);
-            order_pair(b, a, ordered[2 * p + 1]);
-        }
-    });
-}
-
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                 std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered) {
-    ordered.resize(which.size());
-    executor.run(static_cast<std::uint32_t>(which.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(bodies, pairs, which[i]);
-            order_pair(source, target, ordered[i]);
-        }
-    });
 }
 
 } // namespace raycontact

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "device/host_kernels.h"
-#include "executor/executor.h"
 
 #include "slot_pair.h"
 
@@ -46,13 +45,5 @@ void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& 
 
 /// The bounds grown by some metres on every side.
 void widen(kernels::OrderedPair& pair, float by);
-
-/// Each pair twice, a into b and b into a, in the order of `pairs`.
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                 std::vector<kernels::OrderedPair>& ordered);
-
-/// Those directions only, by their numbers.
-void order_pairs(Executor& executor, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                 std::span<const std::uint32_t> which, std::vector<kernels::OrderedPair>& ordered);
 
 } // namespace raycontact

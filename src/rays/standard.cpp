@@ -26,11 +26,13 @@ void StandardRays::cast(const Update& update, RayBatch& batch) {
     const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
     block_counts_.resize(update.device, 1, pairs.size());
     small_.resize(update.device, pairs.size());
-    launch<KernelId::count_clusters>(update.device, pairs.size(), pairs, arrays.headers, arrays.clusters,
-                                     block_counts_.values(), small_);
+    const Array<float> none; // every block that may reach into the bounds
+    launch<KernelId::count_clusters>(update.device, pairs.size(), pairs, none, arrays.headers, arrays.clusters,
+                                     arrays.clearances, block_counts_.values(), none, small_);
     block_counts_.scan(update.device, pairs.size(), batch.totals, RayBatch::block_sum, blocks_.size());
     launch<KernelId::write_clusters>(update.device, items_of(batch.totals, RayBatch::block_sum, pairs.size()), pairs,
-                                     arrays.headers, arrays.clusters, small_, block_counts_.firsts(), blocks_);
+                                     none, arrays.headers, arrays.clusters, arrays.clearances, small_,
+                                     block_counts_.firsts(), blocks_);
 
     const Count found = results_of(batch.totals, RayBatch::block_sum, blocks_.size());
     ray_counts_.resize(update.device, 2, blocks_.size());

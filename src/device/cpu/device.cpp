@@ -68,16 +68,15 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::hold_rays:
     case KernelId::follow_rays_bvh:
         return 128;
-    case KernelId::count_near_clusters:
     case KernelId::look_at_watches:
         return 16;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
-    case KernelId::write_near_clusters:
     case KernelId::begin_watches:
     case KernelId::count_rays:
     case KernelId::count_near_rays:
         return 64;
+    case KernelId::place_pairs:
     case KernelId::write_watch_rays:
     case KernelId::write_near_rays:
     case KernelId::copy_candidates:

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many launches and waits a step takes, of the vertex rule. These ceilings only ever fall.
+#include "property/shapes.h"
+#include "reference/random.h"
+#include "reference/vector.h"
+
+#include <raycontact/scene.h>
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+struct Ceiling {
+    Method method;
+    std::uint64_t launches, reads; ///< of the median step
+};
+
+constexpr Ceiling ceilings[] = {
+    {Method::standard, 11, 1}, {Method::certified, 16, 4}, {Method::iterative, 14, 4}, {Method::predictive, 14, 4}};
+
+std::uint64_t median(std::vector<std::uint64_t> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// A crowd in which most bodies creep, some are fast, and pairs come and go in every step.
+TEST(ceilings, launches_and_reads_of_a_step) {
+    for (const Ceiling& ceiling : ceilings) {
+        Settings settings;
+        settings.method = ceiling.method;
+        settings.device = "cpu";
+        settings.threads = 1;
+        Scene scene(settings);
+        Random random(21);
+        std::vector<Pose> poses;
+        for (std::uint32_t i = 0; i < 60; ++i) {
+            const auto& subjects = closed_subjects();
+            Pose pose = random.rotation();
+            pose.translation = 1.9 * random.in_ball();
+            scene.add(subjects[i % subjects.size()].shape, pose);
+            poses.push_back(pose);
+        }
+        std::vector<std::uint64_t> launches, reads;
+        for (int step = 0; step < 60; ++step) {
+            EXPECT_GT(scene.step().size(), 100u);
+            const StepStats& stats = scene.stats();
+            ASSERT_EQ(stats.work.size(), 1u);
+            EXPECT_EQ(stats.work[0].device, "cpu");
+            EXPECT_EQ(stats.work[0].pairs, stats.pairs);
+            EXPECT_GT(stats.work[0].bytes_down, 0u);
+            EXPECT_GT(stats.work[0].busy_ms, 0);
+            launches.push_back(stats.work[0].launches);
+            reads.push_back(stats.work[0].reads);
+            for (BodyId body = 0; body < poses.size(); ++body) {
+                const double pace = body % 6 == 0 ? 0.02 : 0.0005;
+                poses[body].translation = poses[body].translation + pace * random.in_ball();
+                scene.set_pose(body, poses[body]);
+            }
+        }
+        EXPECT_LE(median(launches), ceiling.launches) << to_string(ceiling.method);
+        EXPECT_LE(median(reads), ceiling.reads) << to_string(ceiling.method);
+    }
+}
+
+} // namespace
+} // namespace raycontact
