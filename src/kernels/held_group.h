@@ -45,7 +45,7 @@ DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint l
 }
 
 DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
-                     GLOBAL const Holder* RESTRICT holder, uint pair, uint target,
+                     GLOBAL const HeldRange* RESTRICT held_range, uint pair, uint target,
                      GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     const uint r = group->rays.count;
     add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
@@ -55,14 +55,14 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     }
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
-    group->margin[r] = holder->margin;
-    group->asks_cap[r] = holder->asks_caps;
+    group->margin[r] = held_range->margin;
+    group->asks_cap[r] = held_range->asks_caps;
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
     GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
-    if (holder->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
+    if (held_range->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
 DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,

@@ -23,8 +23,8 @@ bool casts_all(const Update& update) {
 }
 
 // As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
-bool is_idle(const kernels::Holder& holder) {
-    return holder.count == 0 && holder.radius <= 0 && holder.asks_caps == 0;
+bool is_idle(const kernels::HeldRange& held_range) {
+    return held_range.count == 0 && held_range.radius <= 0 && held_range.asks_caps == 0;
 }
 
 } // namespace
@@ -106,7 +106,7 @@ void CertifiedRays::place(const Update& update) {
     }
     numbers_.resize(due_count);
     pairs_.resize(update.device, due_count);
-    holders_.resize(update.device, due_count);
+    held_ranges_.resize(update.device, due_count);
     segments_.resize(update.device, segment_count);
     fast_margins_.resize(update.device, fast_count_);
     update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
@@ -116,7 +116,7 @@ void CertifiedRays::place(const Update& update) {
             // Where there are few blocks it is not worth asking which are near.
             const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
             fast_margins_.in_place()[i] = few ? -1.0F : static_cast<float>(rounding_margin(source, target));
-            holders_.in_place()[i] = {};
+            held_ranges_.in_place()[i] = {};
         }
     });
     wake_up_.each_slice(update.executor, [&](const WakeUp::Slice& slice) {
@@ -176,7 +176,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     const bool holds = !casts_all(update); // something will be known of the rays afterwards
     const auto looks = looks_.in_place();
     const auto firsts = look_rays_.firsts().in_place();
-    const auto holders = holders_.in_place();
+    const auto held_ranges = held_ranges_.in_place();
     wake_up_.each_slice(update.executor, [&](WakeUp::Slice& slice) {
         std::size_t segment = slice.segment_first, i = slice.first;
         slice.blocks = 0;
@@ -184,10 +184,11 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             Watched& own = *due.own;
             const std::uint32_t ray = segment < looks.size() ? first_ray + firsts[segment] : 0;
             const std::size_t end = segment + segments_of(own.count);
-            kernels::Holder& holder = holders[i++];
-            holder = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius, due.asks_caps};
+            kernels::HeldRange& held_range = held_ranges[i++];
+            held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
+                          due.asks_caps};
             // Where a pair is too fast to be sought for, and nothing was known, nothing is known now either.
-            own.rays = {ray, 0, holds && !is_idle(holder)};
+            own.rays = {ray, 0, holds && !is_idle(held_range)};
             own.wake = own.expiry;
             for (; segment < end; ++segment) {
                 own.wake = std::min(own.wake, double(looks[segment].wake));
@@ -213,7 +214,7 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     std::swap(held_, last_held_);
     held_.resize(device, batch.count.value);
-    launch<KernelId::hold_rays>(device, batch.count, batch.outcomes.stride(), pairs_, holders_, arrays.headers,
+    launch<KernelId::hold_rays>(device, batch.count, batch.outcomes.stride(), pairs_, held_ranges_, arrays.headers,
                                 arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.faces,
                                 arrays.face_normals, batch.rays, last_held_, held_, batch.hits,
                                 batch.outcomes.values());

@@ -53,7 +53,7 @@ private:
     Array<kernels::OrderedPair> pairs_; ///< of numbers_
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
-    Array<kernels::Holder> holders_; ///< of numbers_
+    Array<kernels::HeldRange> held_ranges_; ///< of numbers_
     Columns look_rays_, fast_rays_;
     Array<kernels::OrderedPair> wide_pairs_; ///< of stale_, as what follows
     Array<float> margins_, horizons_;
