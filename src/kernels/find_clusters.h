@@ -107,8 +107,8 @@ DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* R
     return near ? near_lanes(pair, block, target, clearances, horizon, clear) : overlapping_lanes(bounds, block);
 }
 
-// Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
-#define SMALL_BLOCKS 64u
+// For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
+#define BLOCKS_IN_MASK 64u
 
 DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
     PairBlock cluster;
@@ -159,16 +159,16 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
     return count;
 }
 
-// small: of a source of few blocks the answer itself, a bit each. clear: where nothing was found, how far the pair is
-// from a contact at least; of use with `near` alone.
+// block_masks: for a source of few blocks the blocks found, a bit each. clear: where nothing was found, how far the
+// pair is from a contact at least; of use with `near` alone.
 DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
                           GLOBAL const uint* RESTRICT clearances, float horizon, float* clear,
-                          GLOBAL ulong* RESTRICT small) {
+                          GLOBAL ulong* RESTRICT block_masks) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     *clear = UNBOUNDED;
-    if (shape->vertex_block_count > SMALL_BLOCKS)
+    if (shape->vertex_block_count > BLOCKS_IN_MASK)
         return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, clear, false, 0u,
                               (GLOBAL PairBlock*)0);
     const PairBounds bounds = bounds_of(pairs + p);
@@ -180,24 +180,24 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
         blocks |= (ulong)lanes << (VERTEX_LANES * i);
         number += bit_count(lanes);
     }
-    small[p] = blocks;
+    block_masks[p] = blocks;
     return number;
 }
 
 DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong small, uint first,
+                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
                           GLOBAL PairBlock* RESTRICT found) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
-    if (shape->vertex_block_count > SMALL_BLOCKS) {
+    if (shape->vertex_block_count > BLOCKS_IN_MASK) {
         float clear = UNBOUNDED;
         reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, &clear, true, first, found);
         return;
     }
     uint at = first;
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        uint lanes = (uint)(small >> (VERTEX_LANES * i)) & 0xffffu;
+        uint lanes = (uint)(block_mask >> (VERTEX_LANES * i)) & 0xffffu;
         while (lanes != 0u) {
             found[at] = pair_block(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
             ++at;
@@ -212,15 +212,16 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears, GLOBAL ulong* RESTRICT small) {
+                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears,
+                           GLOBAL ulong* RESTRICT block_masks) {
     FOR_EACH(p, count) {
         counts[p] = 0u;
         if (pairs[p].source == NONE) continue;
         float clear;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;
         counts[p] = horizon < 0.0f
-                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, small)
-                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, small);
+                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, block_masks)
+                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, block_masks);
         if (horizons != 0) clears[p] = clear;
     }
 }
@@ -228,15 +229,15 @@ KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pair
 KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
+                           GLOBAL const ulong* RESTRICT block_masks, GLOBAL const uint* RESTRICT firsts,
                            GLOBAL PairBlock* RESTRICT found) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;
         if (horizon < 0.0f)
-            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, small[p], firsts[p], found);
+            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, block_masks[p], firsts[p], found);
         else
-            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, small[p], firsts[p], found);
+            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, block_masks[p], firsts[p], found);
     }
 }
 // NOLINTEND(modernize-use-using,modernize-use-nullptr)

@@ -114,7 +114,7 @@ void CertifiedRays::place(const Update& update) {
             const auto [source, target] = directed_pair(update.bodies, update.pairs, numbers_[i]);
             order_pair(source, target, pairs_.in_place()[i]);
             // Where there are few blocks it is not worth asking which are near.
-            const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+            const bool few = source.shape->data().header.vertex_block_count <= BLOCKS_IN_MASK;
             fast_margins_.in_place()[i] = few ? -1.0F : static_cast<float>(rounding_margin(source, target));
             held_ranges_.in_place()[i] = {};
         }

@@ -16,9 +16,9 @@ void NearBlocks::find(const Update& update, const Array<kernels::OrderedPair>& p
     blocks_.resize(device, 0);
     if (count == 0) return;
     clears_.resize(device, count);
-    small_.resize(device, count);
+    block_masks_.resize(device, count);
     launch<KernelId::count_clusters>(device, count, pairs, horizons, arrays.headers, arrays.clusters, arrays.clearances,
-                                     counts_.values(), clears_, small_);
+                                     counts_.values(), clears_, block_masks_);
     counts_.scan(device, count, totals, at, NONE - 1);
     kernels::Totals sum;
     const Piece pieces[] = {totals.piece({&sum, 1}, at), counts_.values().piece(host_counts_),
@@ -27,7 +27,7 @@ void NearBlocks::find(const Update& update, const Array<kernels::OrderedPair>& p
     check_sums({&sum, 1});
     blocks_.resize(device, sum.results);
     launch<KernelId::write_clusters>(device, sum.results > 0 ? count : 0, pairs, horizons, arrays.headers,
-                                     arrays.clusters, arrays.clearances, small_, counts_.firsts(), blocks_);
+                                     arrays.clusters, arrays.clearances, block_masks_, counts_.firsts(), blocks_);
 }
 
 } // namespace raycontact

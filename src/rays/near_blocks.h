@@ -27,7 +27,7 @@ public:
 private:
     Columns counts_;
     Array<float> clears_;
-    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
+    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
     Array<kernels::PairBlock> blocks_;
     std::vector<kernels::uint> host_counts_;
     std::vector<float> host_clears_;
