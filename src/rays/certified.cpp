@@ -84,8 +84,8 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         own.capacity = range.capacity;
         own.count = near_.host_counts()[i];
         if (own.count == 0) { // nothing to look at for longer than was asked
-            const double clear = 0.99999 * double(near_.host_clears()[i]) - double(due.margin);
-            own.expiry = std::max(own.expiry, std::min(clear, due.longest));
+            const double safe = 0.99999 * double(near_.host_safe_distances()[i]) - double(due.margin);
+            own.expiry = std::max(own.expiry, std::min(safe, due.longest));
         }
     }
     if (near_.blocks().size() == 0) return;
