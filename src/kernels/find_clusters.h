@@ -80,7 +80,7 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    int near[VERTEX_LANES];
+    int within[VERTEX_LANES];
     float beyond[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
@@ -91,20 +91,21 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
         const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= horizon);
-        near[k] = -(int)reached;
+        within[k] = -(int)reached;
         const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
         beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
     *least_safe = least < *least_safe ? least : *least_safe;
-    return pack_sixteen(near);
+    return pack_sixteen(within);
 }
 
-// near: those that `horizon` and the target's clearance grid leave, and how far the others are.
-DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool near,
+// by_horizon: near_lanes(), the boxes that `horizon` and the target's clearance grid leave; else overlapping_lanes().
+DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool by_horizon,
                           GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
                           GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe) {
-    return near ? near_lanes(pair, block, target, clearances, horizon, least_safe) : overlapping_lanes(bounds, block);
+    return by_horizon ? near_lanes(pair, block, target, clearances, horizon, least_safe)
+                      : overlapping_lanes(bounds, block);
 }
 
 // For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
@@ -121,7 +122,7 @@ DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
 // from `first` on when asked to.
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
+                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
                            float horizon, float* least_safe, const bool write, uint first,
                            GLOBAL PairBlock* RESTRICT found) {
@@ -131,8 +132,8 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
     for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
         uint level = top, at = root;
         ulong trail = 0u;
-        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target, clearances,
-                                   horizon, least_safe);
+        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
+                                   clearances, horizon, least_safe);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -151,7 +152,7 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
                 --level;
                 at = child;
-                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target,
+                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
                                       clearances, horizon, least_safe);
             }
         }
@@ -160,22 +161,22 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
 }
 
 // block_masks: for a source of few blocks the blocks found, a bit each. least_safe: if no block was found, how far the
-// pair can at least move before a contact; only with `near`.
+// pair can at least move before a contact; only with `by_horizon`.
 DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
+                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                           GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe,
                           GLOBAL ulong* RESTRICT block_masks) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     *least_safe = UNBOUNDED;
     if (shape->vertex_block_count > BLOCKS_IN_MASK)
-        return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, least_safe, false, 0u,
-                              (GLOBAL PairBlock*)0);
+        return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
+                              0u, (GLOBAL PairBlock*)0);
     const PairBounds bounds = bounds_of(pairs + p);
     ulong blocks = 0u;
     uint number = 0u;
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, near, pairs + p, target,
+        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, by_horizon, pairs + p, target,
                                          clearances, horizon, least_safe);
         blocks |= (ulong)lanes << (VERTEX_LANES * i);
         number += bit_count(lanes);
@@ -185,14 +186,14 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 }
 
 DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
+                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                           GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
                           GLOBAL PairBlock* RESTRICT found) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     if (shape->vertex_block_count > BLOCKS_IN_MASK) {
         float least_safe = UNBOUNDED;
-        reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, &least_safe, true, first,
+        reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, &least_safe, true, first,
                        found);
         return;
     }
