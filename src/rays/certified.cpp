@@ -144,7 +144,7 @@ void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
     fast_rays_.scan(update.device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 
-void CertifiedRays::look(const Update& update, RayBatch& batch) {
+void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     const std::size_t count = segments_.size();
     looks_.resize(update.device, count);
@@ -231,7 +231,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     make_lists(update, batch);
     place(update);
     find_fast_rays(update, batch);
-    look(update, batch);
+    look_at_blocks(update, batch);
     write_rays(update, batch);
     batch.pairs = &pairs_;
     batch.numbers = numbers_;

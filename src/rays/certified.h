@@ -35,7 +35,7 @@ private:
     void make_lists(const Update& update, RayBatch& batch);
     void place(const Update& update);
     void find_fast_rays(const Update& update, RayBatch& batch);
-    void look(const Update& update, RayBatch& batch);
+    void look_at_blocks(const Update& update, RayBatch& batch);
     void write_rays(const Update& update, RayBatch& batch);
     void settle(const Update& update, std::uint32_t first_ray);
     void decide(const Update& update, RayBatch& batch);
