@@ -29,7 +29,7 @@ DEVICE void ask_caps(HeldGroup* group) {
         const float facing = facing_in_cap(group->cap[r], tolerance, group->margin[r], far2, along);
         const uint faces_alike = (uint)(facing >= CAP_LEAST_FACING);
         const uint outside = (uint)(t * facing <= -OUTSIDE_TOLERANCES * tolerance);
-        const uint known = faces_alike & group->is_clear[r] & ((uint)(t >= 0.0f) | outside);
+        const uint known = faces_alike & group->is_inside_edges[r] & ((uint)(t >= 0.0f) | outside);
 
         const float u = group->edge[0][r], v = group->edge[1][r], w = group->edge[2][r];
         const uint by_u = (uint)(u >= v) & (uint)(u >= w), by_v = (by_u ^ 1u) & (uint)(v >= w);
@@ -38,7 +38,7 @@ DEVICE void ask_caps(HeldGroup* group) {
         const uint in_tube = group->is_known[r];
         group->beyond[r] = edge & (0u - (faces_alike & exceeds & ((known | in_tube) ^ 1u)));
         group->is_known[r] = known | in_tube;
-        group->is_hit[r] = (known & group->is_left[r]) | ((known ^ 1u) & group->is_hit[r]);
+        group->is_hit[r] = (known & group->is_exit[r]) | ((known ^ 1u) & group->is_hit[r]);
     }
 }
 

@@ -69,18 +69,18 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
     return pack_sixteen(hit);
 }
 
-// Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). As long as a
-// point needs to reach the bounds it cannot. clear: lowered to how far the other boxes are safe.
+// Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
+// the bounds cannot be in contact before it reaches them. least_safe: lowered to the safe distance of the other boxes.
 DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block,
                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances, float horizon,
-                       float* clear) {
+                       float* least_safe) {
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    int near[VERTEX_LANES];
+    int within[VERTEX_LANES];
     float beyond[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
@@ -91,24 +91,25 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
         const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= horizon);
-        near[k] = -(int)reached;
+        within[k] = -(int)reached;
         const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
         beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
-    *clear = least < *clear ? least : *clear;
-    return pack_sixteen(near);
+    *least_safe = least < *least_safe ? least : *least_safe;
+    return pack_sixteen(within);
 }
 
-// near: those that `horizon` and the target's clearance grid leave, and how far the others are.
-DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool near,
+// by_horizon: near_lanes(), the boxes that `horizon` and the target's clearance grid leave; else overlapping_lanes().
+DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool by_horizon,
                           GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* clear) {
-    return near ? near_lanes(pair, block, target, clearances, horizon, clear) : overlapping_lanes(bounds, block);
+                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe) {
+    return by_horizon ? near_lanes(pair, block, target, clearances, horizon, least_safe)
+                      : overlapping_lanes(bounds, block);
 }
 
-// Shapes of up to this many vertex blocks keep the answer of the counting pass in one word.
-#define SMALL_BLOCKS 64u
+// For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
+#define BLOCKS_IN_MASK 64u
 
 DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
     PairBlock cluster;
@@ -121,9 +122,9 @@ DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
 // from `first` on when asked to.
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
+                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, float* clear, const bool write, uint first,
+                           float horizon, float* least_safe, const bool write, uint first,
                            GLOBAL PairBlock* RESTRICT found) {
     const PairBounds bounds = bounds_of(pair);
     uint count = 0u;
@@ -131,8 +132,8 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
     for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
         uint level = top, at = root;
         ulong trail = 0u;
-        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target, clearances,
-                                   horizon, clear);
+        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
+                                   clearances, horizon, least_safe);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -151,53 +152,54 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
                 --level;
                 at = child;
-                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, near, pair, target,
-                                      clearances, horizon, clear);
+                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
+                                      clearances, horizon, least_safe);
             }
         }
     }
     return count;
 }
 
-// small: of a source of few blocks the answer itself, a bit each. clear: where nothing was found, how far the pair is
-// from a contact at least; of use with `near` alone.
+// block_masks: for a source of few blocks the blocks found, a bit each. least_safe: if no block was found, how far the
+// pair can at least move before a contact; only with `by_horizon`.
 DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* clear,
-                          GLOBAL ulong* RESTRICT small) {
+                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
+                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe,
+                          GLOBAL ulong* RESTRICT block_masks) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
-    *clear = UNBOUNDED;
-    if (shape->vertex_block_count > SMALL_BLOCKS)
-        return reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, clear, false, 0u,
-                              (GLOBAL PairBlock*)0);
+    *least_safe = UNBOUNDED;
+    if (shape->vertex_block_count > BLOCKS_IN_MASK)
+        return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
+                              0u, (GLOBAL PairBlock*)0);
     const PairBounds bounds = bounds_of(pairs + p);
     ulong blocks = 0u;
     uint number = 0u;
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, near, pairs + p, target,
-                                         clearances, horizon, clear);
+        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, by_horizon, pairs + p, target,
+                                         clearances, horizon, least_safe);
         blocks |= (ulong)lanes << (VERTEX_LANES * i);
         number += bit_count(lanes);
     }
-    small[p] = blocks;
+    block_masks[p] = blocks;
     return number;
 }
 
 DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool near,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong small, uint first,
+                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
+                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
                           GLOBAL PairBlock* RESTRICT found) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
-    if (shape->vertex_block_count > SMALL_BLOCKS) {
-        float clear = UNBOUNDED;
-        reach_clusters(p, pairs + p, shape, clusters, near, target, clearances, horizon, &clear, true, first, found);
+    if (shape->vertex_block_count > BLOCKS_IN_MASK) {
+        float least_safe = UNBOUNDED;
+        reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, &least_safe, true, first,
+                       found);
         return;
     }
     uint at = first;
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        uint lanes = (uint)(small >> (VERTEX_LANES * i)) & 0xffffu;
+        uint lanes = (uint)(block_mask >> (VERTEX_LANES * i)) & 0xffffu;
         while (lanes != 0u) {
             found[at] = pair_block(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
             ++at;
@@ -206,37 +208,40 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     }
 }
 
-// horizons: without blocks that cannot be in contact before they have moved by horizons[p], metres; below 0, or without
-// horizons: all that may reach into the bounds. clears, where there are horizons: of a pair without blocks, how far its
-// vertices can move before one could be in contact; may be less, also negative.
+// Counts the vertex blocks of each pair that may reach into the bounds. horizons[p] >= 0, metres: without the blocks
+// that cannot be in contact before they have moved that far. No horizons, or horizons[p] < 0: all of them.
+// safe_distances, where there are horizons: for a pair without blocks, how far its vertices can move before one could
+// be in contact; may be less, also negative.
 KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT clears, GLOBAL ulong* RESTRICT small) {
+                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT safe_distances,
+                           GLOBAL ulong* RESTRICT block_masks) {
     FOR_EACH(p, count) {
         counts[p] = 0u;
         if (pairs[p].source == NONE) continue;
-        float clear;
+        float least_safe;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;
-        counts[p] = horizon < 0.0f
-                        ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &clear, small)
-                        : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &clear, small);
-        if (horizons != 0) clears[p] = clear;
+        counts[p] =
+            horizon < 0.0f
+                ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &least_safe, block_masks)
+                : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &least_safe, block_masks);
+        if (horizons != 0) safe_distances[p] = least_safe;
     }
 }
 
 KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL const ulong* RESTRICT small, GLOBAL const uint* RESTRICT firsts,
+                           GLOBAL const ulong* RESTRICT block_masks, GLOBAL const uint* RESTRICT firsts,
                            GLOBAL PairBlock* RESTRICT found) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;
         if (horizon < 0.0f)
-            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, small[p], firsts[p], found);
+            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, block_masks[p], firsts[p], found);
         else
-            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, small[p], firsts[p], found);
+            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, block_masks[p], firsts[p], found);
     }
 }
 // NOLINTEND(modernize-use-using,modernize-use-nullptr)

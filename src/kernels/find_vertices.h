@@ -3,7 +3,7 @@
 // (the paper's padded grid, Fig. 6, would waste lanes).
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
-#define CLEARED 0.01f // of a cell: far more than rounding could hide
+#define LEAST_DEPTH_IN_BALL 0.01f // of a cell: far more than rounding could hide
 
 // Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
 // outside.
@@ -36,18 +36,18 @@ DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
            != 0u;
 }
 
-// Of the rest, those in an empty ball outside: the grid of bits lets through whole cells, about one vertex in two of
-// them for nothing, and the rays of those are the longest.
-DEVICE uint cleared_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
+// Vertices in a ball of the clearance grid that is outside. The outside grid knows whole cells only: about half of the
+// vertices that it leaves are outside all the same, and their rays are the longest.
+DEVICE uint in_ball_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
                           GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
-    int cleared[VERTEX_LANES];
+    int in_ball[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float safe = safe_distance(grid, balls, found->x[k], found->y[k], found->z[k], UNBOUNDED);
-        cleared[k] = -(int)(safe > CLEARED * grid.cell);
+        in_ball[k] = -(int)(safe > LEAST_DEPTH_IN_BALL * grid.cell);
     }
-    return pack_sixteen(cleared);
+    return pack_sixteen(in_ball);
 }
 
 // Column 0 of counts: vertices whose ray must be cast to know; column 1: vertices in the bounds, one ray of the rule
@@ -64,7 +64,7 @@ KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, GLOBAL const Or
         uint lanes = inside_mask;
         if (lanes != 0u && use_grid != 0u && target->grid_size[0] != 0u)
             lanes &= ~outside_lanes(&found, target, outside_cells);
-        if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~cleared_lanes(&found, target, clearances);
+        if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~in_ball_lanes(&found, target, clearances);
         found_blocks[i].lanes = lanes;
         counts[i] = bit_count(lanes);
         counts[stride + i] = bit_count(inside_mask);

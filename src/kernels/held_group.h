@@ -19,11 +19,12 @@ typedef struct {
     float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    // For caps (cap_group.h), of every ray with a triangle: how its line passes the edges, whether well inside of them
-    // all, and whether it is a hit if the triangle is all that the ray can meet; `distance` is then of the plane.
+    // For caps (cap_group.h), of every ray with a triangle: the edge functions of its line; is_inside_edges: whether
+    // the line passes well inside of all edges; is_exit: whether the ray leaves the target there, a hit if the ray can
+    // meet no other triangle. `distance` is then that of the triangle's plane.
     float edge[3][RAYS_IN_GROUP];
-    uint is_clear[RAYS_IN_GROUP], is_left[RAYS_IN_GROUP];
-    uint beyond[RAYS_IN_GROUP]; // the edge beyond which caps may know more, from 1 on; 0: none
+    uint is_inside_edges[RAYS_IN_GROUP], is_exit[RAYS_IN_GROUP];
+    uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the cap of the neighbour is tested next; 0: none
 } HeldGroup;
 
 // Lanes without a ray, or without a triangle, are asked with the others.
@@ -45,7 +46,7 @@ DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint l
 }
 
 DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
-                     GLOBAL const Holder* RESTRICT holder, uint pair, uint target,
+                     GLOBAL const HeldRange* RESTRICT held_range, uint pair, uint target,
                      GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     const uint r = group->rays.count;
     add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
@@ -55,14 +56,14 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     }
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
-    group->margin[r] = holder->margin;
-    group->asks_cap[r] = holder->asks_caps;
+    group->margin[r] = held_range->margin;
+    group->asks_cap[r] = held_range->asks_caps;
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
     GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
-    if (holder->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
+    if (held_range->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
 DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
@@ -127,17 +128,17 @@ DEVICE void ask_held(HeldGroup* group) {
         const uint met = taken & (away ^ 1u) & (uint)(area_of(e) != 0.0f) & (uint)(group->triangle_slot[r] != NONE);
         const uint alone = (met & (uint)(t + LIMIT_TOLERANCES * tolerance <= limit)) | (uint)(limit >= reach);
 
-        const float near = EDGE_TOLERANCES * tolerance;
-        const uint clear = (uint)(e.u < -near * (magnitude_of(x2 - x1) + magnitude_of(y2 - y1)))
-                           & (uint)(e.v < -near * (magnitude_of(x0 - x2) + magnitude_of(y0 - y2)))
-                           & (uint)(e.w < -near * (magnitude_of(x1 - x0) + magnitude_of(y1 - y0)));
-        const uint left = within & (uint)(t >= 0.0f) & (uint) !(t > reach);
+        const float edge_margin = EDGE_TOLERANCES * tolerance;
+        const uint inside_edges = (uint)(e.u < -edge_margin * (magnitude_of(x2 - x1) + magnitude_of(y2 - y1)))
+                                  & (uint)(e.v < -edge_margin * (magnitude_of(x0 - x2) + magnitude_of(y0 - y2)))
+                                  & (uint)(e.w < -edge_margin * (magnitude_of(x1 - x0) + magnitude_of(y1 - y0)));
+        const uint exits = within & (uint)(t >= 0.0f) & (uint) !(t > reach);
         const uint known = in_tube & alone;
         group->edge[0][r] = e.w; // as Face numbers them
         group->edge[1][r] = e.u;
         group->edge[2][r] = e.v;
-        group->is_clear[r] = clear;
-        group->is_left[r] = left;
+        group->is_inside_edges[r] = inside_edges;
+        group->is_exit[r] = exits;
         group->is_known[r] = known;
         group->is_hit[r] = known & met & back & (uint) !(t > reach);
         group->distance[r] = t;

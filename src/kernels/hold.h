@@ -33,12 +33,12 @@ DEVICE Held nothing_held(uint slot) {
 }
 
 // Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
-DEVICE bool is_idle(GLOBAL const Holder* RESTRICT holder) {
-    return holder->count == 0u && holder->radius <= 0.0f && holder->asks_caps == 0u;
+DEVICE bool is_idle(GLOBAL const HeldRange* RESTRICT held_range) {
+    return held_range->count == 0u && held_range->radius <= 0.0f && held_range->asks_caps == 0u;
 }
 
 // What is known of a ray from now on, where it had to be cast.
-DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const Holder* RESTRICT holder,
+DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const HeldRange* RESTRICT held_range,
                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
                            GLOBAL const TriangleBlock* RESTRICT blocks) {
     Held held = nothing_held(NONE);
@@ -47,12 +47,12 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
         held.direction[i] = ray->direction[i];
     }
     const float met = own->back < own->front ? own->back : own->front;
-    const float end = met + holder->radius < ray->reach ? met + holder->radius : ray->reach;
-    if (holder->radius <= 0.0f || end >= UNBOUNDED) return held;
-    const Tube tube = tube_of(ray, end, holder->radius);
+    const float end = met + held_range->radius < ray->reach ? met + held_range->radius : ray->reach;
+    if (held_range->radius <= 0.0f || end >= UNBOUNDED) return held;
+    const Tube tube = tube_of(ray, end, held_range->radius);
     const Neighbours found = search_tube(&tube, shape, nodes, blocks);
-    const float safe = found.second - holder->margin;
-    if (safe > WORTH_HOLDING * holder->radius) {
+    const float safe = found.second - held_range->margin;
+    if (safe > WORTH_HOLDING * held_range->radius) {
         held.safe = safe;
         held.limit = end;
         held.triangle = found.slot;
@@ -64,7 +64,7 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
 
 // Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
 // from now on.
-DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT holders,
+DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const HeldRange* RESTRICT held_ranges,
                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                                GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
                                GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
@@ -72,8 +72,8 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
     Closest own[RAYS_IN_GROUP];
     cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < waiting->count; ++r) {
-        GLOBAL const Holder* holder = holders + waiting->pair[r];
-        if (is_idle(holder)) continue;
+        GLOBAL const HeldRange* held_range = held_ranges + waiting->pair[r];
+        if (is_idle(held_range)) continue;
         const uint at = waiting->at[r];
         const SourceRay source = ray_of(waiting, r);
         GLOBAL const ShapeHeader* shape = shapes + waiting->target[r];
@@ -82,16 +82,16 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
         const bool had_tube = held.safe > 0.0f;
         const float waits = had_tube ? 0.0f : held.limit - 1.0f;
         held.limit = waits;
-        const bool met = hits[at].triangle != NONE && holder->asks_caps != 0u;
+        const bool met = hits[at].triangle != NONE && held_range->asks_caps != 0u;
         const uint slot_met = met ? faces[shape->face_first + hits[at].triangle].slot : NONE;
         // A cap that holds the ray, and was asked in vain: an edge is near, or the surface. Then a tube may do.
         const bool in_vain = !had_tube && held.triangle == slot_met;
         if (slot_met != NONE && !in_vain
-            && is_in_cap(&source, hits[at].facing, holder->margin, shape, blocks, slot_met)) {
+            && is_in_cap(&source, hits[at].facing, held_range->margin, shape, blocks, slot_met)) {
             held = nothing_held(slot);
             held.triangle = slot_met;
         } else if (!(waits > 0.0f)) {
-            held = seek_tube(&source, own + r, holder, shape, nodes, blocks);
+            held = seek_tube(&source, own + r, held_range, shape, nodes, blocks);
         }
         held.slot = slot;
         after[at] = held;
@@ -100,7 +100,7 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const Holder* RESTRICT hol
 }
 
 // The rays of a group that neither their tube nor a cap decides are cast.
-DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Holder* RESTRICT holders,
+DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const HeldRange* RESTRICT held_ranges,
                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
@@ -122,7 +122,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
         add_ray(waiting, at, &source, source.reach, group->rays.pair[r], group->rays.target[r], shapes);
         // A group of one is cast by the caller, so that all rays are cast in one place there.
         if (RAYS_IN_GROUP > 1 && is_full(waiting))
-            cast_waiting(waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
+            cast_waiting(waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
     group->rays.count = 0u;
 }
@@ -130,7 +130,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hol
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
 // step and now, those of idle pairs left as they are. Column 2 of outcomes: 1 for each ray cast in full.
 KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
-                      GLOBAL const Holder* RESTRICT holders, GLOBAL const ShapeHeader* RESTRICT shapes,
+                      GLOBAL const HeldRange* RESTRICT held_ranges, GLOBAL const ShapeHeader* RESTRICT shapes,
                       GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
                       GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
                       GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
@@ -144,24 +144,24 @@ KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTR
         const Ray ray = rays[i];
         if (i + 8u < i_end) {
             PREFETCH(pairs, rays[i + 8u].pair);
-            PREFETCH(holders, rays[i + 8u].pair);
+            PREFETCH(held_ranges, rays[i + 8u].pair);
         }
-        GLOBAL const Holder* holder = holders + ray.pair;
+        GLOBAL const HeldRange* held_range = held_ranges + ray.pair;
         const uint target = pairs[ray.pair].target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
         bool held = false;
-        if (!is_idle(holder)) {
-            GLOBAL const Held* own = before + holder->first;
-            const uint place = find_held(own, holder->count, ray.slot, i - holder->now_first);
-            const bool capped = holder->asks_caps != 0u;
+        if (!is_idle(held_range)) {
+            GLOBAL const Held* own = before + held_range->first;
+            const uint place = find_held(own, held_range->count, ray.slot, i - held_range->now_first);
+            const bool capped = held_range->asks_caps != 0u;
             Held known = nothing_held(ray.slot);
-            if (place < holder->count && own[place].slot == ray.slot) known = own[place];
+            if (place < held_range->count && own[place].slot == ray.slot) known = own[place];
             after[i] = known;
             if (capped && known.safe <= 0.0f && known.triangle == NONE)
-                known.triangle = triangle_nearby(own, holder->count, place);
+                known.triangle = triangle_nearby(own, held_range->count, place);
             held = inside && (known.safe > 0.0f || (capped && known.triangle != NONE));
-            if (held) add_held(&group, i, &source, &known, holder, ray.pair, target, shapes, blocks);
+            if (held) add_held(&group, i, &source, &known, held_range, ray.pair, target, shapes, blocks);
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
@@ -172,14 +172,15 @@ KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTR
                 record_hit(no_contact(), i, stride, hits, outcomes);
         }
         if (is_full(&group.rays))
-            decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits,
+            decide_held(&group, &waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits,
                         outcomes);
         if (is_full(&waiting))
-            cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
+            cast_waiting(&waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
     if (RAYS_IN_GROUP > 1) {
-        decide_held(&group, &waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
-        cast_waiting(&waiting, holders, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
+        decide_held(&group, &waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits,
+                    outcomes);
+        cast_waiting(&waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
 }
 // NOLINTEND(modernize-use-using)

@@ -12,9 +12,9 @@ DEVICE Closest nothing_hit(float reach, float tolerance) {
 }
 
 DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lanes,
-                      float tolerance, const bool near) {
+                      float tolerance, const bool by_distance) {
     while (lanes != 0u) {
-        hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, near);
+        hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
         lanes &= lanes - 1u;
     }
 }
@@ -66,7 +66,8 @@ DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Clos
     }
 }
 
-// Whether a ray that meets the near planes of a box at n, the far ones at f, meets the box no farther than the limit.
+// Whether a ray that meets the by_distance planes of a box at n, the far ones at f, meets the box no farther than the
+// limit.
 DEVICE uint meets_box(float nx, float ny, float nz, float fx, float fy, float fz, float limit, float tolerance) {
     const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
     const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;

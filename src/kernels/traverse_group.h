@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short rays, several at a time: where RAYS_IN_GROUP is more than 1, on a CPU. A ray by itself waits for each test
-// before it knows the next; here a stage is done for all rays before the next one begins, so that hardly a branch hangs
-// on a test that is not finished.
+// Short rays, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
+// before it knows the next one. Here each stage is done for all rays before the next stage begins, so that hardly any
+// branch depends on an unfinished test.
 //
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
-#define GROUP_LOOKS (4 * RAYS_IN_GROUP) // one or two for a ray
+#define GROUP_TRIANGLES (4 * RAYS_IN_GROUP) // one or two for a ray
 
-// Triangles to be looked at closely, each by its ray.
+// Triangles that passed the block test, each to be tested by hit_lane()'s operations against its ray.
 typedef struct {
-    uint visit[GROUP_LOOKS], lane[GROUP_LOOKS];
+    uint visit[GROUP_TRIANGLES], lane[GROUP_TRIANGLES];
     uint count;
-} Looks;
+} TriangleTests;
 
 // hit_lane() for all of them, sixteen at a time.
-DEVICE void look_closely(Closest* closest, const Group* group, const Visits* leaves, const Looks* looks,
-                         GLOBAL const TriangleBlock* RESTRICT blocks) {
-    for (uint first = 0u; first < looks->count; first += TRIANGLE_LANES) {
-        const uint left = looks->count - first, few = left < TRIANGLE_LANES ? left : TRIANGLE_LANES;
+DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* leaves, const TriangleTests* tests,
+                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+    for (uint first = 0u; first < tests->count; first += TRIANGLE_LANES) {
+        const uint left = tests->count - first, few = left < TRIANGLE_LANES ? left : TRIANGLE_LANES;
         float corner[9][TRIANGLE_LANES], origin[3][TRIANGLE_LANES], shear[3][TRIANGLE_LANES], t[TRIANGLE_LANES];
         int met[TRIANGLE_LANES], back[TRIANGLE_LANES];
         for (uint k = 0u; k < TRIANGLE_LANES; ++k) {
-            const uint i = first + (k < few ? k : 0u), visit = looks->visit[i], r = leaves->who[visit];
-            const uint lane = looks->lane[i];
+            const uint i = first + (k < few ? k : 0u), visit = tests->visit[i], r = leaves->who[visit];
+            const uint lane = tests->lane[i];
             GLOBAL const TriangleBlock* RESTRICT block = blocks + leaves->at[visit];
             for (uint j = 0u; j < 3u; ++j) {
                 const uint axis = group->axis[j][r];
@@ -43,22 +43,22 @@ DEVICE void look_closely(Closest* closest, const Group* group, const Visits* lea
             t[k] = distance_of(e, az, bz, cz, shear[2][k]);
         }
         for (uint k = 0u; k < few; ++k) {
-            const uint i = first + k, visit = looks->visit[i], r = leaves->who[visit];
+            const uint i = first + k, visit = tests->visit[i], r = leaves->who[visit];
             if (met[k] != 0)
-                take(closest + r, t[k], back[k] != 0, blocks[leaves->at[visit]].triangle[looks->lane[i]],
+                take(closest + r, t[k], back[k] != 0, blocks[leaves->at[visit]].triangle[tests->lane[i]],
                      group->tolerance[r]);
         }
     }
 }
 
-// The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that is to be cast
-// by itself.
+// The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that must be cast
+// by itself, because there was no room for its leaves or triangles.
 DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const Node* RESTRICT nodes,
                            GLOBAL const TriangleBlock* RESTRICT blocks) {
     Runs runs;
     NearLeaves near;
     Visits leaves;
-    Looks looks;
+    TriangleTests tests;
     uint hit[GROUP_VISITS];
     uint full = 0u;
     for (uint r = 0u; r < group->count; ++r) closest[r] = nothing_hit(group->length[r], group->tolerance[r]);
@@ -93,21 +93,21 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const No
         const RayFrame frame = frame_of(group, r);
         hit[i] = hit_block(closest + r, &frame, blocks + leaves.at[i], group->tolerance[r], true);
     }
-    looks.count = 0u;
+    tests.count = 0u;
     for (uint i = 0u; i < leaves.count; i += 4u) {
         ulong left = four_sixteens(hit, i, leaves.count);
         for (; left != 0u; left &= left - 1u) {
             const uint bit = lowest_bit_of_long(left), j = i + bit / 16u;
-            if (looks.count == GROUP_LOOKS) {
+            if (tests.count == GROUP_TRIANGLES) {
                 full |= 1u << leaves.who[j];
                 continue;
             }
-            looks.visit[looks.count] = j;
-            looks.lane[looks.count] = bit % 16u;
-            looks.count += 1u;
+            tests.visit[tests.count] = j;
+            tests.lane[tests.count] = bit % 16u;
+            tests.count += 1u;
         }
     }
-    look_closely(closest, group, &leaves, &looks, blocks);
+    test_triangles(closest, group, &leaves, &tests, blocks);
     return full;
 }
 // NOLINTEND(modernize-use-using)

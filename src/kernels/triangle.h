@@ -134,10 +134,10 @@ DEVICE void take(Closest* closest, float t, bool back, uint triangle, float tole
 
 // One lane again, closely.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
-                     float tolerance, const bool near) {
+                     float tolerance, const bool by_distance) {
     float x[3], y[3], z[3];
     for (int c = 0; c < 3; ++c) z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
-    if (!near) {
+    if (!by_distance) {
         const float t0 = z[0] * ray->shear[2], t1 = z[1] * ray->shear[2], t2 = z[2] * ray->shear[2];
         const float beyond = closest->limit + tolerance, behind = -2.0f * tolerance;
         if ((t0 > beyond && t1 > beyond && t2 > beyond) || (t0 < behind && t1 < behind && t2 < behind)) return;
@@ -152,13 +152,13 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
     take(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
 }
 
-// Sixteen triangles at once: which may the ray's line pass through? Those whose edge functions have no two signs: two
-// products see that with less than minima and maxima. Where one is 0 or underflows, the lane is let through and
-// hit_lane() tells. A hit is a mean of its corners: with `near`, lanes whose corners are all behind, or all too far, by
-// more than rounding could hide are left out here already. That pays where the block is near; where every block is
-// tried, few lanes get so far.
+// Sixteen triangles at once: through which may the ray's line pass? Through those whose edge functions do not have both
+// signs; two products and one minimum tell. If a product is 0 or underflows, the lane passes and hit_lane() decides.
+// by_distance: also leaves out lanes whose corners are all behind the ray, or all too far, by more than rounding could
+// hide (a hit is a mean of its corners). That pays where the block is near; where every block is tried, few lanes get
+// so far.
 DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
-                      float tolerance, const bool near) {
+                      float tolerance, const bool by_distance) {
     GLOBAL const float* RESTRICT ax = (block->corner + ray->axis[0])[0];
     GLOBAL const float* RESTRICT ay = (block->corner + ray->axis[1])[0];
     GLOBAL const float* RESTRICT az = (block->corner + ray->axis[2])[0];
@@ -182,7 +182,7 @@ DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const 
         const float uv = u * v, uw = u * w;
         const uint inside = (uv < uw ? uv : uw) >= 0.0f;
         uint reached = 1u;
-        if (near) {
+        if (by_distance) {
             const float t0 = z0 * sz, t1 = z1 * sz, t2 = z2 * sz;
             const float first_01 = t0 < t1 ? t0 : t1, last_01 = t0 > t1 ? t0 : t1;
             const float first = first_01 < t2 ? first_01 : t2, last = last_01 > t2 ? last_01 : t2;

@@ -197,8 +197,8 @@ typedef struct {
     float margin;
     float radius;
     uint asks_caps;
-} Holder;
-WIRE_SIZE(Holder, 24);
+} HeldRange;
+WIRE_SIZE(HeldRange, 24);
 
 typedef struct {
     uint pair;

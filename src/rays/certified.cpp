@@ -23,8 +23,8 @@ bool casts_all(const Update& update) {
 }
 
 // As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
-bool is_idle(const kernels::Holder& holder) {
-    return holder.count == 0 && holder.radius <= 0 && holder.asks_caps == 0;
+bool is_idle(const kernels::HeldRange& held_range) {
+    return held_range.count == 0 && held_range.radius <= 0 && held_range.asks_caps == 0;
 }
 
 } // namespace
@@ -84,8 +84,8 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         own.capacity = range.capacity;
         own.count = near_.host_counts()[i];
         if (own.count == 0) { // nothing to look at for longer than was asked
-            const double clear = 0.99999 * double(near_.host_clears()[i]) - double(due.margin);
-            own.expiry = std::max(own.expiry, std::min(clear, due.longest));
+            const double safe = 0.99999 * double(near_.host_safe_distances()[i]) - double(due.margin);
+            own.expiry = std::max(own.expiry, std::min(safe, due.longest));
         }
     }
     if (near_.blocks().size() == 0) return;
@@ -106,7 +106,7 @@ void CertifiedRays::place(const Update& update) {
     }
     numbers_.resize(due_count);
     pairs_.resize(update.device, due_count);
-    holders_.resize(update.device, due_count);
+    held_ranges_.resize(update.device, due_count);
     segments_.resize(update.device, segment_count);
     fast_margins_.resize(update.device, fast_count_);
     update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
@@ -114,9 +114,9 @@ void CertifiedRays::place(const Update& update) {
             const auto [source, target] = directed_pair(update.bodies, update.pairs, numbers_[i]);
             order_pair(source, target, pairs_.in_place()[i]);
             // Where there are few blocks it is not worth asking which are near.
-            const bool few = source.shape->data().header.vertex_block_count <= SMALL_BLOCKS;
+            const bool few = source.shape->data().header.vertex_block_count <= BLOCKS_IN_MASK;
             fast_margins_.in_place()[i] = few ? -1.0F : static_cast<float>(rounding_margin(source, target));
-            holders_.in_place()[i] = {};
+            held_ranges_.in_place()[i] = {};
         }
     });
     wake_up_.each_slice(update.executor, [&](const WakeUp::Slice& slice) {
@@ -144,7 +144,7 @@ void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
     fast_rays_.scan(update.device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 
-void CertifiedRays::look(const Update& update, RayBatch& batch) {
+void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     const std::size_t count = segments_.size();
     looks_.resize(update.device, count);
@@ -176,7 +176,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     const bool holds = !casts_all(update); // something will be known of the rays afterwards
     const auto looks = looks_.in_place();
     const auto firsts = look_rays_.firsts().in_place();
-    const auto holders = holders_.in_place();
+    const auto held_ranges = held_ranges_.in_place();
     wake_up_.each_slice(update.executor, [&](WakeUp::Slice& slice) {
         std::size_t segment = slice.segment_first, i = slice.first;
         slice.blocks = 0;
@@ -184,10 +184,11 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             Watched& own = *due.own;
             const std::uint32_t ray = segment < looks.size() ? first_ray + firsts[segment] : 0;
             const std::size_t end = segment + segments_of(own.count);
-            kernels::Holder& holder = holders[i++];
-            holder = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius, due.asks_caps};
+            kernels::HeldRange& held_range = held_ranges[i++];
+            held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
+                          due.asks_caps};
             // Where a pair is too fast to be sought for, and nothing was known, nothing is known now either.
-            own.rays = {ray, 0, holds && !is_idle(holder)};
+            own.rays = {ray, 0, holds && !is_idle(held_range)};
             own.wake = own.expiry;
             for (; segment < end; ++segment) {
                 own.wake = std::min(own.wake, double(looks[segment].wake));
@@ -213,7 +214,7 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     std::swap(held_, last_held_);
     held_.resize(device, batch.count.value);
-    launch<KernelId::hold_rays>(device, batch.count, batch.outcomes.stride(), pairs_, holders_, arrays.headers,
+    launch<KernelId::hold_rays>(device, batch.count, batch.outcomes.stride(), pairs_, held_ranges_, arrays.headers,
                                 arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.faces,
                                 arrays.face_normals, batch.rays, last_held_, held_, batch.hits,
                                 batch.outcomes.values());
@@ -230,7 +231,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     make_lists(update, batch);
     place(update);
     find_fast_rays(update, batch);
-    look(update, batch);
+    look_at_blocks(update, batch);
     write_rays(update, batch);
     batch.pairs = &pairs_;
     batch.numbers = numbers_;

@@ -35,7 +35,7 @@ private:
     void make_lists(const Update& update, RayBatch& batch);
     void place(const Update& update);
     void find_fast_rays(const Update& update, RayBatch& batch);
-    void look(const Update& update, RayBatch& batch);
+    void look_at_blocks(const Update& update, RayBatch& batch);
     void write_rays(const Update& update, RayBatch& batch);
     void settle(const Update& update, std::uint32_t first_ray);
     void decide(const Update& update, RayBatch& batch);
@@ -53,7 +53,7 @@ private:
     Array<kernels::OrderedPair> pairs_; ///< of numbers_
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
-    Array<kernels::Holder> holders_; ///< of numbers_
+    Array<kernels::HeldRange> held_ranges_; ///< of numbers_
     Columns look_rays_, fast_rays_;
     Array<kernels::OrderedPair> wide_pairs_; ///< of stale_, as what follows
     Array<float> margins_, horizons_;

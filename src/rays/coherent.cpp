@@ -86,7 +86,7 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
         const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
         // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number. Not before
         // there could be anything to be found.
-        const double allowed = std::max(state.threshold, state.clear);
+        const double allowed = std::max(state.threshold, state.safe);
         if (moved[0] <= allowed && moved[1] <= allowed) {
             left = allowed - std::max(moved[0], moved[1]);
             return;
@@ -99,7 +99,7 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     state.threshold = left = settings.displacement_threshold
                                  ? *settings.displacement_threshold
                                  : next_threshold(a, b, state, motion.pair_speed(pair), follows, predictive);
-    state.clear = state.culling = 0;
+    state.safe = state.culling = 0;
     if (predictive)
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
 }
@@ -154,10 +154,10 @@ void CoherentRays::let_sleep() {
         PairState& state = table_.state(active_[i] / 2);
         if (state.threshold < 0 || near_.host_counts()[i] != 0 || near_.host_counts()[i + 1] != 0) continue;
         for (std::size_t d = 0; d < 2; ++d) {
-            const double clear = 0.99999 * double(near_.host_clears()[i + d]) - double(margins_[i + d]);
-            state.clear = d == 0 ? clear : std::min(state.clear, clear);
+            const double safe = 0.99999 * double(near_.host_safe_distances()[i + d]) - double(margins_[i + d]);
+            state.safe = d == 0 ? safe : std::min(state.safe, safe);
         }
-        table_.hot(active_[i] / 2).slack = std::max(state.threshold, state.clear);
+        table_.hot(active_[i] / 2).slack = std::max(state.threshold, state.safe);
     }
 }
 

@@ -49,7 +49,7 @@ private:
     struct PairState {
         PairPlace reference;      ///< where the bodies were when the pair was last looked at in full
         double threshold = -1;    ///< metres, of that look; below 0: there was none
-        double clear = 0;         ///< metres that it saw the pair to be away from any contact, where it found nothing
+        double safe = 0;          ///< metres that the pair could move then before any contact, if it found no block
         double culling = 0;       ///< metres a predictive ray looks ahead; below 0: it is not followed
         double look_cost = 0;     ///< what that look cost, in rays
         std::uint64_t looked = 0; ///< its step

@@ -22,15 +22,15 @@ public:
     std::span<const kernels::uint> host_counts() const { return host_counts_; }
     /// By pair, where it has no block: how far its vertices can move before one could be in contact, metres, rounding
     /// not allowed for. May be less, also negative.
-    std::span<const float> host_clears() const { return host_clears_; }
+    std::span<const float> host_safe_distances() const { return host_safe_distances_; }
 
 private:
     Columns counts_;
-    Array<float> clears_;
-    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
+    Array<float> safe_distances_;
+    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
     Array<kernels::PairBlock> blocks_;
     std::vector<kernels::uint> host_counts_;
-    std::vector<float> host_clears_;
+    std::vector<float> host_safe_distances_;
 };
 
 } // namespace raycontact

@@ -25,13 +25,13 @@ void StandardRays::cast(const Update& update, RayBatch& batch) {
     const Array<kernels::OrderedPair>& pairs = pairs_.ordered();
     const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
     block_counts_.resize(update.device, 1, pairs.size());
-    small_.resize(update.device, pairs.size());
+    block_masks_.resize(update.device, pairs.size());
     const Array<float> none; // every block that may reach into the bounds
     launch<KernelId::count_clusters>(update.device, pairs.size(), pairs, none, arrays.headers, arrays.clusters,
-                                     arrays.clearances, block_counts_.values(), none, small_);
+                                     arrays.clearances, block_counts_.values(), none, block_masks_);
     block_counts_.scan(update.device, pairs.size(), batch.totals, RayBatch::block_sum, blocks_.size());
     launch<KernelId::write_clusters>(update.device, items_of(batch.totals, RayBatch::block_sum, pairs.size()), pairs,
-                                     none, arrays.headers, arrays.clusters, arrays.clearances, small_,
+                                     none, arrays.headers, arrays.clusters, arrays.clearances, block_masks_,
                                      block_counts_.firsts(), blocks_);
 
     const Count found = results_of(batch.totals, RayBatch::block_sum, blocks_.size());

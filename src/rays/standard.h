@@ -26,7 +26,7 @@ public:
 private:
     DevicePairs pairs_;
     Columns block_counts_, ray_counts_;
-    Array<kernels::ulong> small_; ///< blocks that a small source reaches, a bit each
+    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
     Array<kernels::PairBlock> blocks_;
 };
 

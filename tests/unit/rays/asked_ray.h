@@ -39,7 +39,7 @@ inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const V
 }
 
 /// Of a pair of which nothing was held. radius: of tubes to be sought.
-inline kernels::Holder holder(double margin, double radius, bool asks_caps) {
+inline kernels::HeldRange held_range(double margin, double radius, bool asks_caps) {
     return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), asks_caps ? 1u : 0u};
 }
 
@@ -58,12 +58,12 @@ inline std::optional<Said> said_of(const kernels::prototype::HeldGroup& group, s
 
 /// Asked alone: all lanes up to this one hold the same ray.
 inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
-                               const ShapeData& target, const kernels::Holder& holder, std::uint32_t lane) {
+                               const ShapeData& target, const kernels::HeldRange& held_range, std::uint32_t lane) {
     using namespace kernels::prototype;
     HeldGroup group;
     clear_held(&group);
     for (std::uint32_t i = 0; i <= lane; ++i)
-        add_held(&group, 0, &moved, &held, &holder, 0, 0, &target.header, target.triangle_blocks.data());
+        add_held(&group, 0, &moved, &held, &held_range, 0, 0, &target.header, target.triangle_blocks.data());
     fetch_triangles(&group, &target.header, target.triangle_blocks.data(), target.face_normals.data());
     ask_tubes_and_caps(&group, &target.header, target.triangle_blocks.data(), target.faces.data(),
                        target.face_normals.data());
@@ -84,9 +84,9 @@ inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeDa
 
 /// What is held of a ray that was cast, if a tube was wide enough.
 inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, const ShapeData& target,
-                                     const kernels::Holder& holder) {
+                                     const kernels::HeldRange& held_range) {
     const kernels::prototype::Closest met = closest(ray, target);
-    return kernels::prototype::seek_tube(&ray, &met, &holder, &target.header, target.nodes.data(),
+    return kernels::prototype::seek_tube(&ray, &met, &held_range, &target.header, target.nodes.data(),
                                          target.triangle_blocks.data());
 }
 

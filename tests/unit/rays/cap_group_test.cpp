@@ -40,7 +40,7 @@ struct Ground {
 struct Asked {
     kernels::prototype::SourceRay ray{};
     kernels::Held held{};
-    kernels::Holder holder{};
+    kernels::HeldRange held_range{};
     std::uint32_t target = 0;
 };
 
@@ -56,10 +56,10 @@ Asked any_ray(const Ground& ground, Random& random) {
         aimed = aim_at_cap(body.shape->data(), margin, random);
     }
     const ShapeData& target = ground.shapes[asked.target]->data();
-    asked.holder = holder(margin, any_length(1e-3, 1e-1, random) * target.diagonal, random.below(4) > 0);
+    asked.held_range = held_range(margin, any_length(1e-3, 1e-1, random) * target.diagonal, random.below(4) > 0);
     asked.ray = aimed->ray;
     if (random.below(3) == 0) {
-        asked.held = held_after_cast(asked.ray, target, asked.holder);
+        asked.held = held_after_cast(asked.ray, target, asked.held_range);
         for (float& p : asked.ray.position) p += static_cast<float>(0.7 * random.uniform(-1, 1)) * asked.held.safe;
     } else {
         asked.held = known_triangle(target, aimed->slot, random);
@@ -81,7 +81,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
         std::vector<Asked> all;
         for (std::uint32_t i = 0; i < count; ++i) {
             const Asked& asked = all.emplace_back(any_ray(ground, random));
-            add_held(&group, i, &asked.ray, &asked.held, &asked.holder, 0, asked.target, ground.headers.data(),
+            add_held(&group, i, &asked.ray, &asked.held, &asked.held_range, 0, asked.target, ground.headers.data(),
                      ground.blocks.data());
         }
         fetch_triangles(&group, ground.headers.data(), ground.blocks.data(), ground.normals.data());
@@ -89,7 +89,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
                            ground.normals.data());
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto together = said_of(group, i, ground.headers.data(), ground.normals.data());
-            const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].holder, 0);
+            const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].held_range, 0);
             ++rays;
             if (together.has_value() != alone.has_value()) {
                 ++differing;

@@ -54,7 +54,7 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
     PlacedBody body;
     body.shape = &shape;
     const double margin = rounding_margin(body, body);
-    const kernels::Holder asks = holder(margin, 0, true);
+    const kernels::HeldRange asks = held_range(margin, 0, true);
     for (int i = 0; i < rays; ++i) {
         const auto aimed = aim_at_cap(target, margin, random);
         if (!aimed) continue;

@@ -147,7 +147,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
 
 TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
     Random random(16);
-    const kernels::Holder no_caps{};
+    const kernels::HeldRange no_caps{};
     for (const Floats kind : {Floats::ordinary, Floats::on_a_grid, Floats::odd}) {
         Counts counts;
         HeldGroup group;

@@ -84,7 +84,7 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
     for (int round = 0; round < rounds; ++round) {
         const kernels::prototype::SourceRay ray = any_ray(target, solid, random);
         const auto radius = static_cast<float>(std::pow(10.0, random.uniform(-3, -1)) * target.diagonal);
-        const kernels::Holder no_caps = holder(margin, double(radius), false);
+        const kernels::HeldRange no_caps = held_range(margin, double(radius), false);
         const kernels::Held held = held_after_cast(ray, target, no_caps);
         ++counts.rays;
         if (!(held.safe > 0)) continue;
