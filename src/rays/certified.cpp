@@ -36,7 +36,7 @@ void CertifiedRays::clear() {
 
 void CertifiedRays::close(WatchedPair& state) {
     for (Watched& own : state.directions) {
-        pool_.give_back({own.first, own.capacity});
+        pool_.release({own.first, own.capacity});
         own = {};
     }
 }
@@ -77,9 +77,9 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         const Due& due = stale_[i].due();
         Watched& own = *due.own;
-        pool_.give_back({own.first, own.capacity});
+        pool_.release({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
-        const RangePool::Range range = pool_.take(near_.host_counts()[i]);
+        const RangePool::Range range = pool_.allocate(near_.host_counts()[i]);
         places_.in_place()[i] = own.first = range.first;
         own.capacity = range.capacity;
         own.count = near_.host_counts()[i];
