@@ -118,10 +118,10 @@ struct Scene::State {
                              + " is paired with itself; pairs need two bodies");
     }
 
-    // As a caller may give them: in any order, either way round, more than once.
-    void take_pairs(std::span<const Pair> given) {
+    // given: in any order, the two bodies of a pair either way round, duplicates allowed.
+    void set_pairs(std::span<const Pair> given) {
         const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
-        if (same && pairs_stand) return; // they were looked through in an earlier step
+        if (same && pairs_stand) return; // an earlier step has checked them
         for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
         pairs_stand = false;
         if (!same) pairs.assign(given.begin(), given.end()); // given may be this very list
@@ -239,7 +239,7 @@ std::span<const Contact> Scene::step() {
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
-    state_->take_pairs(pairs);
+    state_->set_pairs(pairs);
     state_->find_contacts(0);
     return state_->contacts;
 }

@@ -5,10 +5,10 @@
 
 namespace raycontact {
 
-void LocalContacts::add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> numbers) {
+void LocalContacts::add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> directed) {
     const std::size_t before = contacts_.size();
     contacts_.insert(contacts_.end(), found.begin(), found.end());
-    for (std::size_t i = before; i < contacts_.size(); ++i) contacts_[i].pair = numbers[contacts_[i].pair];
+    for (std::size_t i = before; i < contacts_.size(); ++i) contacts_[i].pair = directed[contacts_[i].pair];
 }
 
 void LocalContacts::sort(std::size_t pair_count) {

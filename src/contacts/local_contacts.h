@@ -9,12 +9,12 @@
 
 namespace raycontact {
 
-/// The contacts of a step in the targets' frames. They name their ordered pair by its number: 2 x pair + direction.
+/// The contacts of a step in the targets' frames. They name their pair by its directed index (DirectedPair).
 class LocalContacts {
 public:
     void clear() { contacts_.clear(); }
-    /// Adds contacts whose pair is a place in `numbers`.
-    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> numbers);
+    /// Adds contacts whose pair is an index of `directed`, which has the directed indices.
+    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> directed);
     /// By pair; those of one pair stay in the order in which they were added.
     void sort(std::size_t pair_count);
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }

@@ -82,8 +82,8 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
     executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         while (!begins_pair(begin)) ++begin;
         for (std::uint32_t next = begin; begin < end; begin = next) {
-            const std::uint32_t ordered = local[begin].pair;
-            const Side side(directed_pair(bodies, pairs, ordered), pairs[ordered / 2], ordered % 2 == 0, direction);
+            const std::uint32_t directed = local[begin].pair;
+            const Side side(directed_pair(bodies, pairs, directed), pairs[directed / 2], directed % 2 == 0, direction);
             do {
                 order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
                 side.send_for(local[next]);

@@ -66,7 +66,7 @@ DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Clos
     }
 }
 
-// Whether a ray that meets the by_distance planes of a box at n, the far ones at f, meets the box no farther than the
+// Whether a ray that meets the near planes of a box at n, the far ones at f, meets the box no farther than the
 // limit.
 DEVICE uint meets_box(float nx, float ny, float nz, float fx, float fy, float fz, float limit, float tolerance) {
     const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;

@@ -45,8 +45,8 @@ DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* l
         for (uint k = 0u; k < few; ++k) {
             const uint i = first + k, visit = tests->visit[i], r = leaves->who[visit];
             if (met[k] != 0)
-                take(closest + r, t[k], back[k] != 0, blocks[leaves->at[visit]].triangle[tests->lane[i]],
-                     group->tolerance[r]);
+                accept_hit(closest + r, t[k], back[k] != 0, blocks[leaves->at[visit]].triangle[tests->lane[i]],
+                           group->tolerance[r]);
         }
     }
 }

@@ -127,7 +127,7 @@ DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float 
 }
 
 // A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does not.
-DEVICE void take(Closest* closest, float t, bool back, uint triangle, float tolerance) {
+DEVICE void accept_hit(Closest* closest, float t, bool back, uint triangle, float tolerance) {
     if (t < (back ? 0.0f : -tolerance) || t > closest->limit) return;
     consider(closest, t, back, triangle, tolerance);
 }
@@ -149,7 +149,7 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
     const Edges e = edges_of(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2], ray->shear[0], ray->shear[1]);
     const bool front = e.u >= 0.0f && e.v >= 0.0f && e.w >= 0.0f, back = e.u <= 0.0f && e.v <= 0.0f && e.w <= 0.0f;
     if (!(front || back) || area_of(e) == 0.0f) return; // edge-on: the neighbours take the hit
-    take(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
+    accept_hit(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
 }
 
 // Sixteen triangles at once: through which may the ray's line pass? Through those whose edge functions do not have both

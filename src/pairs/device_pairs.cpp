@@ -28,7 +28,7 @@ kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
 
 void DevicePairs::clear() {
     slots_.clear();
-    numbers_.clear();
+    directed_.clear();
     pairs_.clear();
     sent_.clear();
 }
@@ -60,11 +60,11 @@ void DevicePairs::list_changes(const Update& update) {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const kernels::uint slot : touched_) changed_.push_back({slot, pairs_[slot]});
-    numbers_.resize(2 * pairs_.size());
+    directed_.resize(2 * pairs_.size());
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const std::size_t slot = slots_.slot(i);
-        numbers_[2 * slot] = 2 * i;
-        numbers_[2 * slot + 1] = 2 * i + 1;
+        directed_[2 * slot] = 2 * i;
+        directed_[2 * slot + 1] = 2 * i + 1;
     }
 }
 

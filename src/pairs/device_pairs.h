@@ -13,17 +13,17 @@ public:
     void place(const Update& update);
     void clear();
 
-    /// 2 x slot of a pair, + 1 for the second body into the first; some slots have no pair.
+    /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
     const Array<kernels::OrderedPair>& ordered() const { return ordered_; }
-    /// By the same number: 2 x place of the pair in the step, + 1; anything where the slot has no pair.
-    std::span<const std::uint32_t> numbers() const { return numbers_; }
+    /// By the same index: the directed index among the step's pairs; anything where the slot has no pair.
+    std::span<const std::uint32_t> directed() const { return directed_; }
 
 private:
     void list_changes(const Update& update);
     void place_on_host(const Update& update);
 
     PairSlots slots_;
-    std::vector<std::uint32_t> numbers_;
+    std::vector<std::uint32_t> directed_;
     std::vector<kernels::BodyPlace> sent_, moved_; ///< by body; of those that moved
     std::vector<kernels::PairBodies> pairs_;       ///< by slot
     std::vector<kernels::uint> touched_;           ///< slots

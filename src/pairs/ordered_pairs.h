@@ -25,15 +25,16 @@ inline Pose centred_pose(const Shape& shape, const Pose& pose) {
     return {pose.rotation, transform_point(pose, shape.centre())};
 }
 
-/// One direction of a pair. In a list of pairs it is numbered 2 x pair + 0 for a into b, + 1 for b into a.
+/// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
+/// against b, + 1 for vertices of b against a (docs/design.md).
 struct DirectedPair {
     const PlacedBody& source;
     const PlacedBody& target;
 };
 inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                                  std::uint32_t ordered) {
-    const auto [a, b] = pairs[ordered / 2];
-    return ordered % 2 == 0 ? DirectedPair{bodies[a], bodies[b]} : DirectedPair{bodies[b], bodies[a]};
+                                  std::uint32_t directed) {
+    const auto [a, b] = pairs[directed / 2];
+    return directed % 2 == 0 ? DirectedPair{bodies[a], bodies[b]} : DirectedPair{bodies[b], bodies[a]};
 }
 
 /// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is

@@ -40,7 +40,7 @@ public:
                 close();
                 continue;
             }
-            next_[i] = take();
+            next_[i] = new_slot();
             opened(i, next_[i]);
             ++i;
         }
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    std::uint32_t take() {
+    std::uint32_t new_slot() {
         if (free_.empty()) return end_++;
         const std::uint32_t slot = free_.back();
         free_.pop_back();

@@ -7,7 +7,7 @@
 
 namespace raycontact {
 
-RangePool::Range RangePool::take(std::uint32_t count) {
+RangePool::Range RangePool::allocate(std::uint32_t count) {
     if (count == 0) return {};
     if (count > 1u << 30) throw std::length_error("a pair watches more than 2^30 vertex blocks; split its meshes");
     const std::uint32_t capacity = std::bit_ceil(std::max(count, 4u));
@@ -25,7 +25,7 @@ RangePool::Range RangePool::take(std::uint32_t count) {
     return range;
 }
 
-void RangePool::give_back(Range range) {
+void RangePool::release(Range range) {
     if (range.capacity == 0) return;
     free_[static_cast<std::size_t>(std::countr_zero(range.capacity))].push_back(range.first);
     in_use_ -= range.capacity;

@@ -55,7 +55,7 @@ std::span<const kernels::LocalContact> Part::end() {
     }
     if (method == Finds::coherent) coherent_.keep(now);
     local_.clear();
-    local_.add(gather_.contacts(), batch_.numbers);
+    local_.add(gather_.contacts(), batch_.directed);
     local_.sort(pairs_.size());
     work_ = device_->take_work();
     work_.device = device_->info().id;

@@ -26,7 +26,7 @@ public:
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until end().
     void begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings);
-    /// The contacts of the step, by pair: LocalContact::pair is 2 x place in `pairs` + direction. Valid until begin().
+    /// The contacts of the step, by pair: LocalContact::pair is the directed index in `pairs`. Valid until begin().
     std::span<const kernels::LocalContact> end();
 
     /// What is kept of some pairs of the last step, which are to be another part's: that one goes on with it as this

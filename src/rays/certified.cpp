@@ -36,7 +36,7 @@ void CertifiedRays::clear() {
 
 void CertifiedRays::close(WatchedPair& state) {
     for (Watched& own : state.directions) {
-        pool_.give_back({own.first, own.capacity});
+        pool_.release({own.first, own.capacity});
         own = {};
     }
 }
@@ -44,16 +44,16 @@ void CertifiedRays::close(WatchedPair& state) {
 // What the slices found, in the order of the pairs.
 void CertifiedRays::list_slices() {
     stale_.clear();
-    numbers_.clear();
+    directed_.clear();
     for (WakeUp::Slice& slice : wake_up_.slices()) {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
         for (const std::uint32_t i : slice.fast) {
             if (table_.hot(i).open) close(table_.state(i));
             table_.hot(i) = {};
-            numbers_.insert(numbers_.end(), {2 * i, 2 * i + 1});
+            directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
         }
     }
-    fast_count_ = numbers_.size();
+    fast_count_ = directed_.size();
 }
 
 // The blocks of each stale pair that reach into its bounds widened by what the list is to last, and could be in contact
@@ -77,9 +77,9 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         const Due& due = stale_[i].due();
         Watched& own = *due.own;
-        pool_.give_back({own.first, own.capacity});
+        pool_.release({own.first, own.capacity});
         own.capacity = 0; // should the next line fail
-        const RangePool::Range range = pool_.take(near_.host_counts()[i]);
+        const RangePool::Range range = pool_.allocate(near_.host_counts()[i]);
         places_.in_place()[i] = own.first = range.first;
         own.capacity = range.capacity;
         own.count = near_.host_counts()[i];
@@ -104,14 +104,14 @@ void CertifiedRays::place(const Update& update) {
         due_count += slice.due.size();
         for (const Due& due : slice.due) segment_count += segments_of(due.own->count);
     }
-    numbers_.resize(due_count);
+    directed_.resize(due_count);
     pairs_.resize(update.device, due_count);
     held_ranges_.resize(update.device, due_count);
     segments_.resize(update.device, segment_count);
     fast_margins_.resize(update.device, fast_count_);
     update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(update.bodies, update.pairs, numbers_[i]);
+            const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
             order_pair(source, target, pairs_.in_place()[i]);
             // Where there are few blocks it is not worth asking which are near.
             const bool few = source.shape->data().header.vertex_block_count <= BLOCKS_IN_MASK;
@@ -123,7 +123,7 @@ void CertifiedRays::place(const Update& update) {
         std::copy(slice.places.begin(), slice.places.end(), pairs_.in_place().begin() + std::ptrdiff_t(slice.first));
         std::size_t i = slice.first, next = slice.segment_first;
         for (const Due& due : slice.due) {
-            numbers_[i] = due.ordered;
+            directed_[i] = due.directed;
             for (std::uint32_t done = 0; done < due.own->count; done += SEGMENT_WATCHES)
                 segments_.in_place()[next++] = {static_cast<std::uint32_t>(i), due.own->first + done,
                                                 std::min(SEGMENT_WATCHES, due.own->count - done), due.now, due.margin};
@@ -196,7 +196,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
                 slice.blocks += looks[segment].blocks;
             }
             // The two directions of a pair are in one slice.
-            Slack& slack = table_.hot(due.ordered / 2);
+            Slack& slack = table_.hot(due.directed / 2);
             slack.metres = std::min(slack.metres, own.wake - double(due.now));
             slack.casts = slack.casts || own.rays.count > 0;
         }
@@ -234,7 +234,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     look_at_blocks(update, batch);
     write_rays(update, batch);
     batch.pairs = &pairs_;
-    batch.numbers = numbers_;
+    batch.directed = directed_;
     decide(update, batch);
 }
 
@@ -247,7 +247,7 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     stats.rays += watched + fast_sums_.sums[1];
     stats.rays_cast += held ? batch.sums[RayBatch::contact_sum].sums[2] : batch.count.value;
     stats.pairs_full += stale_.size() + fast_count_;
-    stats.pairs_asleep += 2 * open_pairs_ - numbers_.size();
+    stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
                         + batch.count.value * sizeof(kernels::Ray) + held_.size() * sizeof(kernels::Held);
 }

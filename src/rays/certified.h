@@ -44,16 +44,16 @@ private:
     WakeUp wake_up_;
     RangePool pool_;
     std::vector<Stale> stale_;
-    std::vector<std::uint32_t> numbers_; ///< 2 x pair + direction: of the fast pairs, then of what is due
-    std::size_t fast_count_ = 0;         ///< of numbers_
-    kernels::Totals fast_sums_{};        ///< rays of theirs: cast, and of the rule
+    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: the fast pairs, then what is due
+    std::size_t fast_count_ = 0;          ///< of directed_
+    kernels::Totals fast_sums_{};         ///< rays of theirs: cast, and of the rule
     std::size_t open_pairs_ = 0;
     std::uint64_t packed_ = 0;
 
-    Array<kernels::OrderedPair> pairs_; ///< of numbers_
+    Array<kernels::OrderedPair> pairs_; ///< of directed_
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
-    Array<kernels::HeldRange> held_ranges_; ///< of numbers_
+    Array<kernels::HeldRange> held_ranges_; ///< of directed_
     Columns look_rays_, fast_rays_;
     Array<kernels::OrderedPair> wide_pairs_; ///< of stale_, as what follows
     Array<float> margins_, horizons_;

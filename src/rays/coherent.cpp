@@ -119,24 +119,24 @@ void CoherentRays::wake_up(const Update& update) {
         table_.sift(begin, end, prefetch, wants, [&](std::uint32_t i) { wake_pair(update, i); });
     });
 
-    active_.clear();
+    directed_.clear();
     for (std::uint32_t i = 0; i < pair_count; ++i)
-        if (turns_[i] == Turn::look) active_.insert(active_.end(), {2 * i, 2 * i + 1});
-    full_count_ = active_.size();
+        if (turns_[i] == Turn::look) directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
+    full_count_ = directed_.size();
     for (std::uint32_t i = 0; i < pair_count; ++i)
         for (std::uint32_t d = 0; turns_[i] == Turn::follow && d < 2; ++d)
-            if (table_.hot(i).kept[d].count > 0) active_.push_back(2 * i + d);
+            if (table_.hot(i).kept[d].count > 0) directed_.push_back(2 * i + d);
 
-    host_pairs_.resize(active_.size());
-    cullings_.resize(active_.size());
+    host_pairs_.resize(directed_.size());
+    cullings_.resize(directed_.size());
     wide_pairs_.resize(full_count_);
     reaches_.resize(full_count_);
     margins_.resize(full_count_);
-    update.executor.run(static_cast<std::uint32_t>(active_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+    update.executor.run(static_cast<std::uint32_t>(directed_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(update.bodies, update.pairs, active_[i]);
+            const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
             order_pair(source, target, host_pairs_[i]);
-            cullings_[i] = static_cast<float>(table_.state(active_[i] / 2).culling);
+            cullings_[i] = static_cast<float>(table_.state(directed_[i] / 2).culling);
             if (i >= full_count_) continue;
             const float ahead = std::max(cullings_[i], 0.0F);
             const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
@@ -151,13 +151,13 @@ void CoherentRays::wake_up(const Update& update) {
 // Pairs without a block near either surface.
 void CoherentRays::let_sleep() {
     for (std::size_t i = 0; i < full_count_; i += 2) {
-        PairState& state = table_.state(active_[i] / 2);
+        PairState& state = table_.state(directed_[i] / 2);
         if (state.threshold < 0 || near_.host_counts()[i] != 0 || near_.host_counts()[i + 1] != 0) continue;
         for (std::size_t d = 0; d < 2; ++d) {
             const double safe = 0.99999 * double(near_.host_safe_distances()[i + d]) - double(margins_[i + d]);
             state.safe = d == 0 ? safe : std::min(state.safe, safe);
         }
-        table_.hot(active_[i] / 2).slack = std::max(state.threshold, state.safe);
+        table_.hot(directed_[i] / 2).slack = std::max(state.threshold, state.safe);
     }
 }
 
@@ -192,8 +192,8 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     host_segments_.clear();
     host_firsts_.clear();
     std::uint64_t end = full_rays_;
-    for (std::size_t i = full_count_; i < active_.size(); ++i) {
-        const Kept& own = kept(active_[i]);
+    for (std::size_t i = full_count_; i < directed_.size(); ++i) {
+        const Kept& own = kept(directed_[i]);
         host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0});
         host_firsts_.push_back(static_cast<kernels::uint>(end));
         end += own.count;
@@ -232,32 +232,32 @@ void CoherentRays::follow(const Update& update, RayBatch& batch) {
 // The candidates of the next step, and what each pair's rays came to.
 void CoherentRays::list_candidates(const Update& update, RayBatch& batch) {
     Device& device = update.device;
-    host_ranges_.assign(2 * active_.size(), 0);
+    host_ranges_.assign(2 * directed_.size(), 0);
     ranges_.write(device, host_ranges_);
     launch<KernelId::find_ranges>(device, batch.count, batch.rays, ranges_);
-    followed_.resize(device, active_.size());
-    kept_counts_.resize(device, 1, active_.size());
+    followed_.resize(device, directed_.size());
+    kept_counts_.resize(device, 1, directed_.size());
     candidates_.resize(device, batch.rays.size());
-    launch<KernelId::count_candidates>(device, active_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
+    launch<KernelId::count_candidates>(device, directed_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
                                        kept_counts_.values());
     if (batch.rays.size() == 0) return;
-    kept_counts_.scan(device, active_.size(), batch.totals, RayBatch::kept_sum, candidates_.size());
-    launch<KernelId::write_candidates>(device, active_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
+    kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::kept_sum, candidates_.size());
+    launch<KernelId::write_candidates>(device, directed_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
                                        candidates_);
 }
 
 void CoherentRays::keep(const Update& update) {
-    host_followed_.resize(active_.size());
+    host_followed_.resize(directed_.size());
     followed_.read(update.device, host_followed_);
     kernels::uint first = 0;
-    for (std::size_t i = 0; i < active_.size(); ++i) {
+    for (std::size_t i = 0; i < directed_.size(); ++i) {
         const kernels::Followed& sum = host_followed_[i];
-        Kept& own = kept(active_[i]);
+        Kept& own = kept(directed_[i]);
         own.first = first;
         own.count = sum.kept;
         if (i < full_count_) {
-            double& cost = table_.state(active_[i] / 2).look_cost;
-            cost = (active_[i] % 2 == 0 ? 0 : cost) + 2.0 * sum.cast;
+            double& cost = table_.state(directed_[i] / 2).look_cost;
+            cost = (directed_[i] % 2 == 0 ? 0 : cost) + 2.0 * sum.cast;
         }
         first += sum.kept;
         sums_.predictions += sum.predictions;
@@ -280,7 +280,7 @@ void CoherentRays::cast(const Update& update, RayBatch& batch) {
     batch.resize(update.device, 0);
     find_rays(update, batch);
     batch.pairs = &device_pairs_;
-    batch.numbers = active_;
+    batch.directed = directed_;
     follow(update, batch);
     list_candidates(update, batch);
 }
@@ -339,7 +339,7 @@ void CoherentRays::count(StepStats& stats) const {
     stats.rays += sums_.rays;
     stats.rays_cast += sums_.rays_cast;
     stats.pairs_full += full_count_;
-    stats.pairs_asleep += 2 * open_pairs_ - active_.size();
+    stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.walks += sums_.walks;
     stats.walks_lost += sums_.walks_lost;
     stats.walk_casts += sums_.walk_casts;

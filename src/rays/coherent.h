@@ -66,14 +66,14 @@ private:
     static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
                                  double follows, bool predictive);
     static bool is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed);
-    Kept& kept(std::uint32_t ordered) { return table_.hot(ordered / 2).kept[ordered % 2]; }
+    Kept& kept(std::uint32_t directed) { return table_.hot(directed / 2).kept[directed % 2]; }
 
     PairTable<PairState, Hot> table_;
-    std::vector<Turn> turns_;           ///< per pair
-    std::vector<std::uint32_t> active_; ///< ordered pairs
-    std::size_t full_count_ = 0;        ///< of active_
+    std::vector<Turn> turns_;             ///< per pair
+    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: full looks, then what is followed
+    std::size_t full_count_ = 0;          ///< of directed_
     std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
-    std::vector<float> cullings_, reaches_, margins_; ///< of active_, of the full ones, of the full ones
+    std::vector<float> cullings_, reaches_, margins_; ///< of directed_, of the full ones, of the full ones
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;

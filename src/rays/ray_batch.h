@@ -23,7 +23,7 @@ struct RayBatch {
 
     Count count{0};
     const Array<kernels::OrderedPair>* pairs = nullptr; ///< Ray::pair is a place in it
-    std::span<const std::uint32_t> numbers;             ///< of these: 2 x pair of the step + direction
+    std::span<const std::uint32_t> directed;            ///< of these: their directed indices among the step's pairs
     Array<kernels::Ray> rays;
     Array<kernels::Hit> hits;
     Columns outcomes;

@@ -16,7 +16,7 @@ void StandardRays::begin(const Update& update, RayBatch& batch) {
     blocks_.grow(update.device, least_room);
     batch.resize(update.device, std::max(batch.rays.size(), least_room));
     batch.pairs = &pairs_.ordered();
-    batch.numbers = pairs_.numbers();
+    batch.directed = pairs_.directed();
     cast(update, batch);
 }
 

@@ -86,7 +86,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         if (!wakes[d] && own.rays.count == 0) continue;
         Due& due = slice.due.emplace_back();
         due.own = &own;
-        due.ordered = 2 * i + d;
+        due.directed = 2 * i + d;
         due.stale = stale[d];
         due.now = static_cast<float>(stale[d] ? 0 : clock);
         due.margin = static_cast<float>(rounding_margin(source, target));

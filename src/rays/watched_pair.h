@@ -40,7 +40,7 @@ struct Slack {
 /// A direction whose blocks are asked in this step.
 struct Due {
     Watched* own = nullptr;
-    std::uint32_t ordered = 0;    ///< 2 x pair + direction
+    std::uint32_t directed = 0;   ///< directed index of the pair
     bool stale = false;           ///< it needs a new list
     float now = 0;                ///< the clock
     float margin = 0, radius = 0; ///< of rounding; of tubes

@@ -17,19 +17,19 @@ TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
     for (int round = 0; round < 300; ++round) {
         all.clear();
         const std::uint32_t pairs = random.below(40);
-        std::vector<std::uint32_t> numbers(2 * std::size_t{pairs});
-        std::iota(numbers.begin(), numbers.end(), 0U);
-        for (std::size_t i = numbers.size(); i > 1 && round % 3 > 0; --i)
-            std::swap(numbers[i - 1], numbers[random.below(static_cast<std::uint32_t>(i))]);
+        std::vector<std::uint32_t> directed(2 * std::size_t{pairs});
+        std::iota(directed.begin(), directed.end(), 0U);
+        for (std::size_t i = directed.size(); i > 1 && round % 3 > 0; --i)
+            std::swap(directed[i - 1], directed[random.below(static_cast<std::uint32_t>(i))]);
         std::vector<std::pair<std::uint32_t, std::uint32_t>> expected; // number, vertex
         std::vector<kernels::LocalContact> found;
         std::uint32_t vertex = 0;
-        for (std::uint32_t i = 0; i < numbers.size(); ++i)
+        for (std::uint32_t i = 0; i < directed.size(); ++i)
             for (std::uint32_t n = random.below(4); n > 0; --n) {
                 found.push_back({i, vertex, 0, 0, 0, {}});
-                expected.emplace_back(numbers[i], vertex++);
+                expected.emplace_back(directed[i], vertex++);
             }
-        all.add(found, numbers);
+        all.add(found, directed);
         all.sort(pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
         ASSERT_EQ(all.contacts().size(), expected.size());

@@ -112,11 +112,11 @@ TEST(RangePool, RangesNeverOverlapAndAreUsedAgain) {
             auto it = out.begin();
             std::advance(it, random.below(static_cast<std::uint32_t>(out.size())));
             elements -= it->second.capacity;
-            pool.give_back(it->second);
+            pool.release(it->second);
             out.erase(it);
         } else {
             const std::uint32_t count = 1 + random.below(1u << random.below(10));
-            const RangePool::Range range = pool.take(count);
+            const RangePool::Range range = pool.allocate(count);
             ASSERT_GE(range.capacity, count);
             ASSERT_LE(range.capacity, std::max(4u, 2 * count));
             ASSERT_LE(range.first + range.capacity, pool.end());
@@ -142,13 +142,13 @@ TEST(RangePool, RangesNeverOverlapAndAreUsedAgain) {
 
 TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
     RangePool pool;
-    EXPECT_EQ(pool.take(0).capacity, 0u);
-    pool.give_back({});
+    EXPECT_EQ(pool.allocate(0).capacity, 0u);
+    pool.release({});
     EXPECT_EQ(pool.end(), 0u);
-    EXPECT_THROW(pool.take((1u << 30) + 1), std::length_error);
-    EXPECT_EQ(pool.take(1u << 30).capacity, 1u << 30);
-    EXPECT_EQ(pool.take(1u << 30).capacity, 1u << 30);
-    EXPECT_THROW(pool.take(1), std::length_error);
+    EXPECT_THROW(pool.allocate((1u << 30) + 1), std::length_error);
+    EXPECT_EQ(pool.allocate(1u << 30).capacity, 1u << 30);
+    EXPECT_EQ(pool.allocate(1u << 30).capacity, 1u << 30);
+    EXPECT_THROW(pool.allocate(1), std::length_error);
     EXPECT_EQ(pool.in_use(), 1ull << 31) << "a refusal changes nothing";
 }
 
