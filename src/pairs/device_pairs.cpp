@@ -4,12 +4,16 @@
 #include "device/launch.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
 #include <stdexcept>
 
 namespace raycontact {
 
 namespace {
+
+// Bits, not values: 0 and -0 are one place, but not one contact.
+using PlaceBits = std::array<std::uint64_t, 13>;
 
 constexpr kernels::uint nowhere = NONE; // no shape: this body was never sent
 
@@ -40,7 +44,7 @@ void DevicePairs::list_changes(const Update& update) {
     for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
         if (update.bodies[i].shape == nullptr) continue;
         const kernels::BodyPlace now = place_of(update.bodies[i], i);
-        if (std::memcmp(&now, &sent_[i], sizeof now) == 0) continue;
+        if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(sent_[i])) continue;
         moved_.push_back(sent_[i] = now);
     }
     touched_.clear();
