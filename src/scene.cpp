@@ -17,7 +17,7 @@ namespace raycontact {
 
 namespace {
 
-// A generation is told where it says something: users see none before a slot is given again.
+// Names the generation only if it is not 0: before a slot is reused, users need not know of generations.
 std::string name_of(BodyId body) {
     const std::string name = "body " + std::to_string(slot_of(body));
     return generation_of(body) == 0 ? name : name + " (generation " + std::to_string(generation_of(body)) + ")";
@@ -31,7 +31,7 @@ bool by_slots(const Pair& p, const Pair& q) {
     return SlotPair(slot_of(p.first), slot_of(p.second)) < SlotPair(slot_of(q.first), slot_of(q.second));
 }
 
-// What a peak has taken is given back once a small part of it is in use.
+// Shortens the list; frees its memory once less than a quarter of it is in use.
 template <class Element>
 void cut_to(std::vector<Element>& list, std::size_t size) {
     if (size >= list.size()) return;
@@ -49,7 +49,7 @@ struct Scene::State {
 
     explicit State(const Settings& settings) : narrow(settings) {}
 
-    /// where: what was asked for, for the message.
+    /// where: the function that was called, for the message.
     Body& existing(BodyId body, const char* where) {
         if (!slots.is_there(body)) refuse_missing(body, where);
         return bodies[slot_of(body)];
@@ -65,7 +65,7 @@ struct Scene::State {
         throw InputError(text + "; forget its id, or add it again and use the id that add() gives");
     }
 
-    /// Threads sleep while a solver runs; of a few pairs they take no part.
+    /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
     void call_threads(std::size_t pair_count) {
         if (pair_count > 256) narrow.executor().wake();
     }
@@ -82,7 +82,7 @@ struct Scene::State {
         }
     }
 
-    // How far beyond its box an open mesh can be reached: the farthest any ray of this scene goes.
+    // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
     double reach_into_open() const {
         double reach = 0;
         for (const Body& body : bodies) {
@@ -154,7 +154,7 @@ struct Scene::State {
     std::vector<PlacedBody> placed; ///< likewise
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
-    std::vector<SlotPair> slot_pairs; ///< the same
+    std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
     std::vector<Contact> contacts;
     StepStats stats;
     bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
@@ -172,7 +172,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     const BodySlot slot = slot_of(id);
     if (!shape) throw InputError(name_of(id) + ": the shape is null");
     refuse_faulty(pose, id);
-    // Room first: an add that fails leaves slots without a body.
+    // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
     if (slot >= s.placed.size()) s.placed.resize(slot + std::size_t{1});
     s.narrow.shapes().add(shape);

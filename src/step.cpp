@@ -18,7 +18,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                        std::vector<Contact>& contacts, StepStats& stats) {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<DeviceWork> work = std::move(stats.work); // its memory is used again
+    std::vector<DeviceWork> work = std::move(stats.work); // to reuse its memory
     stats = {};
     try {
         schedule_.assign(pairs);
@@ -26,7 +26,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         placer_.run(executor(), settings_.direction, bodies, schedule_.pairs_of(0), part_.end(), contacts);
         changes_.mark(contacts);
     } catch (...) {
-        part_.forget(); // what a step that failed half-way kept is worth nothing
+        part_.forget(); // the step failed half-way: what it kept may be wrong
         contacts.clear();
         throw;
     }

@@ -16,10 +16,10 @@ public:
     Executor& executor() { return part_.executor(); }
     ShapeStore& shapes() { return part_.shapes(); }
     const Settings& settings() const { return settings_; }
-    /// Forgets what the method before kept.
+    /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
 
-    /// pairs: sorted, each once, indices into bodies. Fills contacts and stats except broad_ms.
+    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but broad_ms.
     void step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, std::vector<Contact>& contacts,
               StepStats& stats);
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }

@@ -5,9 +5,9 @@
 
 namespace raycontact {
 
-/// Names one body of one scene for good: the slot it is in (the low 32 bits), and how many bodies had that slot before
-/// it, its generation (the high 32). As long as nothing has been removed ids count 0, 1, 2, ..., as slots do. Contacts
-/// name slots: compare them with slot_of(id), never with the id itself.
+/// Names one body of one scene and is never reused. The low 32 bits are the body's slot, the high 32 its generation:
+/// how many bodies had that slot before. As long as nothing has been removed, ids are 0, 1, 2, ..., like slots.
+/// Contacts hold slots: compare those with slot_of(id), never with the id itself.
 using BodyId = std::uint64_t;
 
 constexpr std::uint32_t slot_of(BodyId body) {

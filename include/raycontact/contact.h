@@ -10,10 +10,11 @@
 
 namespace raycontact {
 
-/// Which body of the pair the feature (here always a vertex) belongs to: the source of the ray.
+/// The body of the pair that the feature (here always a vertex) belongs to: the source of the ray.
 enum class VertexBody : std::uint32_t { a = 0, b = 1 };
 
-/// One ray that found the other mesh from inside (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and 3.2).
+/// A vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008; Lehericey et al.
+/// 2013, sections 2.1 and 3.2).
 struct Contact {
     std::uint32_t body_a = 0;           ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
@@ -24,11 +25,11 @@ struct Contact {
     std::array<float, 3> normal{};      ///< unit, world frame, from A to B
     float depth = 0;                    ///< > 0, metres along the normal (section 3.2: r . n)
     float ray_length = 0;               ///< |r|, metres from the vertex to the hit
-    bool is_new = true;                 ///< the step before had no contact with this key in this pair
+    bool is_new = true;                 ///< the last step had no contact with this key in this pair
 };
 
-/// A contact that the step before had and this one has not. To be read before the next add(): the slot of a body that
-/// was removed goes to another.
+/// A contact that the last step had and this step does not have. Read it before the next add(), which may give the slot
+/// of a removed body to another body.
 struct LostContact {
     std::uint32_t body_a = 0; ///< its slot; body_a < body_b
     std::uint32_t body_b = 0;

@@ -17,8 +17,8 @@ struct DeviceInfo {
     std::string driver;
     std::uint32_t cores = 0;
     std::uint64_t memory_bytes = 0;
-    /// Correctly rounded division and root, denormals: same bits as every other exact device, by what its driver says;
-    /// opening it tries whether that is true.
+    /// The driver says that division and root are correctly rounded and denormals kept, as needed for the bits of every
+    /// other exact device. Opening the device checks it.
     bool exact = false;
     bool usable = false;
     std::string why_not; ///< empty when usable
@@ -30,12 +30,12 @@ struct DeviceWork {
     std::uint64_t pairs = 0;      ///< unordered pairs of bodies that were its own
     std::uint64_t launches = 0;   ///< kernels started, those of prefix sums included
     std::uint64_t reads = 0;      ///< times the host waited for it
-    std::uint64_t bytes_up = 0;   ///< copied to its memory; none where it works in the host's
+    std::uint64_t bytes_up = 0;   ///< copied to its memory; what it shares with the host is not copied
     std::uint64_t bytes_down = 0; ///< copied from its memory
     double busy_ms = 0;           ///< in which its kernels ran
 };
 
-/// The CPU, and every device of every OpenCL driver here, in the same order each time. Never throws for a missing driver.
+/// The CPU, then every device of every OpenCL driver, in the same order each time. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact

@@ -11,9 +11,9 @@ namespace raycontact {
 /// What is kept from step to step.
 enum class Method {
     standard,   ///< nothing: every ray in full, every step; the reference
-    iterative,  ///< a pair that moved little re-casts last step's contacts alone (LGA13; paper section 3)
+    iterative,  ///< a pair that moved little only follows last step's contacts (LGA13; paper section 3)
     predictive, ///< as iterative, and also follows vertices about to touch (paper section 3.1, Algorithm 1)
-    certified,  ///< leaves alone what cannot touch yet; the contacts are those of `standard` (docs/certified.md)
+    certified,  ///< skips what cannot touch yet; the contacts are those of `standard` (docs/certified.md)
 };
 
 /// How a ray meets a mesh. Both give the same bits.
@@ -35,28 +35,28 @@ struct Settings {
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
-    /// chosen again as it moves; a pair too fast for `predictive` is then cast in full in each step (docs/design.md). With
-    /// `certified` no contact depends on it.
+    /// chosen again as it moves; `predictive` then casts pairs that are too fast for it in full in each step
+    /// (docs/design.md). With `certified` no contact depends on it.
     std::optional<double> displacement_threshold;
-    /// How far ahead of a vertex its predictive ray looks, in displacement thresholds; at least 1 (paper equation 1).
+    /// How far a predictive ray goes, in displacement thresholds; at least 1 (paper equation 1).
     double confidence = 2;
-    /// The same in metres, in place of confidence x displacement threshold.
+    /// The same in metres; replaces confidence x displacement threshold.
     std::optional<double> culling_distance;
     /// Metres by which `predictive` widens the bounds whose vertices it looks at (paper section 3.1); not below a
     /// displacement threshold that is given, too. Empty: the culling distance.
     std::optional<double> distance_extension;
     /// Triangles a ray may visit when it is followed from step to step (maxIt of Algorithm 1); at least 1.
     std::uint32_t max_iterations = 16;
-    /// Where a walk of `predictive` ends nowhere, cast that ray in full instead of giving it up; counted in StepStats.
+    /// If a walk of `predictive` ends nowhere, its ray is cast in full (counted in StepStats); off, it is given up.
     bool cast_lost_walks = true;
 
-    /// Of `standard` with caster bvh: leave out the rays of vertices that a mesh's outside grid knows to be outside
+    /// `standard` with caster bvh casts no ray for a vertex that a grid of the mesh knows to be outside
     /// (docs/design.md). No contact depends on it; off, every ray is cast.
     bool skip_outside = true;
     /// "auto", "cpu", "cpu/k" (the k-th core alone), or another that list_devices() names: "opencl:i", "opencl:i/k"
     /// (the k-th core of it alone, where its driver divides it).
     std::string device = "auto";
-    /// Take a device that rounds otherwise: its contacts may differ from those of every other.
+    /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;
     std::uint32_t threads = 0; ///< of the host; 0: one per core. No count changes a bit of the result
 };

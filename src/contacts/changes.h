@@ -8,7 +8,7 @@
 
 namespace raycontact {
 
-/// Tells the contacts of a step that the step before did not have, and those that are gone.
+/// Finds the contacts of a step that the last step did not have, and those that are gone.
 class Changes {
 public:
     /// contacts: sorted; sets is_new.

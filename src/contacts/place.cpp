@@ -17,7 +17,7 @@ struct Side {
           source_pose(bodies.source.pose), target_pose(bodies.target.pose),
           triangle_index(bodies.target.shape->triangle_index().data()) {}
 
-    // Most of what place() reads, ahead of it: of a fine mesh it lies beyond the caches.
+    // Prefetches most of what place() will read: the data of a fine mesh does not fit the caches.
     void send_for(const kernels::LocalContact& local) const {
         __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
         __builtin_prefetch(&source.mesh.vertices[local.vertex]);
@@ -38,8 +38,8 @@ Vec3 rotate(const Pose& pose, const Vec3& v) {
             (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
 }
 
-// Written where it is to be, and nothing is returned by another unit: what was just stored in other pieces than it is
-// loaded in would be waited for. The point has the bits of transform_point().
+// Writes the contact in place and calls no function of another unit: a load would have to wait for a value that was
+// just stored in pieces of another size. The point has the bits of transform_point().
 void place(Contact& contact, const Side& side, const kernels::LocalContact& local) {
     const ShapeData& shape = side.source;
     contact.body_a = side.pair.first;
@@ -53,7 +53,7 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.point.y = turned.y + origin.y;
     contact.point.z = turned.z + origin.z;
     contact.ray_length = local.distance;
-    Vec3 out; // in which the source leaves the target
+    Vec3 out; // the direction in which the source leaves the target
     if (side.direction == Direction::reprojected) {
         out = rotate(side.target_pose, {local.normal.x, local.normal.y, local.normal.z});
         contact.depth = local.distance * local.facing;
@@ -78,7 +78,7 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
     const auto begins_pair = [&](std::uint32_t i) {
         return i == 0 || i == local.size() || local[i].pair != local[i - 1].pair;
     };
-    // The rays of a pair lie together, but in the order of its clusters. A slice takes the pairs that begin in it.
+    // The contacts of a pair lie together, in the order of its clusters. A slice handles the pairs that begin in it.
     executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         while (!begins_pair(begin)) ++begin;
         for (std::uint32_t next = begin; begin < end; begin = next) {

@@ -10,10 +10,11 @@
 
 namespace raycontact {
 
-/// Contacts of the target's frame to world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points in double.
+/// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points
+/// are in double.
 class Placer {
 public:
-    /// local: those of a pair lie together, in the order of the pairs.
+    /// local: in the order of their directed pairs.
     void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
              std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
              std::vector<Contact>& contacts);

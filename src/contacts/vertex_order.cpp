@@ -9,11 +9,11 @@ namespace raycontact {
 
 namespace {
 
-// How many vertices are smaller says where a contact belongs, without a branch to guess wrong: of this many contacts
-// that is faster than sorting them.
+// The number of smaller vertices is a contact's place in the order. Counting has no branch to mispredict; for `few` to
+// `many` contacts it is faster than sorting.
 constexpr std::size_t few = 8, many = 128, lanes = 16;
 
-// Number: signed, which every processor compares many at once; the shorter, the more.
+// Number: signed, since every processor compares vectors of signed integers; a shorter type gives more lanes.
 template <class Number>
 void count_smaller(std::span<std::uint64_t> keys, std::uint32_t least) {
     std::array<std::uint64_t, many> unsorted;

@@ -7,7 +7,7 @@
 namespace raycontact {
 
 /// Sorts the contacts of one direction of a pair by vertex. keys: the vertex in the upper word, no two alike; the lower
-/// word, which goes along, is not asked.
+/// word moves along and does not affect the order.
 void sort_by_vertex(std::span<std::uint64_t> keys);
 
 } // namespace raycontact

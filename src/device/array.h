@@ -8,7 +8,7 @@
 
 namespace raycontact {
 
-/// A typed device buffer that only ever grows, so that steps allocate nothing once they have seen the worst.
+/// A typed device buffer that never shrinks, so that steps allocate nothing after warm-up.
 template <typename T>
 class Array {
 public:
@@ -25,7 +25,8 @@ public:
         }
         size_ = size;
     }
-    /// For at least so many; where it must grow, for half as many again, since the next step may want a few more.
+    /// Makes room for at least `size` elements, and for half as many again if it must grow, since the next step may
+    /// need a few more. size() is then the whole room.
     void grow(Device& device, std::size_t size) {
         if (size <= size_) return;
         resize(device, size);
@@ -37,7 +38,7 @@ public:
         if (!values.empty()) device.queue().write(*buffer_, 0, values.data(), values.size_bytes());
     }
 
-    /// Keeps what is there; the rest holds anything.
+    /// Keeps the elements; new ones are undefined.
     void extend(Device& device, std::size_t size) {
         if (size > capacity_) {
             Array grown;
@@ -48,14 +49,14 @@ public:
         size_ = size;
     }
 
-    /// Keeps what is there.
+    /// Keeps the elements and adds `values`.
     void append(Device& device, std::span<const T> values) {
         const std::size_t old_size = size_;
         extend(device, old_size + values.size());
         if (!values.empty()) device.queue().write(*buffer_, old_size * sizeof(T), values.data(), values.size_bytes());
     }
 
-    /// What Queue::read() takes: the elements from `first` on go to `values`.
+    /// An argument of Queue::read() that copies the elements from `first` on to `values`.
     Piece piece(std::span<T> values, std::size_t first = 0) const {
         return {values.data(), buffer_.get(), first * sizeof(T), values.size_bytes()};
     }
@@ -64,7 +65,7 @@ public:
         device.queue().read({&all, 1});
     }
 
-    /// Where the host reads and writes it, of a device that shares memory; while no launch that uses it is under way.
+    /// The elements themselves, if the device shares memory with the host; only while no launch uses them.
     std::span<T> in_place() const { return {buffer_ ? static_cast<T*>(buffer_->host()) : nullptr, size_}; }
 
 private:

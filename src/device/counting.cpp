@@ -33,7 +33,7 @@ kernels::uint CountingDevice::scan(const ScanOf& scan) {
     return launches;
 }
 
-// To touch shared memory the host waits as for a read.
+// Counts as a read: the host waits before it touches shared memory.
 void CountingDevice::finish() {
     ++work_.reads;
     inner_->queue().finish();

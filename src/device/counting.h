@@ -5,12 +5,12 @@
 
 namespace raycontact {
 
-/// Passes everything on to another device and counts what it is asked for.
+/// Passes every call on to another device and counts it.
 class CountingDevice : public Device, private Queue {
 public:
     explicit CountingDevice(std::unique_ptr<Device> inner) : inner_(std::move(inner)) {}
 
-    /// Since the last call; `device` and `pairs` are the caller's to fill.
+    /// The work since the last call. The caller fills in `device` and `pairs`.
     DeviceWork take_work();
 
     const DeviceInfo& info() const override { return inner_->info(); }

@@ -18,37 +18,39 @@ class Buffer {
 public:
     virtual ~Buffer() = default;
     virtual std::size_t bytes() const = 0;
-    /// Where the host may read and write it while no launch is under way; null where it cannot.
+    /// The memory, if the host shares it, to read and write while no launch runs; else null.
     virtual void* host() const { return nullptr; }
 };
 
-/// One kernel argument: a buffer, which an empty array may lack, or a 32-bit scalar.
+/// One kernel argument: a buffer (null for an empty array) or a 32-bit scalar.
 struct Argument {
     const Buffer* buffer = nullptr;
     kernels::uint scalar = 0;
     bool is_scalar = false;
 };
 
-/// How many items there are: a number, or what a kernel left in a buffer of 32-bit numbers. The host need not know it.
+/// The number of items of a launch: a value, or a place in a buffer of 32-bit numbers that a kernel has written. The
+/// host need not know the latter.
 struct Count {
     Count(std::size_t number); ///< throws std::length_error beyond 32 bits
     Count(const Buffer* in, std::size_t at, std::size_t at_most)
         : buffer(in), value(static_cast<kernels::uint>(at)), most(static_cast<kernels::uint>(at_most)) {}
 
     const Buffer* buffer = nullptr; ///< null: `value` is the number
-    kernels::uint value = 0;        ///< else its place in the buffer
-    kernels::uint most = 0;         ///< it is no more than this
+    kernels::uint value = 0;        ///< else: the place of the number in the buffer
+    kernels::uint most = 0;         ///< upper bound of the number
 };
 
-/// A part of a buffer, and where the host wants it.
+/// A part of a buffer, and the host memory to copy it to.
 struct Piece {
     void* to = nullptr;
     const Buffer* from = nullptr;
     std::size_t offset = 0, bytes = 0;
 };
 
-/// Sums of the columns of a table: values[c * stride + i] is item i of column c. firsts[i] becomes the sum of column 0
-/// before item i; the sums go to totals[at], with room for `room` results (kernels::Totals says how).
+/// What a scan works on, a table: values[c * stride + i] is item i of column c. The scan sets firsts[i] to the sum of
+/// column 0 before item i, and totals[at] to the sums of all columns. `room`: most results that the caller can store
+/// (see kernels::Totals).
 struct ScanOf {
     Count count;
     kernels::uint columns = 1, stride = 0;
@@ -58,7 +60,7 @@ struct ScanOf {
     kernels::uint at = 0, room = 0;
 };
 
-/// Work in order. Every call but read() and finish() may return before the work is done.
+/// Runs work in order. Every call but read() and finish() may return before the work is done.
 class Queue {
 public:
     virtual ~Queue() = default;
@@ -68,16 +70,16 @@ public:
     virtual void read(std::span<const Piece> pieces) = 0;
     virtual void copy(Buffer& to, const Buffer& from, std::size_t bytes) = 0;
     virtual void launch(KernelId kernel, Count count, std::span<const Argument> arguments) = 0;
-    /// Returns how many kernels that takes: one up to SCAN_AT_ONCE items, three above.
+    /// Returns the number of kernels launched: one for up to SCAN_AT_ONCE items, else three.
     virtual kernels::uint scan(const ScanOf& scan) = 0;
     virtual void finish() = 0;
-    /// Milliseconds in which kernels ran since the device was opened, of all that has been waited for.
+    /// Milliseconds in which kernels ran since the device was opened; counts kernels that were waited for.
     virtual double busy_ms() const = 0;
 };
 
 /// What a device can do.
 struct DeviceTraits {
-    bool has_double = true;     ///< else the host runs the kernels that compute in double
+    bool has_double = true;     ///< else the host places the pairs, in double
     bool shares_memory = false; ///< Buffer::host() is never null
 };
 
@@ -96,8 +98,8 @@ struct OpenDevice {
     std::unique_ptr<Device> device;
 };
 
-/// Opens what `--devices` names. Throws InputError for a device that is unknown or that this version cannot use.
-/// threads: of the host, 0 for one per core. inexact: also a device that gives other bits than the rest.
+/// Opens the device that `--devices` names. Throws InputError for a device that is unknown or that this version cannot
+/// use. threads: of the host, 0 for one per core. inexact: also opens a device whose bits differ from the others'.
 OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
 
 } // namespace raycontact

@@ -13,7 +13,7 @@ struct KernelPiece {
     std::string_view file, text;
 };
 
-/// Dialect, types and kernels in one text; without those that compute in double where a device has none.
+/// Dialect, types and kernels in one text. with_double: false leaves out the kernels that compute in double.
 inline std::string kernel_text(std::span<const KernelPiece> pieces, bool with_double) {
     constexpr std::string_view in_double[] = {"kernels/body_place.h", "kernels/place_pairs.h",
                                               "device/gpu/probe_double.h"};

@@ -41,7 +41,7 @@ private:
 } // namespace detail
 
 /// Runs a kernel over `count` work items. The host build of the kernel is the prototype: a missing argument, or an
-/// array of the wrong element type, does not compile.
+/// array of another element type, does not compile.
 template <KernelId kernel, typename... Given>
 void launch(Device& device, const Count& count, const Given&... given) {
     detail::Launch<typename Prototype<kernel>::type>::run(device, kernel, count, given...);

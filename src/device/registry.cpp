@@ -37,7 +37,7 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact) {
-    // For tests and measurements: a narrower instruction set gives the same bits.
+    // For tests and measurements; every instruction set gives the same bits.
     const char* wanted = std::getenv("RAYCONTACT_INSTRUCTION_SET");
     const std::string_view instruction_set = wanted ? wanted : "";
     if (threads > 1024) throw InputError("threads: " + std::to_string(threads) + " is too many; give at most 1024");

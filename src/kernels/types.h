@@ -102,8 +102,8 @@ typedef struct {
 } PairChange;
 WIRE_SIZE(PairChange, 12);
 
-// Source seen from the target's frame, and the box in that frame whose vertices cast rays (inclusive). source NONE: the
-// slot has no pair.
+// A directed pair: the pose of the source in the target's frame, and the box in that frame in which vertices cast rays
+// (inclusive). source NONE: the slot has no pair.
 typedef struct {
     float rotation[9];
     float translation[3];
@@ -189,8 +189,9 @@ typedef struct {
 } Held;
 WIRE_SIZE(Held, 40);
 
-// A pair's rays of the last step, and where those of this step begin. margin: metres of rounding. radius: of the tubes
-// to be sought; 0: none, the pair moves too fast. asks_caps: of the target.
+// The held rays of a directed pair: first, count: those of the last step, in the array of Held; now_first: where those
+// of this step begin. margin: metres of rounding. radius: of tubes to seek, metres; 0: none, the pair is too fast.
+// asks_caps: 1: rays test the caps of the target.
 typedef struct {
     uint first, count; // Held
     uint now_first;
@@ -216,9 +217,9 @@ typedef struct {
 } Hit;
 WIRE_SIZE(Hit, 16);
 
-// What a scan leaves. items: those whose results are to be written; 0 where there is none, or no room. results: as
-// many; 0 where there is no room. sums: of the columns, whether or not there is room; NONE where 32 bits cannot hold
-// it.
+// What a scan leaves. items: the number of items whose results are to be written; 0 if there are no results or no room.
+// results: the number of results; 0 if there is no room. sums: of the columns, whether or not there is room; NONE if 32
+// bits cannot hold one.
 typedef struct {
     uint items;
     uint results;

@@ -6,8 +6,8 @@
 
 namespace raycontact {
 
-/// The bodies and the open pairs as the device keeps them: what changed goes up, and every pair is placed there, in
-/// double. Where a device has no double, the host does that with the same text.
+/// The bodies and the open pairs as the device keeps them. A step sends only changes; the device then places every
+/// pair, in double. If it has no double, the host places them with the same text.
 class DevicePairs {
 public:
     void place(const Update& update);

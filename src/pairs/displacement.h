@@ -7,15 +7,16 @@
 
 namespace raycontact {
 
-/// How far the rotation may be from an orthonormal matrix (Frobenius norm), for bounds that rely on it being one.
+/// An upper bound of the distance (Frobenius norm) of the rotation from an orthonormal matrix, for bounds that assume
+/// one.
 double shear_bound(const Pose& pose);
 
-/// No less than ||(to - from) v|| / |v| for any v: the spectral norm of a difference of rotations is its Frobenius norm
-/// divided by sqrt(2), since such a difference has two equal singular values and a third that is 0; `shear` accounts
-/// for matrices that are rotations only nearly. 0 where both are the same.
+/// An upper bound of ||(to - from) v|| / |v| for any v: the spectral norm of a difference of rotations is its Frobenius
+/// norm divided by sqrt(2), since such a difference has two equal singular values and a third that is 0; `shear`
+/// accounts for matrices that are rotations only nearly. 0 where both are the same.
 double turn_bound(const Pose& from, const Pose& to, double shear);
 
-/// How far any point within `reach` of the frame's origin moved at most between two poses, metres.
+/// An upper bound of how far any point within `reach` of the frame's origin moved between two poses, metres.
 double displacement_bound(const Pose& from, const Pose& to, double reach, double shear);
 
 /// Two bodies relative to each other. `back` is not taken from `pose`: the transpose of a rotation that is one only to
@@ -33,8 +34,8 @@ struct PairPlace {
 };
 PairPlace place_pair(const Pose& first, const Pose& second, double shear);
 
-/// How far the vertices of the first, within `reach_first` of its origin, moved at most in the frame of the second, and
-/// the second's in the frame of the first, metres. Not a number where squares overflow.
+/// Upper bounds of how far the vertices of the first body, within `reach_first` of its origin, moved in the frame of
+/// the second, and those of the second in the frame of the first, metres. Not a number if squares overflow.
 std::array<double, 2> displacement_bounds(const PairPlace& from, const PairPlace& to, double reach_first,
                                           double reach_second);
 

@@ -9,16 +9,16 @@
 
 namespace raycontact {
 
-/// How each body moved since the last step, and from it a bound for a pair that costs a few operations: no relative
-/// pose is formed.
+/// How each body moved since the last step. From this follows a bound for any pair in a few operations, without a
+/// relative pose.
 class Motion {
 public:
     /// Once a step, with every body of the scene.
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
-    /// Asks for what pair_bound() reads of the second body, its first line; the first's is that of the pair before.
+    /// Prefetches what pair_bound() reads of the second body; the first body is mostly that of the last pair.
     void prefetch(const SlotPair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
-    /// No less than what any vertex of either body moved in the frame of the other, metres.
+    /// An upper bound of how far any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const SlotPair& pair) const;
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;
@@ -28,12 +28,12 @@ public:
     }
 
 private:
-    /// What a pair asks of a body. Small, so that those of thousands of bodies stay near: in float, each with what its
-    /// rounding may have taken.
+    /// What pair_bound() reads of a body. In float, with bounds of the rounding, so that thousands of bodies fit the
+    /// caches.
     struct Body {
         float centre[3]{};
         float shift[3]{};      ///< of the centre, metres
-        float centre_lost = 0; ///< by rounding, metres
+        float centre_lost = 0; ///< rounding of centre, at most, metres
         float shift_lost = 0;
         float turn = 0;  ///< turn_bound
         float reach = 0; ///< of the shape, about its centre

@@ -10,7 +10,7 @@ void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::Ord
     order_pair(source, target, relative_pose(target.centred, source.centred), ordered);
 }
 
-// Written where it is to be: one made on the stack is copied in words that no store has just written, and waits.
+// Written in place: to copy one from the stack, wide loads would wait for the narrow stores that made it.
 void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
                 kernels::OrderedPair& ordered) {
     const kernels::ShapeHeader& shape = target.shape->data().header;

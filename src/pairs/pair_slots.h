@@ -10,13 +10,13 @@
 
 namespace raycontact {
 
-/// The pairs that are open, each with a slot that it keeps for as long as it is. Slots are given again, so memory
-/// follows the most pairs ever open at once.
+/// The open pairs. Each keeps its slot while it is open. Slots are reused, so memory follows the most pairs ever open
+/// at once.
 class PairSlots {
 public:
-    /// pairs: sorted, each once. In their order: kept(old, now, n) tells of n pairs in a row that stay, opened(now,
-    /// slot) and closed(slot) of those that come and go. False, and nothing is told, where all pairs are those of
-    /// before.
+    /// pairs: sorted, without duplicates. Calls, in their order, kept(old, now, n) for n pairs in a row that stay,
+    /// opened(now, slot) for each new pair and closed(slot) for each that is gone; old and now are places in the last
+    /// list and in `pairs`. Returns false, without any call, if the pairs are the same as before.
     template <class Kept, class Opened, class Closed>
     bool match(std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
         if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return false;
@@ -51,9 +51,9 @@ public:
     }
 
     std::span<const SlotPair> pairs() const { return open_; }
-    /// Of the i-th pair.
+    /// The slot of the i-th pair.
     std::uint32_t slot(std::size_t i) const { return slots_[i]; }
-    /// All slots are below.
+    /// All slots are below this.
     std::uint32_t end() const { return end_; }
 
     void clear() {

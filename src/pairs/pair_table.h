@@ -11,12 +11,12 @@
 
 namespace raycontact {
 
-/// The pairs that were open in the last step, each with its state; others have none. State is what a method keeps for a
-/// pair; Hot what it reads of every pair in every step, and lies in their order.
+/// The pairs that were open in the last step, each with what a method keeps for it. Hot is the part that is read for
+/// every pair in every step; it is stored in the order of the pairs. State is the rest, stored by slot.
 template <class State, class Hot>
 class PairTable {
 public:
-    /// pairs: sorted, each once. Opens the new ones with a fresh state; closed(state) is told of those that are gone.
+    /// pairs: sorted, without duplicates. New pairs get a fresh state; calls closed(state) for each that is gone.
     template <class Closed>
     void match(std::span<const SlotPair> pairs, Closed&& closed) {
         next_hot_.resize(pairs.size());
@@ -36,23 +36,23 @@ public:
         incoming_.clear();
     }
 
-    /// The place of a pair of the last match; none: it was not open.
+    /// The place of a pair in the last match; empty if it was not open.
     std::optional<std::size_t> place(const SlotPair& pair) const {
         const std::span<const SlotPair> open = slots_.pairs();
         const auto at = std::lower_bound(open.begin(), open.end(), pair);
         if (at == open.end() || *at != pair) return std::nullopt;
         return static_cast<std::size_t>(at - open.begin());
     }
-    /// What another table kept for a pair that the next match opens.
+    /// Hands over what another table kept for a pair that the next match opens.
     void put_in(const SlotPair& pair, const State& state, const Hot& hot) { incoming_.push_back({pair, state, hot}); }
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_.slot(i)]; }
     Hot& hot(std::size_t i) { return hot_[i]; }
 
-    /// ask(i) for each pair of [begin, end) for which wants(i, hot) is true. By handfuls, so that the states of some
-    /// are on their way while others are asked: between two steps a solver has used the caches. prefetch(i), ahead of
-    /// both: what wants() reads beside hot.
+    /// Calls ask(i) for each pair of [begin, end) for which wants(i, hot) is true. Works in batches and prefetches the
+    /// states of a batch before the first ask(), since a solver has used the caches between two steps. Calls
+    /// prefetch(i) some pairs ahead, for what wants() reads besides hot.
     template <class Prefetch, class Wants, class Ask>
     void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Wants&& wants, Ask&& ask) {
         constexpr std::uint32_t handful = 32, ahead = 8;
@@ -101,7 +101,7 @@ private:
     PairSlots slots_;
     std::vector<Incoming> incoming_;
     std::vector<State> states_;       ///< by slot
-    std::vector<Hot> hot_, next_hot_; ///< by pair; the other one is only ever a buffer
+    std::vector<Hot> hot_, next_hot_; ///< by place; next_hot_ is a buffer for match()
 };
 
 } // namespace raycontact

@@ -19,7 +19,7 @@ struct Update {
     const ShapeStore& shapes;
     std::span<const PlacedBody> bodies;
     std::span<const SlotPair> pairs; ///< the part's: sorted, each once
-    const Motion& motion;            ///< not of `standard`, which asks for none
+    const Motion& motion;            ///< not up to date with `standard`, which does not use it
     const Settings& settings;
 
     const ShapeStore::Arrays& arrays() const { return shapes.arrays(); }

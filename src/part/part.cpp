@@ -16,7 +16,7 @@ void Part::forget() {
     local_.clear();
 }
 
-// What `certified` keeps lies in memory that host and device share; elsewhere it casts what `standard` does.
+// `certified` needs memory that host and device share; on other devices it runs `standard`.
 Part::Finds Part::finds(const Settings& settings) const {
     if (settings.method == Method::standard) return Finds::standard;
     if (settings.method != Method::certified) return Finds::coherent;

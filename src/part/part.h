@@ -15,8 +15,8 @@
 namespace raycontact {
 
 /// What one device does for the pairs that are its own: it keeps the shapes, finds the rays by a method, casts them and
-/// gathers their contacts. It knows bodies by their slots and no other part. Keeps every array between steps, so that a
-/// step allocates nothing once it has seen the worst.
+/// gathers their contacts. It knows bodies by their slots, and no other part. Its arrays stay between steps, so that
+/// after warm-up a step allocates nothing.
 class Part {
 public:
     explicit Part(OpenDevice opened);
@@ -29,10 +29,10 @@ public:
     /// The contacts of the step, by pair: LocalContact::pair is the directed index in `pairs`. Valid until begin().
     std::span<const kernels::LocalContact> end();
 
-    /// What is kept of some pairs of the last step, which are to be another part's: that one goes on with it as this
-    /// one would have. bodies as in the last step. Empty where the contacts do not depend on what is kept.
+    /// The state kept for some pairs of the last step, for another part to go on with as this part would have. bodies
+    /// as in the last step. Empty if the contacts do not depend on that state.
     std::vector<std::byte> take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs);
-    /// Before the begin() that first has these pairs; bodies as there.
+    /// Adds such state. Call it before the begin() that first has these pairs, with the same bodies.
     void put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
 
     /// Adds what the last step did.

@@ -22,7 +22,7 @@ bool casts_all(const Update& update) {
     return update.settings.caster == Caster::basic;
 }
 
-// As the kernel asks: nothing is known of the pair's rays, and nothing is to be sought.
+// The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
     return held_range.count == 0 && held_range.radius <= 0 && held_range.asks_caps == 0;
 }
@@ -41,7 +41,7 @@ void CertifiedRays::close(WatchedPair& state) {
     }
 }
 
-// What the slices found, in the order of the pairs.
+// Collects what the slices found, in the order of the pairs.
 void CertifiedRays::list_slices() {
     stale_.clear();
     directed_.clear();
@@ -56,8 +56,8 @@ void CertifiedRays::list_slices() {
     fast_count_ = directed_.size();
 }
 
-// The blocks of each stale pair that reach into its bounds widened by what the list is to last, and could be in contact
-// before it ends.
+// Makes the new list of each stale pair: the blocks that reach into the bounds, widened by the distance for which the
+// list lasts, and that could be in contact before it expires.
 void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     wide_pairs_.resize(device, stale_.size());
@@ -78,12 +78,12 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         const Due& due = stale_[i].due();
         Watched& own = *due.own;
         pool_.release({own.first, own.capacity});
-        own.capacity = 0; // should the next line fail
+        own.capacity = 0; // in case the next line throws
         const RangePool::Range range = pool_.allocate(near_.host_counts()[i]);
         places_.in_place()[i] = own.first = range.first;
         own.capacity = range.capacity;
         own.count = near_.host_counts()[i];
-        if (own.count == 0) { // nothing to look at for longer than was asked
+        if (own.count == 0) { // an empty list may last longer
             const double safe = 0.99999 * double(near_.host_safe_distances()[i]) - double(due.margin);
             own.expiry = std::max(own.expiry, std::min(safe, due.longest));
         }
@@ -95,7 +95,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
                                     arrays.clearances, margins_, near_.blocks(), near_.firsts(), places_, watches_);
 }
 
-// The pairs whose rays are cast: the fast ones, then what is due, with the segments of its blocks.
+// Places the pairs of the batch: the fast ones, then those that are due, with the segments of their blocks.
 void CertifiedRays::place(const Update& update) {
     std::size_t due_count = fast_count_, segment_count = 0;
     for (WakeUp::Slice& slice : wake_up_.slices()) {
@@ -113,7 +113,7 @@ void CertifiedRays::place(const Update& update) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
             order_pair(source, target, pairs_.in_place()[i]);
-            // Where there are few blocks it is not worth asking which are near.
+            // With few blocks it does not pay to find the near ones.
             const bool few = source.shape->data().header.vertex_block_count <= BLOCKS_IN_MASK;
             fast_margins_.in_place()[i] = few ? -1.0F : static_cast<float>(rounding_margin(source, target));
             held_ranges_.in_place()[i] = {};
@@ -132,7 +132,7 @@ void CertifiedRays::place(const Update& update) {
     });
 }
 
-// Every vertex of a fast pair is looked at, but those of blocks that are clear of the target.
+// The rays of fast pairs: of all vertices in the bounds but those of blocks that are known to be safe.
 void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     fast_.find(update, pairs_, fast_margins_, batch.totals, RayBatch::ray_sum);
@@ -170,8 +170,8 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     settle(update, fast);
 }
 
-// What the pairs keep of this step, and what their rays are told of the last: where each lay, and how wide a tube may
-// be sought.
+// Stores what the pairs keep of this step, and tells the rays of each pair where those of the last step are and how
+// wide a tube to seek.
 void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     const bool holds = !casts_all(update); // something will be known of the rays afterwards
     const auto looks = looks_.in_place();
@@ -187,7 +187,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             kernels::HeldRange& held_range = held_ranges[i++];
             held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
                           due.asks_caps};
-            // Where a pair is too fast to be sought for, and nothing was known, nothing is known now either.
+            // For an idle pair nothing was known and nothing is sought, so nothing is known afterwards.
             own.rays = {ray, 0, holds && !is_idle(held_range)};
             own.wake = own.expiry;
             for (; segment < end; ++segment) {
@@ -203,8 +203,8 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     });
 }
 
-// Most rays are decided by the one triangle that each can meet (docs/certified.md). A vertex of ours may have left the
-// bounds: either caster asks.
+// Decides most rays by the one triangle that each can meet (docs/certified.md). A watched vertex may have left the
+// bounds; the kernels of both casters test that.
 void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     if (casts_all(update)) {

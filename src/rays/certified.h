@@ -11,12 +11,12 @@
 namespace raycontact {
 
 /// The rays of a step by the certified method: those of `standard` that could be contacts, and hardly any other
-/// (docs/certified.md). Each ordered pair watches the vertex blocks within some distance of its target; a block, and a
-/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs too fast for that to pay
-/// are cast as `standard` does. What it keeps must lie in memory that host and device share.
+/// (docs/certified.md). Each directed pair watches the vertex blocks within some distance of its target. A block, and a
+/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs too fast for this to pay
+/// off are cast as by `standard`. Needs memory that host and device share.
 class CertifiedRays {
 public:
-    /// The hits are those of `standard`, most of them without being cast (caster basic: all of them cast).
+    /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
     void clear();
 
@@ -26,7 +26,7 @@ public:
 private:
     struct Stale {
         WakeUp::Slice* slice;
-        std::uint32_t at; ///< in its due
+        std::uint32_t at; ///< index in slice->due
         Due& due() const { return slice->due[at]; }
     };
 
@@ -46,7 +46,7 @@ private:
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: the fast pairs, then what is due
     std::size_t fast_count_ = 0;          ///< of directed_
-    kernels::Totals fast_sums_{};         ///< rays of theirs: cast, and of the rule
+    kernels::Totals fast_sums_{};         ///< of the fast pairs: rays cast, rays of the rule
     std::size_t open_pairs_ = 0;
     std::uint64_t packed_ = 0;
 
@@ -55,7 +55,7 @@ private:
     Array<kernels::Look> looks_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
     Columns look_rays_, fast_rays_;
-    Array<kernels::OrderedPair> wide_pairs_; ///< of stale_, as what follows
+    Array<kernels::OrderedPair> wide_pairs_; ///< by index of stale_, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
     Array<float> fast_margins_;

@@ -14,9 +14,10 @@ namespace raycontact {
 
 namespace {
 
-// Of a look at a pair without rays, in rays followed; `predictive` also casts for those.
+// Cost of a full look that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
+// ratio.
 constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
-// Of the smaller body's diagonal: a pair that moves farther in a step is not worth following.
+// Share of the smaller body's diagonal: a pair that moves farther than this in a step is not worth following.
 constexpr double farthest = 0.015;
 
 template <class T>
@@ -34,28 +35,28 @@ T take_bytes(std::span<const std::byte>& bytes) {
     return value;
 }
 
-// Slots of vertices count from here in the shape store of a device.
+// The slot of the body's first vertex in the shape store of a device.
 kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
     return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertex_block_first;
 }
 
 } // namespace
 
-// Whether a pair moves on to other triangles in a few steps: then seeking ahead costs more than it saves.
+// Whether the pair's vertices reach other triangles within a few steps: then prediction costs more than it saves.
 bool CoherentRays::is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed) {
     const ShapeData &first = a.shape->data(), &second = b.shape->data();
     const double size = std::min(first.diagonal, second.diagonal), grain = std::min(first.grain, second.grain);
     return speed > std::min(farthest * size, 0.125 * grain);
 }
 
-// How far a pair may move before it is looked at in full again, where no setting says so. A longer way spares full
-// looks and follows more rays, since it must look farther ahead; the counted cost of both decides, a factor at a time.
-// Counts, not clocks: equal input, equal result.
+// How far a pair may move before its next full look, if no setting says so. A longer distance saves full looks but
+// follows more rays, since it must predict farther ahead. The counted costs of both decide, by one factor at each look.
+// Counts, not times, so that equal input gives equal results.
 double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
                                     double follows, bool predictive) {
     const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
     const double least = 0.001 * size, most = farthest * size;
-    // Too fast to be followed (of `predictive` others take such a pair): looked at in full in every step.
+    // Too fast to be followed: a full look in every step. (With `predictive` such pairs do not come here.)
     if (speed > most) return 0.2 * least;
     double threshold = 4 * speed;
     if (state.threshold >= least) {
@@ -84,8 +85,8 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
     if (state.threshold >= 0) { // it was looked at before
         const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
-        // The paper: looked at in full once it exceeds the threshold. So is a pair whose way is no number. Not before
-        // there could be anything to be found.
+        // The paper: a full look once the displacement exceeds the threshold, or is not a number. It is put off while
+        // it would find nothing.
         const double allowed = std::max(state.threshold, state.safe);
         if (moved[0] <= allowed && moved[1] <= allowed) {
             left = allowed - std::max(moved[0], moved[1]);

@@ -14,20 +14,20 @@
 namespace raycontact {
 
 /// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
-/// that moved less than a threshold since it was last looked at in full follows the rays it kept; others cast anew.
-/// Where the threshold of `predictive` is left to the library, pairs too fast to be followed are cast in full.
+/// that moved less than a threshold since its last full look follows the rays it kept; others get a full look. If the
+/// library chooses the threshold of `predictive`, pairs too fast to be followed are cast in full.
 class CoherentRays {
 public:
     void cast(const Update& update, RayBatch& batch);
-    /// Once the batch has been read: what each pair follows in the next step.
+    /// After the batch has been read: stores what each pair follows in the next step.
     void keep(const Update& update);
     void clear() { table_.clear(); }
 
-    /// What is kept of some pairs, for another device to go on with: those of the last step alone. Between two steps;
-    /// bodies as in the last.
+    /// The state kept for some pairs of the last step, for another part to go on with. Between two steps; bodies as in
+    /// the last step.
     std::vector<std::byte> take_out(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
                                     std::span<const SlotPair> pairs);
-    /// Before the step that first has these pairs. bodies as in that step.
+    /// Adds such state, before the step that first has these pairs; bodies as in that step.
     void put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
                 std::span<const std::byte> bytes);
 
@@ -50,7 +50,7 @@ private:
         PairPlace reference;      ///< where the bodies were when the pair was last looked at in full
         double threshold = -1;    ///< metres, of that look; below 0: there was none
         double safe = 0;          ///< metres that the pair could move then before any contact, if it found no block
-        double culling = 0;       ///< metres a predictive ray looks ahead; below 0: it is not followed
+        double culling = 0;       ///< metres, length of predictive rays; below 0: too fast to be followed
         double look_cost = 0;     ///< what that look cost, in rays
         std::uint64_t looked = 0; ///< its step
     };

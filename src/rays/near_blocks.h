@@ -9,9 +9,9 @@ namespace raycontact {
 /// The vertex blocks of some pairs that could be in contact soon, in the order of the pairs.
 class NearBlocks {
 public:
-    /// Those of the first horizons.size() pairs that could be in contact before they have moved by horizons[p], metres,
-    /// which hold the rounding to be allowed for; below 0: that reach into the bounds. totals[at] is used. Waits for
-    /// the device once.
+    /// Finds the blocks of the first horizons.size() pairs that could be in contact before they have moved by
+    /// horizons[p] (metres, rounding included). horizons[p] < 0: all blocks that reach into the bounds. Uses
+    /// totals[at]. Waits for the device once.
     void find(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<float>& horizons,
               const Array<kernels::Totals>& totals, std::size_t at);
 
@@ -20,8 +20,8 @@ public:
     const Array<kernels::uint>& firsts() const { return counts_.firsts(); }
     /// By pair: how many there are.
     std::span<const kernels::uint> host_counts() const { return host_counts_; }
-    /// By pair, where it has no block: how far its vertices can move before one could be in contact, metres, rounding
-    /// not allowed for. May be less, also negative.
+    /// By pair, if it has no block: how far its vertices can move before one could be in contact, metres, rounding not
+    /// included. May be less, also negative.
     std::span<const float> host_safe_distances() const { return host_safe_distances_; }
 
 private:

@@ -8,12 +8,13 @@
 
 namespace raycontact {
 
-/// The rays of a step on the device, and how they ended. The host may learn only at the end of the step how many.
+/// The rays of a step on the device, and how they ended. With `standard` the host learns their number only at the end
+/// of the step.
 struct RayBatch {
     /// What the scans of a step count: vertex blocks found, rays, contacts, rays kept for the next step.
     enum Sum : std::size_t { block_sum, ray_sum, contact_sum, kept_sum, sum_count };
 
-    /// Room for so many rays. Their hits come with columns: contacts, side tests, and if asked for rays cast in full.
+    /// Makes room for so many rays. columns of outcomes: contacts, side tests and, if 3, rays cast in full.
     void resize(Device& device, std::size_t size, kernels::uint columns = 2) {
         rays.resize(device, size);
         hits.resize(device, size);
@@ -31,8 +32,8 @@ struct RayBatch {
     std::array<kernels::Totals, sum_count> sums{}; ///< totals, as the host has read them
 };
 
-/// Casts every ray in full (paper section 2.1). short_first: the rays are those that a grid left over, most of which
-/// end close by; a matter of time alone.
+/// Casts every ray in full (paper section 2.1). short_first: tries a short ray first, for rays that a grid left over,
+/// most of which end close by; it changes the time only.
 void cast_in_full(const Update& update, RayBatch& batch, bool short_first);
 
 } // namespace raycontact

@@ -8,15 +8,16 @@
 
 namespace raycontact {
 
-/// The standard method (paper section 2.1): one ray from every vertex inside the other body's bounds, unless a grid
-/// knows that it is outside, cast in full. Nothing is read back: how much there is of anything stays on the device.
+/// The standard method (paper section 2.1): one ray from every vertex inside the other body's bounds, cast in full,
+/// unless a grid knows that the vertex is outside. Nothing is read back: the numbers of blocks and rays stay on the
+/// device.
 class StandardRays {
 public:
     /// Brings the pairs up to date and casts their rays.
     void begin(const Update& update, RayBatch& batch);
-    /// False where blocks or rays had no room: there is more now, and all is to be cast again.
+    /// False if blocks or rays had too little room: there is enough now, and cast() must run again.
     bool had_room(Device& device, RayBatch& batch);
-    /// The same again.
+    /// Finds and casts the rays again.
     void cast(const Update& update, RayBatch& batch);
     void clear() { pairs_.clear(); }
 

@@ -16,34 +16,34 @@ constexpr std::uint32_t slice_size = 128; // pairs
 // Shares of the smaller body's size:
 constexpr double fastest = 0.006;    // a step: a list would not last long enough to pay for itself
 constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to triangle
-// How fast a pair may be for tubes to be sought, of their radius a step.
+// Share of the tube's radius a step: faster pairs seek no tubes.
 constexpr double slow = 0.15;
 
 double size_of(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
 }
 
-// How far beyond the bounds a new list reaches: some steps' worth between the lengths that `bench sweep` found best, on
-// a pile and on fast bodies alike.
+// How far beyond the bounds a new list reaches: the way of some steps, between the lengths that `bench sweep` found
+// best for a pile and for fast bodies.
 double look_ahead(double size, double speed) {
     return std::max(0.015 * size,
-                    std::min(0.027 * size, 24 * speed)); // in this order also for a speed that is no number
+                    std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed
 }
 
-// Beyond some sizes of the target a float32 clock would count in steps coarser than the rounding allowed for.
+// A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
 double longest_clock(const PlacedBody& target) {
     return 8 * target.shape->data().diagonal;
 }
 
-// Metres around a ray that are searched for what it could meet: within the length of a triangle the surface mostly
-// faces one way, farther off there are only more triangles to be asked.
+// Metres around a ray to search for triangles. Within the length of a triangle the surface mostly faces one way; a
+// wider tube only finds more triangles to test.
 double tube_radius(double size, const ShapeData& target) {
     return std::min(size / 128, target.grain);
 }
 
 } // namespace
 
-// Decides for one pair, in double, what must be looked at.
+// Decides for one pair, in double, what is due.
 void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice) {
     const std::optional<double>& threshold = update.settings.displacement_threshold;
     const SlotPair& pair = update.pairs[i];
@@ -61,9 +61,9 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
-        // Asked so that a clock that is not a number, of bodies beyond the range of squares, is a reason to look.
+        // Written so that a clock that is NaN, for bodies beyond the range of squares, makes the list stale.
         stale[d] = fresh || !(clock < own.expiry);
-        // As the kernel will ask: nothing is looked at but from the reference pose.
+        // The same comparison as in the kernel: blocks are tested only at the reference pose.
         wakes[d] = stale[d] || !(double(static_cast<float>(clock)) < own.wake);
         slack.casts = slack.casts || own.rays.count > 0;
         if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
@@ -98,7 +98,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     }
 }
 
-// A cheap bound first, which most pairs at rest pass.
+// The cheap bound comes first; most pairs at rest need no more.
 void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                         Slice& slice) {
     const auto wants = [&](std::uint32_t i, Slack& slack) {

@@ -8,14 +8,14 @@
 
 namespace raycontact {
 
-/// The rays that one direction of a pair had in a step. held: what was found out about them is kept beside them.
+/// The rays that one direction of a pair had in a step. held: `Held` data was stored for them.
 struct WatchedRays {
     std::uint32_t first = 0, count = 0;
     bool held = false;
 };
 
-/// What the certified method keeps of one direction of a pair: the vertex blocks that it watches, and a clock that runs
-/// in metres, from the pair's reference pose on.
+/// What the certified method keeps for one direction of a pair: the vertex blocks that it watches, and a clock that
+/// counts metres moved since the pair's reference pose.
 struct Watched {
     double clock = 0;   ///< at the reference pose
     double wake = 0;    ///< no block need be looked at before the clock reaches this
@@ -30,21 +30,21 @@ struct WatchedPair {
     PairPlace reference;
 };
 
-/// What is asked of every pair in every step.
+/// What is read for every pair in every step.
 struct Slack {
-    double metres = -1; ///< that the pair may move, by a cheap bound, before the exact one is asked
+    double metres = -1; ///< that the pair may move, by the cheap bound, before the exact one is computed
     bool open = false;  ///< it has lists
-    bool casts = false; ///< it has rays, to be decided in each step in which it moves
+    bool casts = false; ///< it has rays, to be decided in every step
 };
 
-/// A direction whose blocks are asked in this step.
+/// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.
 struct Due {
     Watched* own = nullptr;
     std::uint32_t directed = 0;   ///< directed index of the pair
     bool stale = false;           ///< it needs a new list
     float now = 0;                ///< the clock
-    float margin = 0, radius = 0; ///< of rounding; of tubes
-    kernels::uint asks_caps = 0;  ///< of its rays
+    float margin = 0, radius = 0; ///< metres: of rounding; of tubes to seek, 0: none
+    kernels::uint asks_caps = 0;  ///< 1: its rays test caps
     double longest = 0;           ///< metres that a new list may last
 };
 

@@ -45,7 +45,7 @@ kernels::uint number_of(const Count& count) {
 
 using Clock = std::chrono::steady_clock;
 
-// Adds the time that it lives.
+// Adds its own lifetime to a sum.
 class Busy {
 public:
     explicit Busy(Clock::duration& sum) : sum_(sum) {}
@@ -58,7 +58,7 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-// How many items make a slice worth a thread's while; a ray costs a hundred times what an element of a scan does.
+// The least number of items in a thread's slice: a ray costs a hundred times as much as an element of a scan.
 kernels::uint grain_of(KernelId kernel) {
     switch (kernel) {
     case KernelId::cast_rays_basic:

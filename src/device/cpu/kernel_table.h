@@ -17,7 +17,7 @@ struct KernelTable {
     std::array<Entry, static_cast<std::size_t>(KernelId::count)> entries;
 };
 
-/// The tables this build holds and this processor can run, the widest first. All give the same bits.
+/// The tables that this build has and this processor can run, the widest first. All give the same bits.
 std::span<const KernelTable* const> usable_tables();
 
 void* address_of(const Argument& argument);

@@ -8,7 +8,7 @@
 
 namespace raycontact::cpu {
 
-/// ScanOf where the host can reach it all.
+/// ScanOf with host pointers.
 struct HostScan {
     kernels::uint count = 0, columns = 0, stride = 0;
     const kernels::uint* values = nullptr;
@@ -17,7 +17,7 @@ struct HostScan {
     kernels::uint room = 0;
 };
 
-/// Sums on the executor's threads; integers, so that no split changes a bit.
+/// Scans on the executor's threads. The sums are of integers, so that no split among threads changes a bit.
 class Scanner {
 public:
     void run(Executor& executor, const HostScan& scan);
