@@ -73,11 +73,13 @@ DEVICE uint is_contact(const Hit hit) {
     return (uint)(hit.triangle != NONE) & (uint)(hit.distance * hit.facing > 0.0f);
 }
 
-// How a ray ended. Column 0 of outcomes: it is a contact; column 1: its side tests.
-DEVICE void record_hit(const Hit hit, uint at, uint stride, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+// How a ray ended. Columns of outcomes: it is a contact; its side tests; it was cast in full.
+DEVICE void record_hit(const Hit hit, uint was_cast, uint at, uint stride, GLOBAL Hit* RESTRICT hits,
+                       GLOBAL uint* RESTRICT outcomes) {
     hits[at] = hit;
     outcomes[at] = is_contact(hit);
     outcomes[stride + at] = hit.sides;
+    outcomes[2u * stride + at] = was_cast;
 }
 
 // In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
@@ -117,8 +119,8 @@ DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL cons
         if (own[r].back < UNBOUNDED) PREFETCH(normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
     for (uint r = 0u; r < group->count; ++r) {
         const SourceRay ray = ray_of(group, r);
-        record_hit(decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals), group->at[r],
-                   stride, hits, outcomes);
+        record_hit(decide(CASTER_BVH, &ray, own + r, shapes + group->target[r], nodes, blocks, normals), 1u,
+                   group->at[r], stride, hits, outcomes);
     }
 }
 
@@ -169,7 +171,7 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, GLOBAL const OrderedPair*
             const Hit hit = in_bounds(pair, source[r].position) ? decide(CASTER_BASIC, source + r, own + r,
                                                                          shapes + pair->target, nodes, blocks, normals)
                                                                 : no_contact();
-            record_hit(hit, i + r, stride, hits, outcomes);
+            record_hit(hit, 1u, i + r, stride, hits, outcomes);
         }
     }
 }

@@ -257,7 +257,7 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
         const uint inside = (uint)in_bounds(pairs + ray.pair, source.position);
         const Outcome end = follow_ray(&source, inside, starts[i], max_iterations, predictive, cast_lost, culling,
                                        shape, faces, blocks, normals);
-        record_hit(end.hit, i, stride, hits, outcomes);
+        record_hit(end.hit, (uint)((end.how & CAST) != 0u), i, stride, hits, outcomes);
         nexts[i] = end.next;
         hows[i] = end.how;
         if ((end.how & CAST) == 0u) continue;
@@ -300,7 +300,7 @@ KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive
                              normals);
             end.how |= how;
         }
-        record_hit(end.hit, i, stride, hits, outcomes);
+        record_hit(end.hit, (uint)((end.how & CAST) != 0u), i, stride, hits, outcomes);
         nexts[i] = end.next;
         hows[i] = end.how;
     }

@@ -109,9 +109,8 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hel
     ask_tubes_and_caps(group, shapes, blocks, faces, normals);
     for (uint r = 0u; r < group->rays.count; ++r) {
         const uint at = group->rays.at[r];
-        outcomes[2u * stride + at] = group->is_known[r] ^ 1u;
         if (group->is_known[r] != 0u) {
-            record_hit(held_hit(group, r, shapes, normals), at, stride, hits, outcomes);
+            record_hit(held_hit(group, r, shapes, normals), 0u, at, stride, hits, outcomes);
             if (after[at].triangle != group->triangle_slot[r]) {
                 after[at].triangle = group->triangle_slot[r];
                 after[at].safe = after[at].limit = 0.0f;
@@ -128,7 +127,7 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hel
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
-// step and now, those of idle pairs left as they are. Column 2 of outcomes: 1 for each ray cast in full.
+// step and now, those of idle pairs left as they are.
 KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                       GLOBAL const HeldRange* RESTRICT held_ranges, GLOBAL const ShapeHeader* RESTRICT shapes,
                       GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
@@ -165,11 +164,10 @@ KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTR
         }
         if (!held) {
             // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
-            outcomes[2u * stride + i] = (uint)inside;
             if (inside)
                 add_ray(&waiting, i, &source, source.reach, ray.pair, target, shapes);
             else
-                record_hit(no_contact(), i, stride, hits, outcomes);
+                record_hit(no_contact(), 0u, i, stride, hits, outcomes);
         }
         if (is_full(&group.rays))
             decide_held(&group, &waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits,

@@ -75,6 +75,7 @@ void Part::put_in(std::span<const PlacedBody> bodies, std::span<const std::byte>
 void Part::count(StepStats& stats) const {
     stats.pairs += pairs_.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
+    stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     switch (finds(*settings_)) {
     case Finds::standard:
         return StandardRays::count(batch_, pairs_.size(), stats);

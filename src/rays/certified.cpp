@@ -73,7 +73,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         wide = stale_[i].slice->places[stale_[i].at];
         widen(wide, horizon);
     }
-    near_.find(update, wide_pairs_, horizons_, batch.totals, RayBatch::block_sum);
+    near_.find_near(update, wide_pairs_, horizons_, batch.totals, RayBatch::block_sum);
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         const Due& due = stale_[i].due();
         Watched& own = *due.own;
@@ -134,14 +134,8 @@ void CertifiedRays::place(const Update& update) {
 
 // The rays of fast pairs: of all vertices in the bounds but those of blocks that are known to be safe.
 void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
-    const ShapeStore::Arrays& arrays = update.arrays();
-    fast_.find(update, pairs_, fast_margins_, batch.totals, RayBatch::ray_sum);
-    const Array<kernels::PairBlock>& blocks = fast_.blocks();
-    fast_rays_.resize(update.device, 2, blocks.size());
-    launch<KernelId::count_rays>(update.device, blocks.size(), 1u, fast_rays_.stride(), pairs_, arrays.headers,
-                                 arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks,
-                                 fast_rays_.values());
-    fast_rays_.scan(update.device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
+    fast_.find_near(update, pairs_, fast_margins_, batch.totals, RayBatch::block_sum);
+    fast_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 
 void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
@@ -151,7 +145,7 @@ void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
     look_rays_.resize(update.device, 1, count);
     launch<KernelId::look_at_watches>(update.device, count, pairs_, arrays.headers, arrays.vertex_blocks,
                                       arrays.clearances, segments_, watches_, looks_, look_rays_.values());
-    look_rays_.scan(update.device, count, batch.totals, RayBatch::kept_sum, NONE - 1);
+    look_rays_.scan(update.device, count, batch.totals, RayBatch::method_sum, NONE - 1);
 }
 
 // The rays of fast pairs, then those of blocks.
@@ -162,9 +156,9 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     check_sums(sums);
     fast_sums_ = fast_count_ > 0 ? sums[RayBatch::ray_sum] : kernels::Totals{};
     const kernels::uint fast = fast_sums_.results;
-    batch.count = Count(std::size_t{fast} + sums[RayBatch::kept_sum].results);
-    batch.resize(device, batch.count.value, casts_all(update) ? 2 : 3);
-    launch<KernelId::write_rays>(device, fast_.blocks().size(), 0u, fast_.blocks(), fast_rays_.firsts(), batch.rays);
+    batch.count = Count(std::size_t{fast} + sums[RayBatch::method_sum].results);
+    batch.resize(device, batch.count.value);
+    fast_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
     launch<KernelId::write_watch_rays>(device, segments_.size(), fast, segments_, watches_, looks_, look_rays_.firsts(),
                                        batch.rays);
     settle(update, fast);
@@ -242,10 +236,8 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     std::uint64_t blocks = fast_.blocks().size();
     for (const WakeUp::Slice& slice : wake_up_.slices()) blocks += slice.blocks;
     const std::uint64_t watched = batch.count.value - fast_sums_.results;
-    const bool held = held_.size() > 0 || batch.count.value == 0;
     stats.vertices += VERTEX_LANES * blocks;
     stats.rays += watched + fast_sums_.sums[1];
-    stats.rays_cast += held ? batch.sums[RayBatch::contact_sum].sums[2] : batch.count.value;
     stats.pairs_full += stale_.size() + fast_count_;
     stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)

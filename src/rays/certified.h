@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pairs/range_pool.h"
-#include "rays/near_blocks.h"
+#include "rays/block_search.h"
 #include "rays/ray_batch.h"
 #include "rays/wake_up.h"
 
@@ -54,12 +54,12 @@ private:
     Array<kernels::Segment> segments_;
     Array<kernels::Look> looks_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
-    Columns look_rays_, fast_rays_;
+    Columns look_rays_;
     Array<kernels::OrderedPair> wide_pairs_; ///< by index of stale_, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
     Array<float> fast_margins_;
-    NearBlocks near_, fast_;
+    BlockSearch near_, fast_;
     Array<kernels::Watch> watches_;
     Array<kernels::Held> held_, last_held_;
 };

@@ -171,7 +171,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    near_.find(update, device_wide_, device_reaches_, batch.totals, RayBatch::block_sum);
+    near_.find_near(update, device_wide_, device_reaches_, batch.totals, RayBatch::block_sum);
     let_sleep();
     const Array<kernels::PairBlock>& blocks = near_.blocks();
     sums_.vertices = VERTEX_LANES * blocks.size();
@@ -242,7 +242,7 @@ void CoherentRays::list_candidates(const Update& update, RayBatch& batch) {
     launch<KernelId::count_candidates>(device, directed_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
                                        kept_counts_.values());
     if (batch.rays.size() == 0) return;
-    kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::kept_sum, candidates_.size());
+    kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::method_sum, candidates_.size());
     launch<KernelId::write_candidates>(device, directed_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
                                        candidates_);
 }
@@ -251,6 +251,7 @@ void CoherentRays::keep(const Update& update) {
     host_followed_.resize(directed_.size());
     followed_.read(update.device, host_followed_);
     kernels::uint first = 0;
+    std::uint64_t cast = 0;
     for (std::size_t i = 0; i < directed_.size(); ++i) {
         const kernels::Followed& sum = host_followed_[i];
         Kept& own = kept(directed_[i]);
@@ -264,9 +265,9 @@ void CoherentRays::keep(const Update& update) {
         sums_.predictions += sum.predictions;
         sums_.walks += sum.walks;
         sums_.walks_lost += sum.lost;
-        sums_.rays_cast += sum.cast;
+        cast += sum.cast;
     }
-    sums_.walk_casts = sums_.rays_cast - full_rays_;
+    sums_.walk_casts = cast - full_rays_;
     candidates_kept_ = first;
 }
 
@@ -338,7 +339,6 @@ void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<co
 void CoherentRays::count(StepStats& stats) const {
     stats.vertices += sums_.vertices;
     stats.rays += sums_.rays;
-    stats.rays_cast += sums_.rays_cast;
     stats.pairs_full += full_count_;
     stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.walks += sums_.walks;

@@ -3,7 +3,7 @@
 
 #include "pairs/displacement.h"
 #include "pairs/pair_table.h"
-#include "rays/near_blocks.h"
+#include "rays/block_search.h"
 #include "rays/ray_batch.h"
 
 #include <raycontact/scene.h>
@@ -85,7 +85,7 @@ private:
     Array<float> device_cullings_, device_reaches_, device_margins_;
     Columns ray_counts_, kept_counts_;
     Array<kernels::uint> segment_firsts_, ranges_, starts_, nexts_, hows_;
-    NearBlocks near_;
+    BlockSearch near_;
     Array<kernels::Segment> segments_;
     Array<kernels::Candidate> candidates_;
     Array<kernels::Followed> followed_;

@@ -11,14 +11,15 @@ namespace raycontact {
 /// The rays of a step on the device, and how they ended. With `standard` the host learns their number only at the end
 /// of the step.
 struct RayBatch {
-    /// What the scans of a step count: vertex blocks found, rays, contacts, rays kept for the next step.
-    enum Sum : std::size_t { block_sum, ray_sum, contact_sum, kept_sum, sum_count };
+    /// What the scans of a step count: vertex blocks found; rays; contacts, side tests and rays cast in full; what a
+    /// method counts besides.
+    enum Sum : std::size_t { block_sum, ray_sum, contact_sum, method_sum, sum_count };
 
-    /// Makes room for so many rays. columns of outcomes: contacts, side tests and, if 3, rays cast in full.
-    void resize(Device& device, std::size_t size, kernels::uint columns = 2) {
+    /// Makes room for so many rays.
+    void resize(Device& device, std::size_t size) {
         rays.resize(device, size);
         hits.resize(device, size);
-        outcomes.resize(device, columns, size);
+        outcomes.resize(device, 3, size);
         if (totals.size() == 0) totals.write(device, sums);
     }
 
@@ -27,7 +28,7 @@ struct RayBatch {
     std::span<const std::uint32_t> directed;            ///< of these: their directed indices among the step's pairs
     Array<kernels::Ray> rays;
     Array<kernels::Hit> hits;
-    Columns outcomes;
+    Columns outcomes; ///< a column for each sum of contact_sum (record_hit())
     Array<kernels::Totals> totals;
     std::array<kernels::Totals, sum_count> sums{}; ///< totals, as the host has read them
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pairs/device_pairs.h"
+#include "rays/block_search.h"
 #include "rays/ray_batch.h"
 
 #include <raycontact/scene.h>
@@ -26,9 +27,7 @@ public:
 
 private:
     DevicePairs pairs_;
-    Columns block_counts_, ray_counts_;
-    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
-    Array<kernels::PairBlock> blocks_;
+    BlockSearch search_;
 };
 
 } // namespace raycontact

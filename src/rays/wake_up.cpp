@@ -87,7 +87,6 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         Due& due = slice.due.emplace_back();
         due.own = &own;
         due.directed = 2 * i + d;
-        due.stale = stale[d];
         due.now = static_cast<float>(stale[d] ? 0 : clock);
         due.margin = static_cast<float>(rounding_margin(source, target));
         const double radius = tube_radius(size, target.shape->data());

@@ -41,7 +41,6 @@ struct Slack {
 struct Due {
     Watched* own = nullptr;
     std::uint32_t directed = 0;   ///< directed index of the pair
-    bool stale = false;           ///< it needs a new list
     float now = 0;                ///< the clock
     float margin = 0, radius = 0; ///< metres: of rounding; of tubes to seek, 0: none
     kernels::uint asks_caps = 0;  ///< 1: its rays test caps

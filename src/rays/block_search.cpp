@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/block_search.h"
+
+#include "device/launch.h"
+
+namespace raycontact {
+
+namespace {
+
+constexpr std::size_t least_room = 4096; // blocks
+
+} // namespace
+
+void BlockSearch::count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+                        const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at,
+                        std::size_t room) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    counts_.resize(update.device, 1, pair_count);
+    block_masks_.resize(update.device, pair_count);
+    safe_distances_.resize(update.device, horizons.size());
+    launch<KernelId::count_clusters>(update.device, pair_count, pairs, horizons, arrays.headers, arrays.clusters,
+                                     arrays.clearances, counts_.values(), safe_distances_, block_masks_);
+    counts_.scan(update.device, pair_count, totals, at, room);
+}
+
+void BlockSearch::write(const Update& update, const Array<kernels::OrderedPair>& pairs, const Count& items,
+                        const Array<float>& horizons) const {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    launch<KernelId::write_clusters>(update.device, items, pairs, horizons, arrays.headers, arrays.clusters,
+                                     arrays.clearances, block_masks_, counts_.firsts(), blocks_);
+}
+
+void BlockSearch::find(const Update& update, const Array<kernels::OrderedPair>& pairs,
+                       const Array<kernels::Totals>& totals, std::size_t at) {
+    const Array<float> no_horizons;
+    blocks_.grow(update.device, least_room);
+    count(update, pairs, pairs.size(), no_horizons, totals, at, blocks_.size());
+    write(update, pairs, items_of(totals, at, pairs.size()), no_horizons);
+    found_ = results_of(totals, at, blocks_.size());
+}
+
+void BlockSearch::find_near(const Update& update, const Array<kernels::OrderedPair>& pairs,
+                            const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at) {
+    const std::size_t pair_count = horizons.size();
+    host_counts_.resize(pair_count);
+    host_safe_distances_.resize(pair_count);
+    kernels::Totals sum{};
+    if (pair_count > 0) {
+        count(update, pairs, pair_count, horizons, totals, at, NONE - 1);
+        const Piece pieces[] = {totals.piece({&sum, 1}, at), counts_.values().piece(host_counts_),
+                                safe_distances_.piece(host_safe_distances_)};
+        update.device.queue().read(pieces);
+        check_sums({&sum, 1});
+    }
+    blocks_.resize(update.device, sum.results);
+    found_ = Count(sum.results);
+    write(update, pairs, sum.items, horizons);
+}
+
+bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {
+    const bool fits = sum.sums[0] <= blocks_.size();
+    blocks_.grow(device, sum.sums[0]);
+    return fits;
+}
+
+void BlockSearch::count_rays(const Update& update, const Array<kernels::OrderedPair>& pairs, bool use_grid,
+                             const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    ray_counts_.resize(update.device, 2, blocks_.size());
+    launch<KernelId::count_rays>(update.device, found_, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,
+                                 arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks_,
+                                 ray_counts_.values());
+    ray_counts_.scan(update.device, found_, totals, at, room);
+}
+
+void BlockSearch::write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at,
+                             kernels::uint begin, const Array<kernels::Ray>& rays) const {
+    launch<KernelId::write_rays>(update.device, items_of(totals, at, found_.most), begin, blocks_, ray_counts_.firsts(),
+                                 rays);
+}
+
+} // namespace raycontact

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/scan.h"
+#include "pairs/update.h"
+
+namespace raycontact {
+
+/// Finds the vertex blocks of pairs that may be in contact, and then the vertices of these blocks that cast a ray. Both
+/// are in the order of the pairs.
+class BlockSearch {
+public:
+    /// The blocks of all pairs that reach into the bounds. Does not wait: totals[at] says on the device how many there
+    /// are. If they have too little room, none is written (had_room()).
+    void find(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<kernels::Totals>& totals,
+              std::size_t at);
+    /// The blocks of the first horizons.size() pairs that could be in contact before they have moved by horizons[p]
+    /// (metres, rounding included). horizons[p] < 0: all blocks that reach into the bounds. Uses totals[at]. Waits for
+    /// the device once.
+    void find_near(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<float>& horizons,
+                   const Array<kernels::Totals>& totals, std::size_t at);
+    /// sum: of the last find(). False if its blocks had too little room: there is enough now.
+    bool had_room(Device& device, const kernels::Totals& sum);
+
+    /// Counts the vertices of the blocks that cast a ray: those inside the bounds but, if use_grid, those that a grid
+    /// of the target knows to be outside. totals[at]: rays, of which `room` can be written; vertices inside the bounds.
+    void count_rays(const Update& update, const Array<kernels::OrderedPair>& pairs, bool use_grid,
+                    const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+    /// Writes them, the first to rays[begin]. totals[at]: what count_rays() left there.
+    void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
+                    const Array<kernels::Ray>& rays) const;
+
+    /// As many as find_near() found; of find(): the room.
+    const Array<kernels::PairBlock>& blocks() const { return blocks_; }
+    /// By pair: where its blocks begin.
+    const Array<kernels::uint>& firsts() const { return counts_.firsts(); }
+    /// Of find_near(), by pair: how many blocks it has.
+    std::span<const kernels::uint> host_counts() const { return host_counts_; }
+    /// Of find_near(), by pair, if it has no block: how far its vertices can move before one could be in contact,
+    /// metres, rounding not included. May be less, also negative.
+    std::span<const float> host_safe_distances() const { return host_safe_distances_; }
+
+private:
+    void count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+               const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+    void write(const Update& update, const Array<kernels::OrderedPair>& pairs, const Count& items,
+               const Array<float>& horizons) const;
+
+    Columns counts_, ray_counts_;
+    Array<float> safe_distances_;
+    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
+    Array<kernels::PairBlock> blocks_;
+    Count found_{0}; ///< of blocks_
+    std::vector<kernels::uint> host_counts_;
+    std::vector<float> host_safe_distances_;
+};
+
+} // namespace raycontact
