@@ -9,19 +9,19 @@
 
 namespace raycontact {
 
-/// The contacts of a step in the targets' frames. They name their pair by its directed index (DirectedPair).
+/// The contacts of a step in the targets' frames, in the order of the pairs. They name their pair by its directed index
+/// (DirectedPair).
 class LocalContacts {
 public:
-    void clear() { contacts_.clear(); }
-    /// Adds contacts whose pair is an index of `directed`, which has the directed indices.
-    void add(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> directed);
-    /// By pair; those of one pair stay in the order in which they were added.
-    void sort(std::size_t pair_count);
+    /// found: each names its pair by an index of `directed`, which has the directed indices of some of pair_count
+    /// pairs. Contacts of one pair keep their order.
+    void set(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> directed,
+             std::size_t pair_count);
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }
 
 private:
-    std::vector<kernels::LocalContact> contacts_, sorted_;
-    std::vector<std::uint32_t> firsts_; ///< by number
+    std::vector<kernels::LocalContact> contacts_;
+    std::vector<std::uint32_t> places_; ///< by directed index: of its next contact
 };
 
 } // namespace raycontact

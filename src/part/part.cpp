@@ -13,7 +13,6 @@ void Part::forget() {
     standard_.clear();
     certified_.clear();
     coherent_.clear();
-    local_.clear();
 }
 
 // `certified` needs memory that host and device share; on other devices it runs `standard`.
@@ -54,9 +53,7 @@ std::span<const kernels::LocalContact> Part::end() {
         gather_.run(now, batch_);
     }
     if (method == Finds::coherent) coherent_.keep(now);
-    local_.clear();
-    local_.add(gather_.contacts(), batch_.directed);
-    local_.sort(pairs_.size());
+    local_.set(gather_.contacts(), batch_.directed, pairs_.size());
     work_ = device_->take_work();
     work_.device = device_->info().id;
     work_.pairs = pairs_.size();

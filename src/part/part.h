@@ -10,8 +10,6 @@
 
 #include <raycontact/scene.h>
 
-#include <string_view>
-
 namespace raycontact {
 
 /// What one device does for the pairs that are its own: it keeps the shapes, finds the rays by a method, casts them and

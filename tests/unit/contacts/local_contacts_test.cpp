@@ -15,13 +15,12 @@ TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
     reference::Random random(1);
     LocalContacts all;
     for (int round = 0; round < 300; ++round) {
-        all.clear();
         const std::uint32_t pairs = random.below(40);
         std::vector<std::uint32_t> directed(2 * std::size_t{pairs});
         std::iota(directed.begin(), directed.end(), 0U);
         for (std::size_t i = directed.size(); i > 1 && round % 3 > 0; --i)
             std::swap(directed[i - 1], directed[random.below(static_cast<std::uint32_t>(i))]);
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> expected; // number, vertex
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> expected; // directed index, vertex
         std::vector<kernels::LocalContact> found;
         std::uint32_t vertex = 0;
         for (std::uint32_t i = 0; i < directed.size(); ++i)
@@ -29,8 +28,7 @@ TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
                 found.push_back({i, vertex, 0, 0, 0, {}});
                 expected.emplace_back(directed[i], vertex++);
             }
-        all.add(found, directed);
-        all.sort(pairs);
+        all.set(found, directed, pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
         ASSERT_EQ(all.contacts().size(), expected.size());
         for (std::size_t i = 0; i < expected.size(); ++i) {
