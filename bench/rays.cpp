@@ -6,6 +6,7 @@
 
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
+#include "device/forwarding.h"
 #include "pairs/motion.h"
 #include "pairs/ordered_pairs.h"
 #include "rays/standard.h"
@@ -70,34 +71,17 @@ double median(std::vector<double> values) {
 }
 
 // Passes everything on to a device that works on this thread, and takes the time in which it casts rays.
-class CastClock : public rc::Device, private rc::Queue {
+class CastClock : public rc::ForwardingDevice {
 public:
-    explicit CastClock(std::unique_ptr<rc::Device> inner) : inner_(std::move(inner)) {}
+    using ForwardingDevice::ForwardingDevice;
 
     double cast_ms = 0;
 
-    const rc::DeviceInfo& info() const override { return inner_->info(); }
-    const rc::DeviceTraits& traits() const override { return inner_->traits(); }
-    std::unique_ptr<rc::Buffer> make_buffer(std::size_t bytes) override { return inner_->make_buffer(bytes); }
-    rc::Queue& queue() override { return *this; }
-
 private:
-    void write(rc::Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
-        inner_->queue().write(to, offset, from, bytes);
-    }
-    void read(std::span<const rc::Piece> pieces) override { inner_->queue().read(pieces); }
-    void copy(rc::Buffer& to, const rc::Buffer& from, std::size_t bytes) override {
-        inner_->queue().copy(to, from, bytes);
-    }
     void launch(rc::KernelId kernel, rc::Count count, std::span<const rc::Argument> arguments) override {
-        const double ms = milliseconds([&] { inner_->queue().launch(kernel, count, arguments); });
+        const double ms = milliseconds([&] { inner().launch(kernel, count, arguments); });
         if (kernel == rc::KernelId::cast_rays_bvh || kernel == rc::KernelId::cast_rays_basic) cast_ms += ms;
     }
-    rk::uint scan(const rc::ScanOf& scan) override { return inner_->queue().scan(scan); }
-    void finish() override { inner_->queue().finish(); }
-    double busy_ms() const override { return inner_->queue().busy_ms(); }
-
-    std::unique_ptr<rc::Device> inner_;
 };
 
 // One instruction set with its own copy of everything.

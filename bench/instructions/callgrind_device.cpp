@@ -8,8 +8,9 @@
 
 namespace raycontact::bench {
 
-CallgrindDevice::CallgrindDevice(std::unique_ptr<Device> inner, std::string_view input) : inner_(std::move(inner)) {
-    if (!inner_->traits().shares_memory) throw std::logic_error("only a device on this thread can be counted");
+CallgrindDevice::CallgrindDevice(std::unique_ptr<Device> inner, std::string_view input)
+    : ForwardingDevice(std::move(inner)) {
+    if (!traits().shares_memory) throw std::logic_error("only a device on this thread can be counted");
     names_ = {
 #define RAYCONTACT_KERNEL(name) #name,
 #define RAYCONTACT_CPU_KERNEL(name) #name,
@@ -45,14 +46,14 @@ void CallgrindDevice::launch(KernelId kernel, Count count, std::span<const Argum
     const auto row = static_cast<std::size_t>(kernel);
     add_items(row, count);
     dump(host_row);
-    inner_->queue().launch(kernel, count, arguments);
+    inner().launch(kernel, count, arguments);
     dump(row);
 }
 
 kernels::uint CallgrindDevice::scan(const ScanOf& scan) {
     add_items(scan_row, scan.count);
     dump(host_row);
-    const kernels::uint launches = inner_->queue().scan(scan);
+    const kernels::uint launches = inner().scan(scan);
     dump(scan_row);
     return launches;
 }

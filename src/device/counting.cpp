@@ -13,22 +13,22 @@ DeviceWork CountingDevice::take_work() {
 
 void CountingDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
     work_.bytes_up += bytes;
-    inner_->queue().write(to, offset, from, bytes);
+    inner().write(to, offset, from, bytes);
 }
 
 void CountingDevice::read(std::span<const Piece> pieces) {
     ++work_.reads;
     for (const Piece& piece : pieces) work_.bytes_down += piece.bytes;
-    inner_->queue().read(pieces);
+    inner().read(pieces);
 }
 
 void CountingDevice::launch(KernelId kernel, Count count, std::span<const Argument> arguments) {
     ++work_.launches;
-    inner_->queue().launch(kernel, count, arguments);
+    inner().launch(kernel, count, arguments);
 }
 
 kernels::uint CountingDevice::scan(const ScanOf& scan) {
-    const kernels::uint launches = inner_->queue().scan(scan);
+    const kernels::uint launches = inner().scan(scan);
     work_.launches += launches;
     return launches;
 }
@@ -36,7 +36,7 @@ kernels::uint CountingDevice::scan(const ScanOf& scan) {
 // Counts as a read: the host waits before it touches shared memory.
 void CountingDevice::finish() {
     ++work_.reads;
-    inner_->queue().finish();
+    inner().finish();
 }
 
 } // namespace raycontact

@@ -46,43 +46,31 @@ std::size_t launches_of(const Trace& trace, std::string_view kernel) {
 }
 
 std::unique_ptr<Buffer> TracingDevice::make_buffer(std::size_t bytes) {
-    auto buffer = inner_->make_buffer(bytes);
+    auto buffer = ForwardingDevice::make_buffer(bytes);
     const std::vector<std::byte> zeros(buffer->bytes());
-    inner_->queue().write(*buffer, 0, zeros.data(), zeros.size());
+    inner().write(*buffer, 0, zeros.data(), zeros.size());
     last_.erase(buffer.get()); // another may have lain there
     return buffer;
-}
-
-void TracingDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
-    inner_->queue().write(to, offset, from, bytes);
-}
-
-void TracingDevice::read(std::span<const Piece> pieces) {
-    inner_->queue().read(pieces);
-}
-
-void TracingDevice::copy(Buffer& to, const Buffer& from, std::size_t bytes) {
-    inner_->queue().copy(to, from, bytes);
 }
 
 void TracingDevice::keep(std::string_view kernel, std::size_t argument, const Buffer* buffer) {
     if (!buffer) return;
     std::vector<std::byte> now(buffer->bytes());
     const Piece piece{now.data(), buffer, 0, now.size()};
-    inner_->queue().read({&piece, 1});
+    inner().read({&piece, 1});
     auto& last = last_[buffer];
     if (!last || *last != now) last = std::make_shared<const std::vector<std::byte>>(std::move(now));
     trace_->push_back({std::string(kernel), argument, last});
 }
 
 void TracingDevice::launch(KernelId kernel, Count count, std::span<const Argument> arguments) {
-    inner_->queue().launch(kernel, count, arguments);
+    inner().launch(kernel, count, arguments);
     for (std::size_t i = 0; i < arguments.size(); ++i)
         keep(kernel_names()[static_cast<std::size_t>(kernel)], i, arguments[i].buffer);
 }
 
 kernels::uint TracingDevice::scan(const ScanOf& scan) {
-    const kernels::uint launches = inner_->queue().scan(scan);
+    const kernels::uint launches = inner().scan(scan);
     keep("scan", 0, scan.values);
     keep("scan", 1, scan.firsts);
     keep("scan", 2, scan.totals);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/device.h"
+#include "device/forwarding.h"
 
 #include <cstddef>
 #include <memory>
@@ -25,30 +25,21 @@ std::string first_difference(const Trace& expected, const Trace& actual);
 /// How often a kernel was launched with something in its buffers.
 std::size_t launches_of(const Trace& trace, std::string_view kernel);
 
-/// Passes everything on to another device and keeps every buffer as each launch leaves it. New buffers are zeroed.
-class TracingDevice : public Device, private Queue {
+/// Keeps every buffer as each launch leaves it. New buffers are zeroed.
+class TracingDevice : public ForwardingDevice {
 public:
     /// The trace outlives the device, which a part takes for itself.
     TracingDevice(std::unique_ptr<Device> inner, std::shared_ptr<Trace> trace)
-        : inner_(std::move(inner)), trace_(std::move(trace)) {}
+        : ForwardingDevice(std::move(inner)), trace_(std::move(trace)) {}
 
-    const DeviceInfo& info() const override { return inner_->info(); }
-    const DeviceTraits& traits() const override { return inner_->traits(); }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override;
-    Queue& queue() override { return *this; }
 
 private:
-    void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
-    void read(std::span<const Piece> pieces) override;
-    void copy(Buffer& to, const Buffer& from, std::size_t bytes) override;
     void launch(KernelId kernel, Count count, std::span<const Argument> arguments) override;
     kernels::uint scan(const ScanOf& scan) override;
-    void finish() override { inner_->queue().finish(); }
-    double busy_ms() const override { return inner_->queue().busy_ms(); }
 
     void keep(std::string_view kernel, std::size_t argument, const Buffer* buffer);
 
-    std::unique_ptr<Device> inner_;
     std::shared_ptr<Trace> trace_;
     /// What most launches leave as it was is kept once.
     std::unordered_map<const Buffer*, std::shared_ptr<const std::vector<std::byte>>> last_;

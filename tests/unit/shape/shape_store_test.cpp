@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/shape_store.h"
 
+#include "device/forwarding.h"
+
 #include "scenes/models/model.h"
 #include "shape/shape_data.h"
 
@@ -40,25 +42,19 @@ TEST(ShapeStore, SharesPacksAndFindsAgain) {
 }
 
 // A device whose memory runs out after so many buffers.
-class ScarceDevice : public Device {
+class ScarceDevice : public ForwardingDevice {
 public:
-    ScarceDevice(Device& real, int buffers) : left(buffers), real_(real) {}
-    const DeviceInfo& info() const override { return real_.info(); }
-    const DeviceTraits& traits() const override { return real_.traits(); }
+    ScarceDevice(std::unique_ptr<Device> real, int buffers) : ForwardingDevice(std::move(real)), left(buffers) {}
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
         if (left-- == 0) throw std::bad_alloc();
-        return real_.make_buffer(bytes);
+        return ForwardingDevice::make_buffer(bytes);
     }
-    Queue& queue() override { return real_.queue(); }
     int left;
-
-private:
-    Device& real_;
 };
 
 TEST(ShapeStore, ShapeThatDidNotFitLeavesNothingBehind) {
-    const OpenDevice opened = open_device("cpu", 1);
-    ScarceDevice scarce(*opened.device, 3);
+    OpenDevice opened = open_device("cpu", 1);
+    ScarceDevice scarce(std::move(opened.device), 3);
     ShapeStore store(scarce);
     const auto shape = Shape::make(scenes::scene_model("gear", 80).mesh);
     EXPECT_THROW(store.add(shape), std::bad_alloc);
