@@ -20,14 +20,14 @@ public:
     template <class Closed>
     void match(std::span<const SlotPair> pairs, Closed&& closed) {
         next_hot_.resize(pairs.size());
+        std::ranges::sort(incoming_, {}, &Incoming::pair);
         const auto keep = [this](std::size_t old, std::size_t now, std::size_t count) {
             std::copy_n(hot_.begin() + std::ptrdiff_t(old), count, next_hot_.begin() + std::ptrdiff_t(now));
         };
         const auto open = [this, pairs](std::size_t now, std::uint32_t slot) {
             if (slot == states_.size()) states_.emplace_back();
-            const auto moved = std::find_if(incoming_.begin(), incoming_.end(),
-                                            [&](const Incoming& other) { return other.pair == pairs[now]; });
-            const bool fresh = moved == incoming_.end();
+            const auto moved = std::ranges::lower_bound(incoming_, pairs[now], {}, &Incoming::pair);
+            const bool fresh = moved == incoming_.end() || moved->pair != pairs[now];
             states_[slot] = fresh ? State{} : moved->state;
             next_hot_[now] = fresh ? Hot{} : moved->hot;
         };
