@@ -70,12 +70,7 @@ constexpr Known known[] = {
 };
 
 /// The same of an entry of "work", of which the median step is shown.
-struct DeviceKnown {
-    const char *key, *name, *unit, *meaning;
-    double scale = 1;
-};
-
-constexpr DeviceKnown device_known[] = {
+constexpr Known device_known[] = {
     {"pairs", "Pairs", "pairs", "of this device, median step"},
     {"launches", "Launches", "", "kernels started, median step"},
     {"reads", "Reads", "", "times the host waited for the device, median step"},
@@ -195,7 +190,7 @@ void describe(const scenes::RunLog& log, Page& page) {
             page.rows.push_back({k.name, text, k.unit, k.meaning});
         }
     for (const Json& device : take("work")) // of each device
-        for (const DeviceKnown& k : device_known)
+        for (const Known& k : device_known)
             if (const auto at = device.find(k.key); at != device.end())
                 page.rows.push_back({fmt::format("{}, {}", k.name, word(device, "device", "device")),
                                      as_text((*at)["median"], k.scale), k.unit, k.meaning});

@@ -87,8 +87,7 @@ struct Scene::State {
         double reach = 0;
         for (const Body& body : bodies) {
             if (!body.shape) continue;
-            const ShapeData& shape = body.shape->data();
-            reach = std::max(reach, shape.exit_max > 0 ? double(shape.exit_max) : shape.diagonal);
+            reach = std::max(reach, double(body.shape->data().header.ray_reach));
         }
         return reach;
     }

@@ -35,7 +35,7 @@ struct DeviceWork {
     double busy_ms = 0;           ///< in which its kernels ran
 };
 
-/// The CPU, then every device of every OpenCL driver, in the same order each time. Never throws for a missing driver.
+/// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact

@@ -53,8 +53,8 @@ struct Settings {
     /// `standard` with caster bvh casts no ray for a vertex that a grid of the mesh knows to be outside
     /// (docs/design.md). No contact depends on it; off, every ray is cast.
     bool skip_outside = true;
-    /// "auto", "cpu", "cpu/k" (the k-th core alone), or another that list_devices() names: "opencl:i", "opencl:i/k"
-    /// (the k-th core of it alone, where its driver divides it).
+    /// "auto", or an id of list_devices(). "cpu/k", and "ID/k" where the driver divides the device: its k-th core
+    /// alone.
     std::string device = "auto";
     /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;

@@ -6,10 +6,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace raycontact {
 
