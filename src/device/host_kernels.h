@@ -38,4 +38,17 @@ struct Prototype;
 #undef RAYCONTACT_KERNEL
 #undef RAYCONTACT_CPU_KERNEL
 
+/// How many items a GPU makes of one of the host's: these kernels' are blocks of vertices.
+constexpr kernels::uint vertices_each(KernelId kernel) {
+    switch (kernel) {
+    case KernelId::count_rays:
+    case KernelId::write_rays:
+    case KernelId::count_near_rays:
+    case KernelId::write_near_rays:
+        return VERTEX_LANES;
+    default:
+        return 1;
+    }
+}
+
 } // namespace raycontact

@@ -4,7 +4,7 @@
 // NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
 
 typedef struct {
-    float safe[VERTEX_LANES]; // metres a vertex can move before it could be in contact; may be negative
+    float safe[VERTICES_AT_ONCE]; // metres a vertex can move before it could be in contact; may be negative
 } SafeLanes;
 
 // A clearance grid, without its balls.
@@ -87,19 +87,19 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
 }
 
 DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair* RESTRICT pair,
-                            GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
-                            GLOBAL const uint* RESTRICT clearances) {
+                            GLOBAL const VertexBlock* RESTRICT block, uint first,
+                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
     SafeLanes found;
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
-    FOR_LANES(k, VERTEX_LANES) {
+    FOR_LANES(k, VERTICES_AT_ONCE) {
         const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
-        const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
+        const float clear = safe_distance(grid, balls, x, y, z, block->exit[first + k]);
         const float gap = bounds_gap(b, x, y, z);
         const float safe = clear > gap ? clear : gap;
-        found.safe[k] = block->vertex[k] != NONE ? safe : UNBOUNDED;
+        found.safe[k] = block->vertex[first + k] != NONE ? safe : UNBOUNDED;
     }
     return found;
 }
@@ -108,9 +108,9 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair*
 DEVICE void send_for_words(const InsideLanes* placed, GLOBAL const ShapeHeader* RESTRICT target,
                            GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);
-    uint at[VERTEX_LANES];
-    FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
-    for (int k = 0; k < VERTEX_LANES; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
+    uint at[VERTICES_AT_ONCE];
+    FOR_LANES(k, VERTICES_AT_ONCE) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
+    for (int k = 0; k < VERTICES_AT_ONCE; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }
 
 DEVICE float least_of_sixteen(const float* values) {

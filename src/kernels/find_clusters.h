@@ -111,12 +111,19 @@ DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* R
 // For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
 #define BLOCKS_IN_MASK 64u
 
-DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
-    PairBlock cluster;
-    cluster.pair = pair;
-    cluster.vertex_block = vertex_block;
-    cluster.lanes = 0u;
-    return cluster;
+// Where the blocks go, and the two columns of ray counts that begin at 0 (count_rays()).
+typedef struct {
+    GLOBAL PairBlock* blocks;
+    GLOBAL uint* ray_counts;
+    uint stride;
+} FoundBlocks;
+
+DEVICE void write_block(const FoundBlocks found, uint at, uint pair, uint vertex_block) {
+    found.blocks[at].pair = pair;
+    found.blocks[at].vertex_block = vertex_block;
+    found.blocks[at].lanes = 0u;
+    found.ray_counts[at] = 0u;
+    found.ray_counts[found.stride + at] = 0u;
 }
 
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
@@ -124,8 +131,7 @@ DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
 DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
                            GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, float* least_safe, const bool write, uint first,
-                           GLOBAL PairBlock* RESTRICT found) {
+                           float horizon, float* least_safe, const bool write, uint first, const FoundBlocks found) {
     const PairBounds bounds = bounds_of(pair);
     uint count = 0u;
     const uint top = shape->cluster_levels - 1u;
@@ -146,7 +152,7 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
             const uint child = VERTEX_LANES * at + lowest_bit(lanes);
             lanes &= lanes - 1u;
             if (level == 0u) {
-                if (write) found[first + count] = pair_block(p, shape->vertex_block_first + child);
+                if (write) write_block(found, first + count, p, shape->vertex_block_first + child);
                 ++count;
             } else {
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
@@ -168,10 +174,11 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
                           GLOBAL ulong* RESTRICT block_masks) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
+    const FoundBlocks nowhere = {0, 0, 0u};
     *least_safe = UNBOUNDED;
     if (shape->vertex_block_count > BLOCKS_IN_MASK)
         return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
-                              0u, (GLOBAL PairBlock*)0);
+                              0u, nowhere);
     const PairBounds bounds = bounds_of(pairs + p);
     ulong blocks = 0u;
     uint number = 0u;
@@ -188,7 +195,7 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
                           GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
-                          GLOBAL PairBlock* RESTRICT found) {
+                          const FoundBlocks found) {
     GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
     GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
     if (shape->vertex_block_count > BLOCKS_IN_MASK) {
@@ -201,7 +208,7 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
         uint lanes = (uint)(block_mask >> (VERTEX_LANES * i)) & 0xffffu;
         while (lanes != 0u) {
-            found[at] = pair_block(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
+            write_block(found, at, p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
             ++at;
             lanes &= lanes - 1u;
         }
@@ -234,7 +241,8 @@ KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pair
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                            GLOBAL const ulong* RESTRICT block_masks, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL PairBlock* RESTRICT found) {
+                           GLOBAL PairBlock* RESTRICT blocks, uint stride, GLOBAL uint* RESTRICT ray_counts) {
+    const FoundBlocks found = {blocks, ray_counts, stride};
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;

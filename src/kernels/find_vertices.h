@@ -13,8 +13,8 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
     const uint size_x = target->grid_size[0], size_y = target->grid_size[1];
     GLOBAL const uint* RESTRICT words = outside_cells + target->grid_first;
-    int outside[VERTEX_LANES];
-    FOR_LANES(k, VERTEX_LANES) {
+    int outside[VERTICES_AT_ONCE];
+    FOR_LANES(k, VERTICES_AT_ONCE) {
         const bool known = found->inside[k] != 0;
         // Other lanes, which may hold NaN, look at the first cell.
         const float px = known ? found->x[k] : low_x, py = known ? found->y[k] : low_y,
@@ -25,7 +25,7 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
         const uint cell = (z * size_y + y) * size_x + x;
         outside[k] = -(int)((words[cell >> 5] >> (cell & 31u)) & 1u);
     }
-    return pack_sixteen(outside);
+    return pack_vertices(outside);
 }
 
 // Whether a vertex casts, exactly as inside_lanes() has it. p: of its source_ray(), which has the same bits.
@@ -42,49 +42,52 @@ DEVICE uint in_ball_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
                           GLOBAL const uint* RESTRICT clearances) {
     const Clearance grid = clearance_of(target);
     GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
-    int in_ball[VERTEX_LANES];
-    FOR_LANES(k, VERTEX_LANES) {
+    int in_ball[VERTICES_AT_ONCE];
+    FOR_LANES(k, VERTICES_AT_ONCE) {
         const float safe = safe_distance(grid, balls, found->x[k], found->y[k], found->z[k], UNBOUNDED);
         in_ball[k] = -(int)(safe > LEAST_DEPTH_IN_BALL * grid.cell);
     }
-    return pack_sixteen(in_ball);
+    return pack_vertices(in_ball);
 }
 
-// Column 0 of counts: vertices whose ray must be cast to know; column 1: vertices in the bounds, one ray of the rule
-// each.
+// Adds to column 0 of counts the vertices whose ray must be cast to know, to column 1 those in the bounds, one ray of
+// the rule each.
 KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                        GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
                        GLOBAL PairBlock* RESTRICT found_blocks, GLOBAL uint* RESTRICT counts) {
-    FOR_EACH(i, count) {
+    FOR_EACH_VERTICES(i, first, count) {
         GLOBAL const OrderedPair* pair = pairs + found_blocks[i].pair;
-        const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block);
+        const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block, first);
         GLOBAL const ShapeHeader* target = shapes + pair->target;
-        const uint inside_mask = pack_sixteen(found.inside);
+        const uint inside_mask = pack_vertices(found.inside);
+        if (inside_mask == 0u) continue;
         uint lanes = inside_mask;
-        if (lanes != 0u && use_grid != 0u && target->grid_size[0] != 0u)
-            lanes &= ~outside_lanes(&found, target, outside_cells);
+        if (use_grid != 0u && target->grid_size[0] != 0u) lanes &= ~outside_lanes(&found, target, outside_cells);
         if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~in_ball_lanes(&found, target, clearances);
-        found_blocks[i].lanes = lanes;
-        counts[i] = bit_count(lanes);
-        counts[stride + i] = bit_count(inside_mask);
+        ADD_TO(&found_blocks[i].lanes, lanes << first);
+        ADD_TO(counts + i, bit_count(lanes));
+        ADD_TO(counts + stride + i, bit_count(inside_mask));
     }
+}
+
+// Of `lanes`: the vertices from `first` on that an item of FOR_EACH_VERTICES writes.
+DEVICE uint own_lanes(uint lanes, uint first) {
+    return lanes & (((1u << VERTICES_AT_ONCE) - 1u) << first);
 }
 
 // The rays begin at place `begin`.
 KERNEL void write_rays(COUNT(count), uint begin, GLOBAL const PairBlock* RESTRICT found_blocks,
                        GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
-    FOR_EACH(i, count) {
+    FOR_EACH_VERTICES(i, first, count) {
         const PairBlock block = found_blocks[i];
-        uint lanes = block.lanes;
-        uint at = begin + firsts[i];
-        while (lanes != 0u) {
+        uint at = begin + firsts[i] + bit_count(block.lanes & ((1u << first) - 1u));
+        for (uint lanes = own_lanes(block.lanes, first); lanes != 0u; lanes &= lanes - 1u) {
             Ray ray;
             ray.pair = block.pair;
             ray.slot = VERTEX_LANES * block.vertex_block + lowest_bit(lanes);
             rays[at] = ray;
             ++at;
-            lanes &= lanes - 1u;
         }
     }
 }

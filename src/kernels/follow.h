@@ -151,34 +151,33 @@ KERNEL void count_near_rays(COUNT(count), uint stride, GLOBAL const OrderedPair*
                             GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                             GLOBAL const uint* RESTRICT clearances, GLOBAL PairBlock* RESTRICT near_blocks,
                             GLOBAL uint* RESTRICT counts) {
-    FOR_EACH(i, count) {
+    FOR_EACH_VERTICES(i, first, count) {
         GLOBAL const OrderedPair* pair = wide + near_blocks[i].pair;
         GLOBAL const ShapeHeader* target = shapes + pair->target;
         const float near = reach[near_blocks[i].pair], margin = margins[near_blocks[i].pair];
         GLOBAL const VertexBlock* block = vertices + near_blocks[i].vertex_block;
-        const InsideLanes held = inside_lanes(pair, block);
-        const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
-        int close[VERTEX_LANES], unsafe[VERTEX_LANES];
-        FOR_LANES(k, VERTEX_LANES) {
+        const InsideLanes held = inside_lanes(pair, block, first);
+        const SafeLanes found = safe_lanes(&held, pair, block, first, target, clearances);
+        int close[VERTICES_AT_ONCE], unsafe[VERTICES_AT_ONCE];
+        FOR_LANES(k, VERTICES_AT_ONCE) {
             close[k] = -(int)!(found.safe[k] > near);
             unsafe[k] = -(int)!(found.safe[k] > margin);
         }
-        const uint inside_mask = pack_sixteen(held.inside);
-        const uint lanes = inside_mask & pack_sixteen(close);
-        near_blocks[i].lanes = lanes | ((lanes & pack_sixteen(unsafe)) << VERTEX_LANES);
-        counts[i] = bit_count(lanes);
-        counts[stride + i] = bit_count(inside_mask);
+        const uint inside_mask = pack_vertices(held.inside);
+        const uint lanes = inside_mask & pack_vertices(close);
+        ADD_TO(&near_blocks[i].lanes, (lanes | ((lanes & pack_vertices(unsafe)) << VERTEX_LANES)) << first);
+        ADD_TO(counts + i, bit_count(lanes));
+        ADD_TO(counts + stride + i, bit_count(inside_mask));
     }
 }
 
 KERNEL void write_near_rays(COUNT(count), GLOBAL const PairBlock* RESTRICT near_blocks,
                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays,
                             GLOBAL uint* RESTRICT starts) {
-    FOR_EACH(i, count) {
+    FOR_EACH_VERTICES(i, first, count) {
         const PairBlock found = near_blocks[i];
-        uint lanes = found.lanes & 0xffffu;
-        uint at = firsts[i];
-        while (lanes != 0u) {
+        uint at = firsts[i] + bit_count(found.lanes & ((1u << first) - 1u));
+        for (uint lanes = own_lanes(found.lanes & 0xffffu, first); lanes != 0u; lanes &= lanes - 1u) {
             const uint lane = lowest_bit(lanes);
             Ray ray;
             ray.pair = found.pair;
@@ -186,7 +185,6 @@ KERNEL void write_near_rays(COUNT(count), GLOBAL const PairBlock* RESTRICT near_
             rays[at] = ray;
             starts[at] = ((found.lanes >> (VERTEX_LANES + lane)) & 1u) != 0u ? IN_FULL : AHEAD_ONLY;
             ++at;
-            lanes &= lanes - 1u;
         }
     }
 }

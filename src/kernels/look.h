@@ -37,7 +37,7 @@ DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segme
                           GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
                           GLOBAL Watch* RESTRICT watches) {
     GLOBAL Watch* RESTRICT watch = watches + i;
-    const SafeLanes asked = safe_lanes(placed, pair, vertices + watch->vertex_block, target, clearances);
+    const SafeLanes asked = safe_lanes(placed, pair, vertices + watch->vertex_block, 0u, target, clearances);
     int unsafe[VERTEX_LANES];
     float others[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
@@ -78,7 +78,7 @@ DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const O
     for (uint k = 0u; k < count; ++k) {
         WaitingLook* look = waiting + k;
         GLOBAL const OrderedPair* pair = pairs + segments[look->segment].pair;
-        look->placed = inside_lanes(pair, vertices + watches[look->watch].vertex_block);
+        look->placed = inside_lanes(pair, vertices + watches[look->watch].vertex_block, 0u);
         send_for_words(&look->placed, shapes + pair->target, clearances);
     }
     for (uint k = 0u; k < count; ++k) {

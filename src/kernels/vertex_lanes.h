@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sixteen vertices of a block as the target sees them.
+// Vertices of a block as the target sees them: VERTICES_AT_ONCE of them, from one on.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 typedef struct {
-    float x[VERTEX_LANES], y[VERTEX_LANES], z[VERTEX_LANES]; // target frame
-    int inside[VERTEX_LANES];                                // -1 or 0
+    float x[VERTICES_AT_ONCE], y[VERTICES_AT_ONCE], z[VERTICES_AT_ONCE]; // target frame
+    int inside[VERTICES_AT_ONCE];                                        // -1 or 0
 } InsideLanes;
 
 // Vertices inside the bounds, exactly as the ray will see them.
-DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block) {
+DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
+                                uint first) {
     InsideLanes found;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
-    FOR_LANES(k, VERTEX_LANES) {
-        const float vx = block->position[0][k], vy = block->position[1][k], vz = block->position[2][k];
+    FOR_LANES(k, VERTICES_AT_ONCE) {
+        const float vx = block->position[0][first + k], vy = block->position[1][first + k];
+        const float vz = block->position[2][first + k];
         const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
         const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
         const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];

@@ -3,6 +3,8 @@
 
 #include "device/launch.h"
 
+#include <algorithm>
+
 namespace raycontact {
 
 namespace {
@@ -10,6 +12,12 @@ namespace {
 constexpr std::size_t least_room = 4096; // blocks
 
 } // namespace
+
+void BlockSearch::make_room(Device& device, std::size_t blocks) {
+    static_cast<void>(Count(VERTEX_LANES * blocks)); // a GPU's items are vertices
+    blocks_.resize(device, blocks);
+    ray_counts_.resize(device, 2, blocks);
+}
 
 void BlockSearch::count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
                         const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at,
@@ -27,13 +35,14 @@ void BlockSearch::write(const Update& update, const Array<kernels::OrderedPair>&
                         const Array<float>& horizons) const {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::write_clusters>(update.device, items, pairs, horizons, arrays.headers, arrays.clusters,
-                                     arrays.clearances, block_masks_, counts_.firsts(), blocks_);
+                                     arrays.clearances, block_masks_, counts_.firsts(), blocks_, ray_counts_.stride(),
+                                     ray_counts_.values());
 }
 
 void BlockSearch::find(const Update& update, const Array<kernels::OrderedPair>& pairs,
                        const Array<kernels::Totals>& totals, std::size_t at) {
     const Array<float> no_horizons;
-    blocks_.grow(update.device, least_room);
+    make_room(update.device, std::max(blocks_.size(), least_room));
     count(update, pairs, pairs.size(), no_horizons, totals, at, blocks_.size());
     write(update, pairs, items_of(totals, at, pairs.size()), no_horizons);
     found_ = results_of(totals, at, blocks_.size());
@@ -52,21 +61,20 @@ void BlockSearch::find_near(const Update& update, const Array<kernels::OrderedPa
         update.device.queue().read(pieces);
         check_sums({&sum, 1});
     }
-    blocks_.resize(update.device, sum.results);
+    make_room(update.device, sum.results);
     found_ = Count(sum.results);
     write(update, pairs, sum.items, horizons);
 }
 
 bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {
     const bool fits = sum.sums[0] <= blocks_.size();
-    blocks_.grow(device, sum.sums[0]);
+    if (!fits) make_room(device, sum.sums[0]);
     return fits;
 }
 
 void BlockSearch::count_rays(const Update& update, const Array<kernels::OrderedPair>& pairs, bool use_grid,
                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    ray_counts_.resize(update.device, 2, blocks_.size());
     launch<KernelId::count_rays>(update.device, found_, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,
                                  arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks_,
                                  ray_counts_.values());

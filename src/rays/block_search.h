@@ -40,7 +40,11 @@ public:
     /// metres, rounding not included. May be less, also negative.
     std::span<const float> host_safe_distances() const { return host_safe_distances_; }
 
+    /// By block: a column of vertices that cast, one of those inside the bounds; 0 until they are counted.
+    Columns& ray_counts() { return ray_counts_; }
+
 private:
+    void make_room(Device& device, std::size_t blocks);
     void count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
                const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     void write(const Update& update, const Array<kernels::OrderedPair>& pairs, const Count& items,

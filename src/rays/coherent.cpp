@@ -177,11 +177,10 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     sums_.vertices = VERTEX_LANES * blocks.size();
     full_rays_ = 0;
     if (blocks.size() > 0) {
-        ray_counts_.resize(device, 2, blocks.size());
-        launch<KernelId::count_near_rays>(device, blocks.size(), ray_counts_.stride(), device_wide_, device_reaches_,
-                                          device_margins_, arrays.headers, arrays.vertex_blocks, arrays.clearances,
-                                          blocks, ray_counts_.values());
-        ray_counts_.scan(device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
+        launch<KernelId::count_near_rays>(device, blocks.size(), near_.ray_counts().stride(), device_wide_,
+                                          device_reaches_, device_margins_, arrays.headers, arrays.vertex_blocks,
+                                          arrays.clearances, blocks, near_.ray_counts().values());
+        near_.ray_counts().scan(device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
         kernels::Totals sum;
         const Piece piece = batch.totals.piece({&sum, 1}, RayBatch::ray_sum);
         device.queue().read({&piece, 1});
@@ -203,7 +202,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     batch.count = Count(end);
     batch.resize(device, end);
     starts_.resize(device, end);
-    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, ray_counts_.firsts(),
+    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, near_.ray_counts().firsts(),
                                       batch.rays, starts_);
     segments_.write(device, host_segments_);
     segment_firsts_.write(device, host_firsts_);

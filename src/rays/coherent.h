@@ -83,7 +83,7 @@ private:
 
     Array<kernels::OrderedPair> device_pairs_, device_wide_;
     Array<float> device_cullings_, device_reaches_, device_margins_;
-    Columns ray_counts_, kept_counts_;
+    Columns kept_counts_;
     Array<kernels::uint> segment_firsts_, ranges_, starts_, nexts_, hows_;
     BlockSearch near_;
     Array<kernels::Segment> segments_;

@@ -6,7 +6,7 @@
 #include <immintrin.h>
 #endif
 
-// The kernels' words in C++. FOR_EACH and FOR_EACH_FEW walk the slice that a thread was given; FOR_LANES promises that
+// The kernels' words in C++. The FOR_EACH loops walk the slice that a thread was given; FOR_LANES promises that
 // lanes do not depend on each other. The device looks up the number of items before it hands out slices.
 namespace raycontact::kernels {
 using uint = std::uint32_t;
@@ -30,6 +30,10 @@ struct Range {
 #define RAYS_AT_ONCE 4
 #define RAYS_IN_GROUP 16
 #define LOOKS_TOGETHER 4
+#define VERTICES_AT_ONCE 16
+#define FOR_EACH_VERTICES(i, first, n)                                                                                 \
+    for (uint i = range.begin, first = 0, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
+#define ADD_TO(place, number) ((void)(*(place) += (number)))
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
          i < i##_end && (few = i##_end - i < (most) ? i##_end - i : (most)) != 0; i += few)

@@ -35,3 +35,6 @@ DEVICE uint pack_sixteen(const int* lanes) {
     return bits;
 #endif
 }
+DEVICE uint pack_vertices(const int* lanes) {
+    return pack_sixteen(lanes);
+}

@@ -15,6 +15,12 @@ typedef unsigned long long ulong;
 #define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
 #define FOR_EACH(i, n)                                                                                                 \
     for (uint i = blockIdx.x * blockDim.x + threadIdx.x, i##_end = ALL(n); i < i##_end; i += gridDim.x * blockDim.x)
+#define VERTICES_AT_ONCE 1
+#define FOR_EACH_VERTICES(i, first, n)                                                                                 \
+    for (uint v = blockIdx.x * blockDim.x + threadIdx.x, v_end = VERTEX_LANES * ALL(n), i = v / VERTEX_LANES,          \
+              first = v % VERTEX_LANES;                                                                                \
+         v < v_end; v += gridDim.x * blockDim.x, i = v / VERTEX_LANES, first = v % VERTEX_LANES)
+#define ADD_TO(place, number) ((void)atomicAdd(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define LOOKS_TOGETHER 1
@@ -57,6 +63,9 @@ DEVICE uint pack_sixteen(const int* lanes) {
     uint bits = 0u;
     for (int k = 0; k < 16; ++k) bits |= (uint)lanes[k] & (1u << k);
     return bits;
+}
+DEVICE uint pack_vertices(const int* lanes) {
+    return (uint)lanes[0] & 1u;
 }
 
 // What rounding took from p = fl(a * b), exactly; the only fused multiply-add there is.

@@ -98,7 +98,7 @@ private:
             else
                 set_argument(kernel, at++, memory_of(argument.buffer));
         }
-        launcher_.over_items(kernel, Program::name_of(id), count.most);
+        launcher_.over_items(kernel, Program::name_of(id), std::size_t{vertices_each(id)} * count.most);
     }
     kernels::uint scan(const ScanOf& scan) override {
         return scan_.run(launcher_, scan);

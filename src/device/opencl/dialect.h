@@ -14,6 +14,12 @@
 #define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
 #define FOR_EACH(i, n)                                                                                                 \
     for (uint i = (uint)get_global_id(0), i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
+#define VERTICES_AT_ONCE 1
+#define FOR_EACH_VERTICES(i, first, n)                                                                                 \
+    for (uint v = (uint)get_global_id(0), v_end = VERTEX_LANES * ALL(n), i = v / VERTEX_LANES,                         \
+              first = v % VERTEX_LANES;                                                                                \
+         v < v_end; v += (uint)get_global_size(0), i = v / VERTEX_LANES, first = v % VERTEX_LANES)
+#define ADD_TO(place, number) ((void)atomic_add(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define LOOKS_TOGETHER 1
@@ -55,6 +61,9 @@ DEVICE uint pack_sixteen(const int* lanes) {
     uint bits = 0u;
     for (int k = 0; k < 16; ++k) bits |= (uint)lanes[k] & (1u << k);
     return bits;
+}
+DEVICE uint pack_vertices(const int* lanes) {
+    return (uint)lanes[0] & 1u;
 }
 
 // What rounding took from p = fl(a * b), exactly: fma() rounds once on every device, some only do it slowly.

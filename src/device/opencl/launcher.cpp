@@ -31,7 +31,7 @@ Launcher::Launcher(cl_context context, cl_device_id device) : most_groups_(group
     check(status, "clCreateCommandQueue");
 }
 
-void Launcher::over_items(cl_kernel kernel, const char* name, kernels::uint most) {
+void Launcher::over_items(cl_kernel kernel, const char* name, std::size_t most) {
     in_groups(kernel, name, items_in_group,
               std::clamp<std::size_t>((most + items_in_group - 1) / items_in_group, 1, most_groups_));
 }

@@ -15,7 +15,7 @@ public:
 
     cl_command_queue queue() const { return queue_.get(); }
     /// As many threads as the device has use for, and no more than there may be items.
-    void over_items(cl_kernel kernel, const char* name, kernels::uint most);
+    void over_items(cl_kernel kernel, const char* name, std::size_t most);
     void in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups);
 
     /// Once all that was started has been waited for.
