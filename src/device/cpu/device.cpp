@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
-#include "device/cpu/scan.h"
 
 #include <raycontact/error.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -41,6 +42,26 @@ kernels::uint* words_of(const Buffer* buffer) {
 }
 kernels::uint number_of(const Count& count) {
     return count.buffer ? words_of(count.buffer)[count.value] : count.value;
+}
+
+// By one thread: a step has too few items for two. Past 2^32 the firsts are worth nothing, but then nothing has room.
+void scan_here(const ScanOf& scan) {
+    const kernels::uint count = number_of(scan.count);
+    kernels::uint* const firsts = words_of(scan.firsts);
+    std::array<std::uint64_t, MOST_COLUMNS> sums{};
+    for (std::size_t c = 0; c < scan.columns; ++c) {
+        const kernels::uint* const values = words_of(scan.values) + c * scan.stride;
+        for (kernels::uint i = 0; i < count; ++i) {
+            if (c == 0) firsts[i] = static_cast<kernels::uint>(sums[0]);
+            sums[c] += values[i];
+        }
+    }
+    kernels::Totals& totals = reinterpret_cast<kernels::Totals*>(words_of(scan.totals))[scan.at];
+    const bool fits = sums[0] <= scan.room;
+    totals.items = fits && sums[0] > 0 ? count : 0;
+    totals.results = fits ? static_cast<kernels::uint>(sums[0]) : 0;
+    for (std::size_t c = 0; c < MOST_COLUMNS; ++c)
+        totals.sums[c] = static_cast<kernels::uint>(std::min<std::uint64_t>(sums[c], NONE));
 }
 
 using Clock = std::chrono::steady_clock;
@@ -120,9 +141,7 @@ private:
     }
     kernels::uint scan(const ScanOf& scan) override {
         const Busy busy(busy_);
-        scanner_.run(executor_,
-                     {number_of(scan.count), scan.columns, scan.stride, words_of(scan.values), words_of(scan.firsts),
-                      reinterpret_cast<kernels::Totals*>(words_of(scan.totals)) + scan.at, scan.room});
+        scan_here(scan);
         return scan.count.most > SCAN_AT_ONCE ? 3 : 1;
     }
     void finish() override {}
@@ -132,7 +151,6 @@ private:
     DeviceTraits traits_{.has_double = true, .shares_memory = true};
     Executor& executor_;
     const KernelTable& table_;
-    Scanner scanner_;
     Clock::duration busy_{};
 };
 
