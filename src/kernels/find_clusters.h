@@ -215,24 +215,23 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     }
 }
 
-// Counts the vertex blocks of each pair that may reach into the bounds. horizons[p] >= 0, metres: without the blocks
-// that cannot be in contact before they have moved that far. No horizons, or horizons[p] < 0: all of them.
-// safe_distances, where there are horizons: for a pair without blocks, how far its vertices can move before one could
-// be in contact; may be less, also negative.
+// Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair): without the
+// blocks that cannot be in contact before they have moved that far. safe_distances, where there are horizons: for a
+// pair without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
 KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
                            GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
                            GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
                            GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT safe_distances,
                            GLOBAL ulong* RESTRICT block_masks) {
     FOR_EACH(p, count) {
-        counts[p] = 0u;
-        if (pairs[p].source == NONE) continue;
-        float least_safe;
-        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
-        counts[p] =
-            horizon < 0.0f
-                ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &least_safe, block_masks)
-                : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &least_safe, block_masks);
+        float least_safe = UNBOUNDED;
+        if (pairs[p].source == NONE)
+            counts[p] = 0u;
+        else if (horizons == 0)
+            counts[p] = count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &least_safe, block_masks);
+        else
+            counts[p] =
+                count_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], &least_safe, block_masks);
         if (horizons != 0) safe_distances[p] = least_safe;
     }
 }
@@ -245,11 +244,10 @@ KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pair
     const FoundBlocks found = {blocks, ray_counts, stride};
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
-        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
-        if (horizon < 0.0f)
+        if (horizons == 0)
             write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, block_masks[p], firsts[p], found);
         else
-            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, block_masks[p], firsts[p], found);
+            write_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], block_masks[p], firsts[p], found);
     }
 }
 // NOLINTEND(modernize-use-using,modernize-use-nullptr)

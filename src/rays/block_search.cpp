@@ -48,11 +48,10 @@ void BlockSearch::find(const Update& update, const Array<kernels::OrderedPair>& 
     found_ = results_of(totals, at, blocks_.size());
 }
 
-void BlockSearch::find_near(const Update& update, const Array<kernels::OrderedPair>& pairs,
-                            const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at) {
-    const std::size_t pair_count = horizons.size();
+void BlockSearch::find_now(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+                           const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at) {
     host_counts_.resize(pair_count);
-    host_safe_distances_.resize(pair_count);
+    host_safe_distances_.resize(horizons.size());
     kernels::Totals sum{};
     if (pair_count > 0) {
         count(update, pairs, pair_count, horizons, totals, at, NONE - 1);

@@ -14,11 +14,11 @@ public:
     /// are. If they have too little room, none is written (had_room()).
     void find(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<kernels::Totals>& totals,
               std::size_t at);
-    /// The blocks of the first horizons.size() pairs that could be in contact before they have moved by horizons[p]
-    /// (metres, rounding included). horizons[p] < 0: all blocks that reach into the bounds. Uses totals[at]. Waits for
-    /// the device once.
-    void find_near(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<float>& horizons,
-                   const Array<kernels::Totals>& totals, std::size_t at);
+    /// The blocks of the first pair_count pairs that reach into the bounds and, if there are horizons, could be in
+    /// contact before they have moved by horizons[p] (metres, rounding included). Uses totals[at]. Waits for the device
+    /// once, and makes as much room as the blocks need.
+    void find_now(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+                  const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at);
     /// sum: of the last find(). False if its blocks had too little room: there is enough now.
     bool had_room(Device& device, const kernels::Totals& sum);
 
@@ -30,14 +30,14 @@ public:
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;
 
-    /// As many as find_near() found; of find(): the room.
+    /// As many as find_now() found; of find(): the room.
     const Array<kernels::PairBlock>& blocks() const { return blocks_; }
     /// By pair: where its blocks begin.
     const Array<kernels::uint>& firsts() const { return counts_.firsts(); }
-    /// Of find_near(), by pair: how many blocks it has.
+    /// Of find_now(), by pair: how many blocks it has.
     std::span<const kernels::uint> host_counts() const { return host_counts_; }
-    /// Of find_near(), by pair, if it has no block: how far its vertices can move before one could be in contact,
-    /// metres, rounding not included. May be less, also negative.
+    /// Of find_now() with horizons, by pair, if it has no block: how far its vertices can move before one could be in
+    /// contact, metres, rounding not included. May be less, also negative.
     std::span<const float> host_safe_distances() const { return host_safe_distances_; }
 
     /// By block: a column of vertices that cast, one of those inside the bounds; 0 until they are counted.

@@ -73,7 +73,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         wide = stale_[i].slice->places[stale_[i].at];
         widen(wide, horizon);
     }
-    near_.find_near(update, wide_pairs_, horizons_, batch.totals, RayBatch::block_sum);
+    near_.find_now(update, wide_pairs_, stale_.size(), horizons_, batch.totals, RayBatch::block_sum);
     for (std::size_t i = 0; i < stale_.size(); ++i) {
         const Due& due = stale_[i].due();
         Watched& own = *due.own;
@@ -108,14 +108,10 @@ void CertifiedRays::place(const Update& update) {
     pairs_.resize(update.device, due_count);
     held_ranges_.resize(update.device, due_count);
     segments_.resize(update.device, segment_count);
-    fast_margins_.resize(update.device, fast_count_);
     update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
             order_pair(source, target, pairs_.in_place()[i]);
-            // With few blocks it does not pay to find the near ones.
-            const bool few = source.shape->data().header.vertex_block_count <= BLOCKS_IN_MASK;
-            fast_margins_.in_place()[i] = few ? -1.0F : static_cast<float>(rounding_margin(source, target));
             held_ranges_.in_place()[i] = {};
         }
     });
@@ -132,9 +128,9 @@ void CertifiedRays::place(const Update& update) {
     });
 }
 
-// The rays of fast pairs: of all vertices in the bounds but those of blocks that are known to be safe.
+// The rays of fast pairs, as by `standard`.
 void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
-    fast_.find_near(update, pairs_, fast_margins_, batch.totals, RayBatch::block_sum);
+    fast_.find_now(update, pairs_, fast_count_, {}, batch.totals, RayBatch::block_sum);
     fast_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 

@@ -58,7 +58,6 @@ private:
     Array<kernels::OrderedPair> wide_pairs_; ///< by index of stale_, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
-    Array<float> fast_margins_;
     BlockSearch near_, fast_;
     Array<kernels::Watch> watches_;
     Array<kernels::Held> held_, last_held_;

@@ -171,7 +171,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    near_.find_near(update, device_wide_, device_reaches_, batch.totals, RayBatch::block_sum);
+    near_.find_now(update, device_wide_, full_count_, device_reaches_, batch.totals, RayBatch::block_sum);
     let_sleep();
     const Array<kernels::PairBlock>& blocks = near_.blocks();
     sums_.vertices = VERTEX_LANES * blocks.size();
