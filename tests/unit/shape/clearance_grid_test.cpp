@@ -38,9 +38,9 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
         block.vertex[k] = std::isnan(points[k].x) ? NONE : static_cast<kernels::uint>(k);
     }
     Lookup found{};
-    const auto seen = kernels::prototype::inside_lanes(&pair, &block);
+    const auto seen = kernels::prototype::inside_lanes(&pair, &block, 0);
     const auto safe = [&] {
-        return kernels::prototype::safe_lanes(&seen, &pair, &block, &target.header, target.clearances.data());
+        return kernels::prototype::safe_lanes(&seen, &pair, &block, 0, &target.header, target.clearances.data());
     };
     const auto near = safe();
     std::copy(near.safe, near.safe + VERTEX_LANES, found.distance);
