@@ -146,7 +146,7 @@ private:
         const std::string_view bytes = file_.bytes, rest = bytes.substr(std::min(at, bytes.size()));
         const std::size_t length = rest.size() < 8 ? 0 : read_bytes<std::uint32_t>(rest.data());
         if (rest.size() < 8 || !rest.substr(4).starts_with(type) || length > rest.size() - 8)
-            file_.fail("has no whole " + std::string(type) + " chunk; it is truncated or damaged");
+            file_.fail("has no whole chunk " + in_quotes(type) + "; it is truncated or damaged");
         return rest.substr(8, length);
     }
 
@@ -200,7 +200,7 @@ private:
         const std::string uri = text_of(member(buffer.value, "uri"));
         std::string bytes;
         if (uri.empty()) {
-            bytes = chunk(after_json_, "BIN");
+            bytes = chunk(after_json_, {"BIN\0", 4});
         } else if (uri.starts_with("data:")) {
             bytes = decoded_base64(std::string_view(uri).substr(uri.find(',') + 1));
         } else {
@@ -350,9 +350,8 @@ private:
         list.clear();
         for (const double index : read_accessor(accessor, "SCALAR", 1)) {
             if (!(index >= 0 && index < static_cast<double>(vertices))) {
-                fail(accessor, "record " + std::to_string(list.size()) + ": vertex index "
-                                   + std::to_string(static_cast<std::int64_t>(index)) + " is not in 0 to "
-                                   + std::to_string(vertices) + " - 1");
+                fail(accessor, "record " + std::to_string(list.size()) + ": "
+                                   + no_vertex(static_cast<std::int64_t>(index), vertices));
             }
             list.push_back(static_cast<std::uint32_t>(index));
         }
