@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,12 +15,22 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct HalfEdge {
     std::uint32_t lo, hi, corner;
     bool forward; ///< the triangle runs from lo to hi
+    friend auto operator<=>(const HalfEdge&, const HalfEdge&) = default;
     std::uint32_t triangle() const { return corner / 3; }
 };
 
 /// Every side of every edge, sorted by (lo, hi, corner), so that the sides of one edge are neighbours in the list.
 /// Edges from a vertex to itself (degenerate triangles) are left out. Up to 2^32 / 3 triangles.
 std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles);
+
+/// Calls visit(sides of one edge) for every edge.
+template <class Visit>
+void for_each_edge(std::span<const HalfEdge> edges, Visit&& visit) {
+    for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+        while (last < edges.size() && edges[last].lo == edges[first].lo && edges[last].hi == edges[first].hi) ++last;
+        visit(edges.subspan(first, last - first));
+    }
+}
 
 /// Triangle across each edge (0-1, 1-2, 2-0): 0xffffffff at a border, the lowest other index where several meet.
 std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles);

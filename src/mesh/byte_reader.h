@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 namespace raycontact {
 
@@ -17,5 +18,17 @@ T read_bytes(const char* at, bool little_endian = true) {
     if (little_endian != (std::endian::native == std::endian::little)) std::reverse(raw.begin(), raw.end());
     return std::bit_cast<T>(raw);
 }
+
+/// How a binary file stores a kind of number. A double holds every value of all kinds.
+struct NumberType {
+    std::size_t size;
+    bool whole;
+    double (*read)(const char* at, bool little_endian);
+};
+
+template <class T>
+constexpr NumberType number_type{sizeof(T), std::is_integral_v<T>, [](const char* at, bool little_endian) {
+                                     return static_cast<double>(read_bytes<T>(at, little_endian));
+                                 }};
 
 } // namespace raycontact

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/check.h"
 
-#include "mesh/patches.h"
+#include <raycontact/error.h>
+#include <raycontact/mass.h>
+
+#include "mesh/input_file.h"
+#include "mesh/nesting.h"
+#include "mesh/self_intersection.h"
 
 #include <cstdlib>
 #include <numeric>
@@ -13,33 +18,33 @@ namespace {
 
 class DisjointSets {
 public:
-    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
+    explicit DisjointSets(std::size_t count) : count_(count), parent_(count) {
+        std::iota(parent_.begin(), parent_.end(), 0u);
     }
     void unite(std::uint32_t i, std::uint32_t k) {
         i = find(i);
         k = find(k);
+        if (i == k) return;
         parent_[std::max(i, k)] = std::min(i, k);
+        --count_;
     }
-    std::uint64_t count() const {
-        std::uint64_t roots = 0;
-        for (std::size_t i = 0; i < parent_.size(); ++i) roots += parent_[i] == i ? 1 : 0;
-        return roots;
-    }
+    std::size_t count() const { return count_; }
 
 private:
+    std::uint32_t find(std::uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+
+    std::size_t count_;
     std::vector<std::uint32_t> parent_;
 };
 
-} // namespace
-
-Topology check_topology(std::span<const Triangle> triangles, std::span<const HalfEdge> edges,
-                        std::uint32_t vertex_count) {
-    Topology topology;
+/// How triangles hang together.
+void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std::span<const HalfEdge> edges) {
+    report.closed = report.manifold = report.oriented = true;
     // Corners of triangles that follow each other around a vertex end in one set: a fan.
-    DisjointSets fans(3 * triangles.size()), components(vertex_count);
+    DisjointSets fans(3 * triangles.size()), components(report.vertices);
     const auto corner_at = [&](const HalfEdge& side, std::uint32_t vertex) {
         const std::uint32_t start = side.corner, end = side.corner - side.corner % 3 + (side.corner % 3 + 1) % 3;
         return triangles[side.triangle()][start % 3] == vertex ? start : end;
@@ -51,21 +56,49 @@ Topology check_topology(std::span<const Triangle> triangles, std::span<const Hal
             fans.unite(corner_at(side, side.lo), corner_at(sides[0], side.lo));
             fans.unite(corner_at(side, side.hi), corner_at(sides[0], side.hi));
         }
-        topology.closed = topology.closed && sides.size() % 2 == 0;
-        topology.manifold = topology.manifold && sides.size() <= 2;
+        report.closed = report.closed && sides.size() % 2 == 0;
+        report.manifold = report.manifold && sides.size() <= 2;
         // As many one way as the other; of an odd number one is left over. A border has nothing to agree with.
-        topology.oriented = topology.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
+        report.oriented = report.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
         components.unite(sides[0].lo, sides[0].hi);
     });
-    std::vector<std::uint32_t> fan_of(vertex_count, 0xffffffffu);
-    for (std::uint32_t corner = 0; corner < 3 * triangles.size(); ++corner) {
-        std::uint32_t& fan = fan_of[triangles[corner / 3][corner % 3]];
-        const std::uint32_t own = fans.find(corner);
-        if (fan == 0xffffffffu) fan = own;
-        topology.manifold = topology.manifold && fan == own;
+    report.manifold = report.manifold && fans.count() == report.vertices;
+    report.components = components.count();
+}
+
+} // namespace
+
+void check_mesh(const Mesh& mesh, const std::string& name) {
+    const auto fail = [&](const std::string& what) { throw InputError(name + ": " + what); };
+    constexpr std::size_t most = 0xffffffffu / 3; // three corners of every triangle are counted in 32 bits
+    if (mesh.triangles.empty()) fail("has no triangles; export a triangle mesh");
+    if (mesh.triangles.size() >= most || mesh.vertices.size() >= 0xffffffffu)
+        fail("has more than " + std::to_string(most) + " triangles; split or reduce it");
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (!is_finite(mesh.vertices[i])) fail("vertex " + std::to_string(i) + " is not finite");
     }
-    topology.components = components.count();
-    return topology;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const std::uint32_t v : mesh.triangles[i]) {
+            if (v >= mesh.vertices.size())
+                fail("triangle " + std::to_string(i) + ": " + no_vertex(v, mesh.vertices.size()));
+        }
+    }
+}
+
+void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
+                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh) {
+    MeshReport& report = prepared.report;
+    report.vertices = prepared.vertices.size();
+    report.triangles = prepared.triangles.size();
+    fill_topology(report, prepared.triangles, edges);
+    report.self_intersecting = self_intersects(snapped_vertices, prepared.triangles, bvh);
+    if (report.closed && report.oriented && !report.self_intersecting)
+        report.outward = winds_outward(prepared, patches, bvh);
+    report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
+    report.area = area_of(prepared.vertices, prepared.triangles);
+    const Box box = box_of(prepared.vertices);
+    report.box_min = box.low;
+    report.box_max = box.high;
 }
 
 } // namespace raycontact

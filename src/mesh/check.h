@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/adjacency.h"
+#include <raycontact/mesh.h>
 
-#include <cstdint>
-#include <span>
+#include "mesh/patches.h"
+#include "mesh/triangle_bvh.h"
 
 namespace raycontact {
 
-/// How triangles hang together, as MeshReport says it.
-struct Topology {
-    bool closed = true, manifold = true, oriented = true;
-    std::uint64_t components = 0;
-};
+/// Throws InputError, which calls the mesh by `name`, where it is empty, too large, not finite or out of range.
+void check_mesh(const Mesh& mesh, const std::string& name);
 
-/// Every vertex below vertex_count is in use by a triangle.
-Topology check_topology(std::span<const Triangle> triangles, std::span<const HalfEdge> edges,
-                        std::uint32_t vertex_count);
+/// All of the report but its repairs and the counts of the file. The hierarchy is over snapped vertices.
+void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
+                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh);
 
 } // namespace raycontact

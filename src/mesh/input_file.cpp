@@ -3,6 +3,7 @@
 
 #include <raycontact/error.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -13,20 +14,22 @@ namespace raycontact {
 
 std::string printable(std::string_view text) {
     std::string out(text);
-    for (char& c : out) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
+    std::ranges::replace_if(
+        out, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return out;
 }
 
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 24;
-    std::string out;
-    for (const char c : text.substr(0, longest)) {
-        // Bytes of a damaged file need not be UTF-8, and JSON or a terminal would trip over them.
-        out += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
-    }
+    std::string out(text.substr(0, longest));
+    // Bytes of a damaged file need not be UTF-8, and JSON or a terminal would trip over them.
+    std::ranges::replace_if(
+        out, [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
     return "'" + out + (text.size() > longest ? "...'" : "'");
+}
+
+std::string no_vertex(std::int64_t index, std::size_t vertex_count) {
+    return "vertex index " + std::to_string(index) + " is not in 0 to " + std::to_string(vertex_count) + " - 1";
 }
 
 void InputFile::fail(const std::string& what) const {

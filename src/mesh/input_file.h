@@ -27,6 +27,9 @@ std::string in_quotes(std::string_view text);
 /// The same for a whole path or a library's message: one line, no quotes, not cut.
 std::string printable(std::string_view text);
 
+/// A complaint about an index, at a place that the caller names.
+std::string no_vertex(std::int64_t index, std::size_t vertex_count);
+
 // One reader a format; each throws InputError as load_mesh says. The name is set by load_mesh.
 Mesh read_obj(const InputFile& file);
 Mesh read_stl(const InputFile& file);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/mesh.h>
 
+#include "mesh/check.h"
 #include "mesh/input_file.h"
 
 #include <array>
@@ -31,12 +32,7 @@ Mesh load_mesh(const std::filesystem::path& path) {
     for (const Format& format : formats) {
         if (ending != format.ending) continue;
         Mesh mesh = format.read(file);
-        if (mesh.triangles.empty()) file.fail("has no triangles; export a triangle mesh");
-        // Three corners of every triangle are counted in 32 bits.
-        constexpr std::size_t most = 0xffffffffu / 3;
-        if (mesh.triangles.size() >= most || mesh.vertices.size() >= 0xffffffffu) {
-            file.fail("has more than " + std::to_string(most) + " triangles; split or reduce it");
-        }
+        check_mesh(mesh, file.shown);
         mesh.name = printable(path.filename().string());
         return mesh;
     }

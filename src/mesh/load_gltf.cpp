@@ -1,454 +1,419 @@
 // SPDX-License-Identifier: Apache-2.0
+// Our own reader over a JSON parser: tinygltf takes a property of the wrong kind for one that is not there, so that a
+// damaged `indices` turns a mesh into a soup. Places in the file are named as the JSON names them: nodes[3].
 #include "mesh/byte_reader.h"
-#include "mesh/gltf_json.h"
 #include "mesh/input_file.h"
+#include "mesh/vector.h"
 
 #include <raycontact/error.h>
 
-#include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <charconv>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
 namespace {
 
-using Matrix = std::array<double, 16>; // row-major, affine
+using nlohmann::json;
 
-Matrix multiply(const Matrix& a, const Matrix& b) {
-    Matrix product{};
-    for (std::size_t r = 0; r < 4; ++r) {
-        for (std::size_t c = 0; c < 4; ++c) {
-            for (std::size_t k = 0; k < 4; ++k) product[4 * r + c] += a[4 * r + k] * b[4 * k + c];
-        }
+/// A value of the JSON, and what errors call it.
+struct Item {
+    const json& value;
+    std::string name;
+};
+
+/// Normalised numbers are divided by `most` (KHR_mesh_quantization); 0 where a type has no such form.
+struct ComponentType {
+    std::size_t code;
+    NumberType number;
+    double most;
+};
+
+constexpr std::array component_types{
+    ComponentType{5120, number_type<std::int8_t>, 127},    ComponentType{5121, number_type<std::uint8_t>, 255},
+    ComponentType{5122, number_type<std::int16_t>, 32767}, ComponentType{5123, number_type<std::uint16_t>, 65535},
+    ComponentType{5125, number_type<std::uint32_t>, 0},    ComponentType{5126, number_type<float>, 0}};
+
+/// An affine map: where the axes and the origin go.
+struct Placement {
+    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin;
+
+    Vec3 turned(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
+    Vec3 placed(const Vec3& p) const { return turned(p) + origin; }
+    Placement after(const Placement& inner) const {
+        return {turned(inner.x), turned(inner.y), turned(inner.z), placed(inner.origin)};
     }
-    return product;
+};
+
+/// The member of an object; null where it is missing.
+const json& member(const json& object, const char* key) {
+    static const json missing;
+    const auto found = object.find(key);
+    return found == object.end() ? missing : *found;
 }
 
-/// Numbers of an accessor: `components` a record, `stride` bytes apart, all inside the buffer.
-struct Records {
-    const unsigned char* data = nullptr; ///< null: all zero (a sparse accessor without a base)
-    std::size_t count = 0, stride = 0, components = 0;
-    int component_type = 0;
-    bool normalized = false;
-};
+/// Empty where the value is no text.
+std::string text_of(const json& value) {
+    return value.is_string() ? value.get<std::string>() : "";
+}
+
+// Stops at the padding, or at damage, which leaves too few bytes.
+std::string decoded_base64(std::string_view text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    std::size_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const std::size_t digit = digits.find(c);
+        if (digit == std::string_view::npos) break;
+        bits = bits << 6 | digit;
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 0xff);
+    }
+    return bytes;
+}
+
+/// A path from a URI: %20 is a space.
+std::string decoded_uri(std::string_view uri) {
+    std::string path;
+    for (; !uri.empty(); uri.remove_prefix(1)) {
+        unsigned code = 0;
+        if (uri[0] == '%' && uri.size() > 2 && std::from_chars(&uri[1], &uri[1] + 2, code, 16).ptr == &uri[1] + 2) {
+            path += static_cast<char>(code);
+            uri.remove_prefix(2);
+        } else {
+            path += uri[0];
+        }
+    }
+    return path;
+}
 
 class GltfReader {
 public:
-    GltfReader(const InputFile& file, const tinygltf::Model& model) : file_(file), model_(model) {}
+    explicit GltfReader(const InputFile& file) : file_(file) {
+        const bool binary = file.bytes.starts_with("glTF");
+        const std::string_view text = binary ? chunk(12, "JSON") : std::string_view(file.bytes);
+        if (binary) after_json_ = 20 + text.size();
+        json_ = json::parse(text);
+        if (!text_of(member(member(json_, "asset"), "version")).starts_with("2"))
+            file.fail("is no sound glTF file: it does not say that its version is 2");
+    }
 
     Mesh read() {
-        for (const std::string& extension : model_.extensionsRequired) {
+        for (const json& entry : list(root_, "extensionsRequired")) {
+            const std::string extension = text_of(entry);
             if (extension != "KHR_mesh_quantization" && extension.find("materials") == std::string::npos
                 && extension.find("texture") == std::string::npos && extension.find("lights") == std::string::npos) {
                 file_.fail("needs the extension " + in_quotes(extension) + "; export without it");
             }
         }
-        find_parents();
-        mark_scene();
-        for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
-            const int mesh = model_.nodes[n].mesh;
-            if (!placed_[n] || mesh < 0) continue;
-            if (static_cast<std::size_t>(mesh) >= model_.meshes.size())
-                fail_node(n, "mesh " + std::to_string(mesh) + " does not exist");
-            const Matrix& to_root = placement(n);
-            for (const double entry : to_root) {
-                if (!std::isfinite(entry)) fail_node(n, "its transform is not finite");
-            }
-            for (const tinygltf::Primitive& primitive : model_.meshes[static_cast<std::size_t>(mesh)].primitives) {
-                read_primitive(primitive, to_root);
+        for (std::size_t i = 0; i < list(root_, "buffers").size(); ++i)
+            buffers_.push_back(read_buffer(item("buffers", i)));
+        place_nodes();
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            const Item node = item("nodes", n);
+            if (!nodes_[n].in_scene || member(node.value, "mesh").is_null()) continue;
+            const Item mesh = item("meshes", whole(node, "mesh"));
+            for (const json& primitive : list(mesh, "primitives")) {
+                read_primitive({primitive, mesh.name}, node.name, nodes_[n].placement);
             }
         }
         return std::move(mesh_);
     }
 
 private:
-    [[noreturn]] void fail_node(std::size_t node, const std::string& what) const {
-        file_.fail("node " + std::to_string(node) + ": " + what);
+    struct Node {
+        std::vector<std::size_t> children;
+        bool waits = false; ///< for its parent to be placed
+        bool in_scene = false;
+        Placement placement; ///< in its parent, then in the scene
+    };
+
+    [[noreturn]] void fail(const Item& item, const std::string& what) const { file_.fail(item.name + ": " + what); }
+
+    /// The data of the chunk of a GLB that starts at `at`.
+    std::string_view chunk(std::size_t at, std::string_view type) const {
+        const std::string_view bytes = file_.bytes, rest = bytes.substr(std::min(at, bytes.size()));
+        const std::size_t length = rest.size() < 8 ? 0 : read_bytes<std::uint32_t>(rest.data());
+        if (rest.size() < 8 || !rest.substr(4).starts_with(type) || length > rest.size() - 8)
+            file_.fail("has no whole chunk " + in_quotes(type) + "; it is truncated or damaged");
+        return rest.substr(8, length);
     }
 
-    void find_parents() {
-        constexpr int none = -1;
-        parents_.assign(model_.nodes.size(), none);
-        known_.assign(model_.nodes.size(), 0);
-        to_root_.resize(model_.nodes.size());
-        for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
-            for (const int child : model_.nodes[n].children) {
-                if (child < 0 || static_cast<std::size_t>(child) >= model_.nodes.size()) {
-                    fail_node(n, "child " + std::to_string(child) + " does not exist");
-                }
-                int& parent = parents_[static_cast<std::size_t>(child)];
-                if (parent != none)
-                    fail_node(static_cast<std::size_t>(child), "has two parents; nodes must form a tree");
-                parent = static_cast<int>(n);
-            }
-        }
-        // With one parent each, a node from which the way up does not end lies on or below a cycle.
-        std::vector<char> ends(model_.nodes.size(), 0);
-        for (std::size_t n = 0; n < model_.nodes.size(); ++n) {
-            std::size_t steps = 0;
-            int at = static_cast<int>(n);
-            while (at != none && !ends[static_cast<std::size_t>(at)]) {
-                if (++steps > model_.nodes.size()) fail_node(n, "is its own ancestor; nodes must form a tree");
-                at = parents_[static_cast<std::size_t>(at)];
-            }
-            for (at = static_cast<int>(n); at != none && !ends[static_cast<std::size_t>(at)];
-                 at = parents_[static_cast<std::size_t>(at)]) {
-                ends[static_cast<std::size_t>(at)] = 1;
-            }
-        }
+    /// An entry of one of the lists of the file.
+    Item item(const char* key, std::size_t index) const {
+        const std::string name = std::string(key) + "[" + std::to_string(index) + "]";
+        const json& entries = list(root_, key);
+        if (index >= entries.size()) file_.fail(name + " does not exist");
+        return {entries[index], name};
     }
 
-    // The nodes of the default scene, or the first; all of them where the file has no scene.
-    void mark_scene() {
-        placed_.assign(model_.nodes.size(), model_.scenes.empty() ? 1 : 0);
-        if (model_.scenes.empty()) return;
-        const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
-        if (static_cast<std::size_t>(scene) >= model_.scenes.size())
-            file_.fail("scene " + std::to_string(scene) + " does not exist");
-        std::vector<int> open(model_.scenes[static_cast<std::size_t>(scene)].nodes);
-        while (!open.empty()) {
-            const int node = open.back();
-            open.pop_back();
-            if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
-                file_.fail("scene " + std::to_string(scene) + ": node " + std::to_string(node) + " does not exist");
-            }
-            char& placed = placed_[static_cast<std::size_t>(node)];
-            if (placed) continue;
-            placed = 1;
-            const std::vector<int>& children = model_.nodes[static_cast<std::size_t>(node)].children;
-            open.insert(open.end(), children.begin(), children.end());
-        }
+    /// Null, which has no entries, where it is missing.
+    const json& list(const Item& of, const char* key) const {
+        const json& found = member(of.value, key);
+        if (!found.is_array() && !found.is_null()) fail(of, in_quotes(key) + " is no list");
+        return found;
     }
 
-    Matrix local_matrix(std::size_t n) const {
-        const tinygltf::Node& node = model_.nodes[n];
-        Matrix m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-        if (!node.matrix.empty()) {
-            if (node.matrix.size() != 16) fail_node(n, "its matrix has not 16 numbers");
-            for (std::size_t r = 0; r < 4; ++r) {
-                for (std::size_t c = 0; c < 4; ++c) m[4 * r + c] = node.matrix[4 * c + r]; // the file is column-major
-            }
-            return m;
-        }
-        const auto check = [&](const std::vector<double>& list, std::size_t size, const char* what) {
-            if (!list.empty() && list.size() != size)
-                fail_node(n, std::string("its ") + what + " has not " + std::to_string(size) + " numbers");
-            return !list.empty();
-        };
-        if (check(node.rotation, 4, "rotation")) {
-            const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-            const double norm = x * x + y * y + z * z + w * w;
-            if (!(norm > 0)) fail_node(n, "its rotation is zero");
-            const double s = 2 / norm;
-            m = {1 - s * (y * y + z * z),
-                 s * (x * y - z * w),
-                 s * (x * z + y * w),
-                 0,
-                 s * (x * y + z * w),
-                 1 - s * (x * x + z * z),
-                 s * (y * z - x * w),
-                 0,
-                 s * (x * z - y * w),
-                 s * (y * z + x * w),
-                 1 - s * (x * x + y * y),
-                 0,
-                 0,
-                 0,
-                 0,
-                 1};
-        }
-        if (check(node.scale, 3, "scale")) {
-            for (std::size_t r = 0; r < 3; ++r) {
-                for (std::size_t c = 0; c < 3; ++c) m[4 * r + c] *= node.scale[c];
-            }
-        }
-        if (check(node.translation, 3, "translation")) {
-            for (std::size_t r = 0; r < 3; ++r) m[4 * r + 3] = node.translation[r];
-        }
-        return m;
+    std::size_t whole(const Item& of, const char* key, std::optional<std::size_t> otherwise = {}) const {
+        const json& found = member(of.value, key);
+        return found.is_null() && otherwise ? *otherwise : whole({found, of.name + ": " + in_quotes(key)});
     }
 
-    // Kept for every node on the way up, so that a deep chain costs each of its nodes once.
-    const Matrix& placement(std::size_t n) {
-        std::vector<std::size_t> chain;
-        for (int up = static_cast<int>(n); up >= 0; up = parents_[static_cast<std::size_t>(up)]) {
-            if (known_[static_cast<std::size_t>(up)]) break;
-            chain.push_back(static_cast<std::size_t>(up));
-        }
-        std::reverse(chain.begin(), chain.end());
-        for (const std::size_t node : chain) {
-            const Matrix local = local_matrix(node);
-            const int parent = parents_[node];
-            to_root_[node] = parent < 0 ? local : multiply(to_root_[static_cast<std::size_t>(parent)], local);
-            known_[node] = 1;
-        }
-        return to_root_[n];
+    std::size_t whole(const Item& number) const {
+        if (!number.value.is_number_unsigned()) file_.fail(number.name + " is not a whole number of at least 0");
+        return number.value.get<std::size_t>();
     }
 
-    // A range of a buffer, checked: `count` records of `size` bytes, `stride` apart.
-    const unsigned char* view(int index, std::size_t offset, std::size_t count, std::size_t size,
-                              std::size_t& stride) const {
-        const std::string where = "buffer view " + std::to_string(index) + " ";
-        if (index < 0 || static_cast<std::size_t>(index) >= model_.bufferViews.size())
-            file_.fail(where + "does not exist");
-        const tinygltf::BufferView& range = model_.bufferViews[static_cast<std::size_t>(index)];
-        if (range.buffer < 0 || static_cast<std::size_t>(range.buffer) >= model_.buffers.size()) {
-            file_.fail(where + "names a buffer that does not exist");
-        }
-        const std::vector<unsigned char>& bytes = model_.buffers[static_cast<std::size_t>(range.buffer)].data;
-        if (range.byteOffset > bytes.size() || range.byteLength > bytes.size() - range.byteOffset) {
-            file_.fail(where + "reaches beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
-        }
-        stride = range.byteStride != 0 ? range.byteStride : size;
-        if (stride < size) file_.fail(where + "has a stride of " + std::to_string(stride) + ", less than a record");
-        const bool fits = offset <= range.byteLength && size <= range.byteLength - offset
-                          && count - 1 <= (range.byteLength - offset - size) / stride;
-        if (count > 0 && !fits) file_.fail(where + "is too short for the " + std::to_string(count) + " records in it");
-        return bytes.data() + range.byteOffset + offset;
-    }
-
-    Records records(int index, int type, const char* what) const {
-        const std::string where = "accessor " + std::to_string(index) + " ";
-        if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size())
-            file_.fail(where + "does not exist");
-        const tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
-        if (accessor.type != type) file_.fail(where + "has not the type of " + what);
-        Records found;
-        found.count = accessor.count;
-        found.components = type == TINYGLTF_TYPE_VEC3 ? 3 : 1;
-        found.component_type = accessor.componentType;
-        found.normalized = accessor.normalized;
-        if (accessor.bufferView >= 0) {
-            const std::size_t size = found.components * component_size(found.component_type);
-            found.data = view(accessor.bufferView, accessor.byteOffset, found.count, size, found.stride);
-        } else if (found.count > most_zeros) {
-            file_.fail(where + "has " + std::to_string(found.count) + " records and no data");
+    /// A list of nodes.
+    std::vector<std::size_t> node_list(const Item& of, const char* key) const {
+        std::vector<std::size_t> found;
+        for (const json& entry : list(of, key)) {
+            found.push_back(whole({entry, of.name + ": an entry of " + in_quotes(key)}));
+            if (found.back() >= nodes_.size()) fail(of, "node " + std::to_string(found.back()) + " does not exist");
         }
         return found;
     }
 
-    std::size_t component_size(int type) const {
-        switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return 1;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return 2;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT:
-            return 4;
-        default:
-            file_.fail("component type " + std::to_string(type) + " is unknown");
+    /// As many numbers as told, or none where the list is missing.
+    std::vector<double> numbers(const Item& of, const char* key, std::size_t size) const {
+        std::vector<double> found;
+        for (const json& entry : list(of, key)) {
+            if (entry.is_number()) found.push_back(entry.get<double>());
         }
+        if (list(of, key).size() != found.size() || (!found.empty() && found.size() != size))
+            fail(of, in_quotes(key) + " has not " + std::to_string(size) + " numbers");
+        return found;
     }
 
-    // glTF is little endian. Normalised whole numbers become -1 to 1, as KHR_mesh_quantization says.
-    static double component(const unsigned char* raw, int type, bool normalized) {
-        const char* const at = reinterpret_cast<const char*>(raw);
-        switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: {
-            const double value = read_bytes<std::int8_t>(at);
-            return normalized ? std::max(value / 127, -1.0) : value;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return read_bytes<std::uint8_t>(at) / (normalized ? 255.0 : 1.0);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: {
-            const double value = read_bytes<std::int16_t>(at);
-            return normalized ? std::max(value / 32767, -1.0) : value;
-        }
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return read_bytes<std::uint16_t>(at) / (normalized ? 65535.0 : 1.0);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return read_bytes<std::uint32_t>(at);
-        default:
-            return read_bytes<float>(at);
-        }
-    }
-
-    static Vec3 point_at(const unsigned char* at, std::size_t size, int type, bool normalized) {
-        return {component(at, type, normalized), component(at + size, type, normalized),
-                component(at + 2 * size, type, normalized)};
-    }
-
-    std::vector<Vec3> positions(int index) const {
-        const Records list = records(index, TINYGLTF_TYPE_VEC3, "positions");
-        const std::size_t size = component_size(list.component_type);
-        std::vector<Vec3> points(list.count);
-        for (std::size_t i = 0; list.data != nullptr && i < list.count; ++i) {
-            points[i] = point_at(list.data + i * list.stride, size, list.component_type, list.normalized);
-        }
-        const auto& sparse = model_.accessors[static_cast<std::size_t>(index)].sparse;
-        if (sparse.isSparse) {
-            if (sparse.count < 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-                file_.fail("accessor " + std::to_string(index) + " has a negative count or offset");
-            }
-            const auto count = static_cast<std::size_t>(sparse.count);
-            std::size_t index_stride = 0, value_stride = 0;
-            const unsigned char* const at =
-                view(sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), count,
-                     component_size(sparse.indices.componentType), index_stride);
-            const unsigned char* const values =
-                view(sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset), count, 3 * size,
-                     value_stride);
-            for (std::size_t i = 0; i < count; ++i) {
-                const double where = component(at + i * index_stride, sparse.indices.componentType, false);
-                if (!(where >= 0 && where < static_cast<double>(points.size())))
-                    file_.fail("accessor " + std::to_string(index) + " replaces a record it has not");
-                points[static_cast<std::size_t>(where)] =
-                    point_at(values + i * value_stride, size, list.component_type, list.normalized);
+    std::string read_buffer(const Item& buffer) const {
+        const std::string uri = text_of(member(buffer.value, "uri"));
+        std::string bytes;
+        if (uri.empty()) {
+            bytes = chunk(after_json_, {"BIN\0", 4});
+        } else if (uri.starts_with("data:")) {
+            bytes = decoded_base64(std::string_view(uri).substr(uri.find(',') + 1));
+        } else {
+            try {
+                bytes = InputFile::read(file_.path.parent_path() / decoded_uri(uri)).bytes;
+            } catch (const InputError& error) {
+                fail(buffer, error.what());
             }
         }
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(points[i].z)) {
-                file_.fail("accessor " + std::to_string(index) + ", record " + std::to_string(i)
-                           + ": a coordinate is not finite");
-            }
+        const std::size_t length = whole(buffer, "byteLength");
+        if (bytes.size() < length) {
+            fail(buffer, "has " + std::to_string(bytes.size()) + " bytes of " + std::to_string(length)
+                             + "; it is truncated or damaged");
         }
-        return points;
+        bytes.resize(length);
+        return bytes;
     }
 
-    std::vector<std::uint32_t> corners(const tinygltf::Primitive& primitive, std::size_t vertices) const {
-        std::vector<std::uint32_t> list;
-        if (primitive.indices < 0) {
-            list.resize(vertices);
-            for (std::size_t i = 0; i < vertices; ++i) list[i] = static_cast<std::uint32_t>(i);
-            return list;
+    // From the roots down, so that a deep chain costs each of its nodes once.
+    void place_nodes() {
+        nodes_.resize(list(root_, "nodes").size());
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            const Item node = item("nodes", n);
+            nodes_[n].placement = own_placement(node);
+            nodes_[n].children = node_list(node, "children");
+            for (const std::size_t child : nodes_[n].children) {
+                if (nodes_[child].waits)
+                    fail(node, "its child " + std::to_string(child) + " has two parents; nodes must form a tree");
+                nodes_[child].waits = true;
+            }
         }
-        const Records found = records(primitive.indices, TINYGLTF_TYPE_SCALAR, "indices");
-        const int type = found.component_type;
-        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-            && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-            file_.fail("accessor " + std::to_string(primitive.indices)
-                       + ": indices must be whole numbers without sign");
+        // The default scene, or the first; all nodes where the file has no scene.
+        std::vector<std::size_t> order(nodes_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const bool has_scene = !list(root_, "scenes").empty();
+        for (const std::size_t n : has_scene ? node_list(item("scenes", whole(root_, "scene", 0)), "nodes") : order)
+            nodes_[n].in_scene = true;
+        std::erase_if(order, [&](std::size_t n) { return nodes_[n].waits; });
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const Node& parent = nodes_[order[i]];
+            for (const std::size_t c : parent.children) {
+                Node& child = nodes_[c];
+                child.placement = parent.placement.after(child.placement);
+                child.in_scene = child.in_scene || parent.in_scene;
+                child.waits = false;
+                order.push_back(c);
+            }
         }
-        if (found.data == nullptr)
-            file_.fail("accessor " + std::to_string(primitive.indices) + ": indices without data");
-        list.reserve(found.count);
-        for (std::size_t i = 0; i < found.count; ++i) {
-            const double index = component(found.data + i * found.stride, type, false);
-            if (!(index < static_cast<double>(vertices))) {
-                file_.fail("accessor " + std::to_string(primitive.indices) + ", record " + std::to_string(i)
-                           + ": vertex index " + std::to_string(static_cast<std::uint32_t>(index)) + " is not in 0 to "
-                           + std::to_string(vertices) + " - 1");
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            if (nodes_[n].waits) fail(item("nodes", n), "is its own ancestor; nodes must form a tree");
+        }
+    }
+
+    Placement own_placement(const Item& node) const {
+        if (const std::vector<double> m = numbers(node, "matrix", 16); !m.empty()) // by columns
+            return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+        Placement own;
+        if (const std::vector<double> q = numbers(node, "rotation", 4); !q.empty()) {
+            const double x = q[0], y = q[1], z = q[2], w = q[3];
+            const double norm = x * x + y * y + z * z + w * w;
+            if (!(norm > 0)) fail(node, "its rotation is zero");
+            const double s = 2 / norm;
+            own.x = {1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)};
+            own.y = {s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)};
+            own.z = {s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)};
+        }
+        if (const std::vector<double> scale = numbers(node, "scale", 3); !scale.empty()) {
+            own.x = scale[0] * own.x;
+            own.y = scale[1] * own.y;
+            own.z = scale[2] * own.z;
+        }
+        if (const std::vector<double> t = numbers(node, "translation", 3); !t.empty()) own.origin = {t[0], t[1], t[2]};
+        return own;
+    }
+
+    const ComponentType& component_type(const Item& of) const {
+        const std::size_t code = whole(of, "componentType");
+        for (const ComponentType& type : component_types) {
+            if (type.code == code) return type;
+        }
+        fail(of, "component type " + std::to_string(code) + " is unknown");
+    }
+
+    /// `count` records of `width` numbers from the buffer view that `from` names.
+    std::vector<double> stored(const Item& from, const NumberType& type, std::size_t count, std::size_t width) const {
+        const Item view = item("bufferViews", whole(from, "bufferView"));
+        const std::size_t buffer = whole(view, "buffer");
+        if (buffer >= buffers_.size()) fail(view, "names a buffer that does not exist");
+        const std::string_view bytes = buffers_[buffer];
+        const std::size_t start = whole(view, "byteOffset", 0), length = whole(view, "byteLength");
+        if (start > bytes.size() || length > bytes.size() - start)
+            fail(view, "reaches beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
+        const std::size_t size = width * type.size, stride = whole(view, "byteStride", size);
+        if (stride < size) fail(view, "has a stride of " + std::to_string(stride) + ", less than a record");
+        const std::size_t offset = whole(from, "byteOffset", 0);
+        const bool fits = offset <= length && size <= length - offset && count <= (length - offset - size) / stride + 1;
+        if (!fits) fail(view, "is too short for the " + std::to_string(count) + " records in it");
+        std::vector<double> found;
+        found.reserve(count * width);
+        for (std::size_t i = 0; i < count; ++i) {
+            const char* const at = bytes.data() + start + offset + i * stride;
+            for (std::size_t k = 0; k < width; ++k) found.push_back(type.read(at + k * type.size, true));
+        }
+        return found;
+    }
+
+    /// All numbers of an accessor.
+    std::vector<double> read_accessor(const Item& accessor, const char* type, std::size_t width) const {
+        constexpr std::size_t most_zeros = 1u << 24; // a sparse accessor may start from nothing, within reason
+        if (member(accessor.value, "type") != type) fail(accessor, "is not of type " + std::string(type));
+        const ComponentType& component = component_type(accessor);
+        const std::size_t count = whole(accessor, "count");
+        std::vector<double> found;
+        if (!member(accessor.value, "bufferView").is_null()) {
+            found = stored(accessor, component.number, count, width);
+        } else if (count <= most_zeros) {
+            found.resize(count * width);
+        } else {
+            fail(accessor, "has " + std::to_string(count) + " records and no data");
+        }
+        const Item sparse{member(accessor.value, "sparse"), accessor.name + ".sparse"};
+        if (!sparse.value.is_null()) {
+            const Item indices{member(sparse.value, "indices"), sparse.name + ".indices"};
+            const Item values{member(sparse.value, "values"), sparse.name + ".values"};
+            const std::size_t replaced = whole(sparse, "count");
+            const std::vector<double> where = stored(indices, component_type(indices).number, replaced, 1);
+            const std::vector<double> with = stored(values, component.number, replaced, width);
+            for (std::size_t i = 0; i < replaced; ++i) {
+                if (!(where[i] >= 0 && where[i] < static_cast<double>(count)))
+                    fail(sparse, "replaces a record that its accessor has not");
+                for (std::size_t k = 0; k < width; ++k)
+                    found[static_cast<std::size_t>(where[i]) * width + k] = with[i * width + k];
+            }
+        }
+        if (member(accessor.value, "normalized") == true && component.most > 0) {
+            for (double& number : found) number = std::max(number / component.most, -1.0);
+        }
+        return found;
+    }
+
+    std::vector<std::uint32_t> corners(const Item& primitive, std::size_t vertices) const {
+        std::vector<std::uint32_t> list(vertices);
+        std::iota(list.begin(), list.end(), 0u);
+        if (member(primitive.value, "indices").is_null()) return list;
+        const Item accessor = item("accessors", whole(primitive, "indices"));
+        if (!component_type(accessor).number.whole) fail(accessor, "vertex indices must be whole numbers");
+        list.clear();
+        for (const double index : read_accessor(accessor, "SCALAR", 1)) {
+            if (!(index >= 0 && index < static_cast<double>(vertices))) {
+                fail(accessor, "record " + std::to_string(list.size()) + ": "
+                                   + no_vertex(static_cast<std::int64_t>(index), vertices));
             }
             list.push_back(static_cast<std::uint32_t>(index));
         }
         return list;
     }
 
-    void read_primitive(const tinygltf::Primitive& primitive, const Matrix& m) {
-        const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-        if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP
-            && mode != TINYGLTF_MODE_TRIANGLE_FAN)
-            return;
-        const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end()) return; // allowed, and nothing to see
-        const std::vector<Vec3> points = positions(position->second);
-        const std::vector<std::uint32_t> list = corners(primitive, points.size());
+    void read_primitive(const Item& primitive, const std::string& node, const Placement& placement) {
+        constexpr std::size_t triangles = 4, strip = 5, fan = 6;
+        const std::size_t mode = whole(primitive, "mode", triangles);
+        if (mode < triangles || mode > fan) return;
+        const Item attributes{member(primitive.value, "attributes"), primitive.name};
+        if (member(attributes.value, "POSITION").is_null()) return; // allowed, and nothing to see
+        const Item accessor = item("accessors", whole(attributes, "POSITION"));
+        const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
+        const std::vector<std::uint32_t> list = corners(primitive, points.size() / 3);
 
         const std::size_t base = mesh_.vertices.size();
-        if (base + points.size() >= 0xffffffffu) file_.fail("has too many vertices; split or reduce it");
-        for (const Vec3& p : points) {
-            const Vec3 placed{m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-                              m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-            if (!std::isfinite(placed.x) || !std::isfinite(placed.y) || !std::isfinite(placed.z)) {
-                file_.fail("vertex " + std::to_string(mesh_.vertices.size())
-                           + " is not finite once placed by its node");
-            }
-            mesh_.vertices.push_back(placed);
+        if (base + points.size() / 3 >= 0xffffffffu) file_.fail("has too many vertices; split or reduce it");
+        for (std::size_t i = 0; i < points.size(); i += 3) {
+            mesh_.vertices.push_back(placement.placed({points[i], points[i + 1], points[i + 2]}));
+            if (!is_finite(mesh_.vertices.back()))
+                fail(accessor, "record " + std::to_string(i / 3) + " is not finite where " + node + " places it");
         }
         // A mirroring node turns the winding over (glTF 2.0, section 3.7.4).
-        const double determinant = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8])
-                                   + m[2] * (m[4] * m[9] - m[5] * m[8]);
+        const auto& [x, y, z, origin] = placement;
+        const bool mirrors = dot({x.x, y.x, z.x}, cross({x.y, y.y, z.y}, {x.z, y.z, z.z})) < 0;
         const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
-            if (determinant < 0) std::swap(j, k);
+            if (mirrors) std::swap(j, k);
             const auto first = static_cast<std::uint32_t>(base);
             mesh_.triangles.push_back({first + list[i], first + list[j], first + list[k]});
         };
-        if (mode == TINYGLTF_MODE_TRIANGLES) {
-            if (list.size() % 3 != 0)
-                file_.fail("a primitive of triangles has " + std::to_string(list.size())
-                           + " corners, not a multiple of 3");
-            for (std::size_t i = 0; i + 2 < list.size(); i += 3) add(i, i + 1, i + 2);
-        } else {
-            for (std::size_t i = 0; i + 2 < list.size(); ++i) {
-                if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
-                    add(i, i + 1 + i % 2, i + 2 - i % 2);
-                } else {
-                    add(0, i + 1, i + 2);
-                }
+        if (mode == triangles && list.size() % 3 != 0) {
+            fail(primitive,
+                 "a primitive of triangles has " + std::to_string(list.size()) + " corners, not a multiple of 3");
+        }
+        for (std::size_t i = 0; i + 2 < list.size(); i += mode == triangles ? 3 : 1) {
+            if (mode == fan) {
+                add(0, i + 1, i + 2);
+            } else {
+                const std::size_t odd = mode == strip ? i % 2 : 0;
+                add(i, i + 1 + odd, i + 2 - odd);
             }
         }
     }
 
-    static constexpr std::size_t most_zeros = 1u << 24; // a sparse accessor may start from nothing, within reason
-
     const InputFile& file_;
-    const tinygltf::Model& model_;
-    std::vector<int> parents_;
-    std::vector<char> placed_, known_;
-    std::vector<Matrix> to_root_;
+    json json_;
+    const Item root_{json_, "the file"};
+    std::size_t after_json_ = std::string::npos; ///< where the second chunk of a GLB starts
+    std::vector<std::string> buffers_;
+    std::vector<Node> nodes_;
     Mesh mesh_;
 };
-
-bool file_exists(const std::string& path, void*) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
-}
-
-std::string same_path(const std::string& path, void*) {
-    return path;
-}
-
-// Buffers beside the file are read with the same care as the file itself.
-bool read_whole_file(std::vector<unsigned char>* out, std::string* message, const std::string& path, void*) {
-    try {
-        const InputFile file = InputFile::read(path);
-        out->assign(file.bytes.begin(), file.bytes.end());
-        return true;
-    } catch (const InputError& error) {
-        *message += error.what();
-        return false;
-    }
-}
-
-// Pictures are of no use here and would only be one more thing that can be damaged.
-bool skip_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
-    return true;
-}
 
 } // namespace
 
 Mesh read_gltf(const InputFile& file) {
-    if (file.bytes.size() >= 0xffffffffu) file.fail("has more than 4 GiB, the limit of the format");
-    check_gltf_json(file);
-    tinygltf::TinyGLTF loader;
-    loader.SetFsCallbacks({&file_exists, &same_path, &read_whole_file, nullptr, nullptr});
-    loader.SetImageLoader(&skip_image, nullptr);
-    tinygltf::Model model;
-    std::string error, warning;
-    const auto length = static_cast<unsigned int>(file.bytes.size());
-    const std::string folder = file.path.parent_path().string();
-    bool loaded = false;
     try {
-        loaded =
-            file.bytes.starts_with("glTF")
-                ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                              reinterpret_cast<const unsigned char*>(file.bytes.data()), length, folder)
-                : loader.LoadASCIIFromString(&model, &error, &warning, file.bytes.data(), length, folder);
-    } catch (const std::exception& damage) { // the JSON parser's own
-        error = damage.what();
+        return GltfReader(file).read();
+    } catch (const json::parse_error& damage) {
+        file.fail("is no sound glTF file: its JSON is damaged at byte " + std::to_string(damage.byte));
     }
-    if (!loaded) {
-        while (!error.empty() && (error.back() == '\n' || error.back() == ' ')) error.pop_back();
-        file.fail("is no sound glTF file: " + (error.empty() ? "it is damaged" : printable(error)));
-    }
-    return GltfReader(file, model).read();
 }
 
 } // namespace raycontact

@@ -3,6 +3,7 @@
 // tests compare with it on sound files.
 #include "mesh/text_scanner.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>
@@ -11,18 +12,11 @@ namespace raycontact {
 namespace {
 
 // What the format knows besides `v` and `f`. A word outside it is damage: a lost `v` would shift every index after it.
-constexpr std::array other_statements{
-    "vt",   "vn",    "vp",       "cstype",   "deg",  "bmat",       "step",      "p",      "l",      "curv", "curv2",
-    "surf", "parm",  "trim",     "hole",     "scrv", "sp",         "end",       "con",    "g",      "s",    "mg",
-    "o",    "bevel", "c_interp", "d_interp", "lod",  "usemtl",     "mtllib",    "usemap", "maplib", "call", "csh",
-    "res",  "bsp",   "bzp",      "cdc",      "cdp",  "shadow_obj", "trace_obj", "ctech",  "stech"};
-
-bool is_other(std::string_view word) {
-    for (const std::string_view known : other_statements) {
-        if (word == known) return true;
-    }
-    return false;
-}
+constexpr auto other_statements = std::to_array<std::string_view>(
+    {"vt",   "vn",    "vp",       "cstype",   "deg",  "bmat",       "step",      "p",      "l",      "curv", "curv2",
+     "surf", "parm",  "trim",     "hole",     "scrv", "sp",         "end",       "con",    "g",      "s",    "mg",
+     "o",    "bevel", "c_interp", "d_interp", "lod",  "usemtl",     "mtllib",    "usemap", "maplib", "call", "csh",
+     "res",  "bsp",   "bzp",      "cdc",      "cdp",  "shadow_obj", "trace_obj", "ctech",  "stech"});
 
 /// A face that named a vertex not yet seen; legal when the vertex comes later in the file.
 struct Forward {
@@ -32,9 +26,9 @@ struct Forward {
 
 class ObjReader {
 public:
-    explicit ObjReader(const InputFile& file) : file_(file), scanner_(file, 0, 1) {
+    explicit ObjReader(const InputFile& file) : file_(file), scanner_(file) {
         scanner_.comment = '#';
-        scanner_.joiner = '\\';
+        scanner_.joins_lines = true;
     }
 
     Mesh read() {
@@ -44,7 +38,7 @@ public:
                 read_vertex();
             } else if (statement == "f" || statement == "fo") {
                 read_face();
-            } else if (!statement.empty() && !is_other(statement)) {
+            } else if (!statement.empty() && std::ranges::find(other_statements, statement) == other_statements.end()) {
                 scanner_.fail(in_quotes(statement) + " is no OBJ statement; the file is damaged or of another format");
             }
         } while (scanner_.next_line());
@@ -61,12 +55,8 @@ public:
 private:
     // x y z, then perhaps w, or a colour, or both.
     void read_vertex() {
-        mesh_.vertices.push_back(scanner_.point_on_line("coordinate"));
-        std::size_t more = 0;
-        for (std::string_view word = scanner_.word_on_line(); !word.empty(); word = scanner_.word_on_line()) {
-            scanner_.number(word, "vertex weight or colour");
-            if (++more > 5) scanner_.fail("too many numbers for a vertex");
-        }
+        mesh_.vertices.push_back(scanner_.point_on_line());
+        if (scanner_.numbers_on_line("vertex weight or colour") > 5) scanner_.fail("too many numbers for a vertex");
     }
 
     void read_face() {

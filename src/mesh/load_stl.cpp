@@ -3,8 +3,8 @@
 // truncated files in silence.
 #include "mesh/byte_reader.h"
 #include "mesh/text_scanner.h"
+#include "mesh/vector.h"
 
-#include <cmath>
 #include <string_view>
 
 namespace raycontact {
@@ -22,9 +22,7 @@ Mesh read_binary(const InputFile& file, std::size_t facets) {
         for (std::size_t k = 0; k < 3; ++k) {
             const char* const at = corners + 12 * k;
             const Vec3 point{read_bytes<float>(at), read_bytes<float>(at + 4), read_bytes<float>(at + 8)};
-            if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
-                file.fail("facet " + std::to_string(i) + ": a coordinate is not finite");
-            }
+            if (!is_finite(point)) file.fail("facet " + std::to_string(i) + ": a coordinate is not finite");
             mesh.vertices.push_back(point);
         }
         mesh.triangles.push_back({first, first + 1, first + 2});
@@ -34,7 +32,7 @@ Mesh read_binary(const InputFile& file, std::size_t facets) {
 
 class AsciiStl {
 public:
-    explicit AsciiStl(const InputFile& file) : scanner_(file, 0, 1) {}
+    explicit AsciiStl(const InputFile& file) : scanner_(file) {}
 
     Mesh read() {
         while (!scanner_.at_end()) {
@@ -63,7 +61,7 @@ private:
         const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
         for (int i = 0; i < 3; ++i) {
             expect("vertex");
-            mesh_.vertices.push_back(scanner_.point_on_line("coordinate"));
+            mesh_.vertices.push_back(scanner_.point_on_line());
         }
         expect("endloop");
         expect("endfacet");

@@ -14,7 +14,7 @@ void LongSum::add(double x) {
 
 Box box_of(std::span<const Vec3> points) {
     Box box{points.front(), points.front()};
-    for (const Vec3& p : points) box = {least(box.low, p), most(box.high, p)};
+    for (const Vec3& p : points) box.add({p, p});
     return box;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <map>
 
 namespace raycontact {
 namespace {
@@ -16,93 +16,80 @@ struct Crossing {
     int sign; ///< 1: from behind the triangle to its front, out of a body that winds outward
 };
 
-/// Rays from the middle of a triangle into the space in front of it.
-class FrontRays {
-public:
-    FrontRays(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const TriangleBvh& bvh)
-        : vertices_(vertices), triangles_(triangles), bvh_(bvh) {}
+double random(std::uint32_t& state) { // -1 to 1, the same on every machine
+    state = state * 1664525u + 1013904223u;
+    return static_cast<double>(state >> 8) / 8388608.0 - 1;
+}
 
-    /// All other triangles that one ray crosses. Directions are tried until one keeps clear, by more than rounding, of
-    /// every edge and of surface at its origin; false when none does.
-    bool cast(std::uint32_t from, std::vector<Crossing>& crossings) const {
-        for (std::uint32_t attempt = 0; attempt < 32; ++attempt) {
-            if (cast_along(from, attempt, crossings)) return true;
-        }
-        return false;
+/// How a ray crosses a triangle whose corners are given from its origin: the sign of the crossing, or 0. Where rounding
+/// could decide otherwise, `clear` becomes false.
+int cross_triangle(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c, bool& clear) {
+    const double reach_a = length(a), reach_b = length(b), reach_c = length(c);
+    const double speed = 1e-14 * length(direction);
+    // Sides of the line at each edge, against a generous bound of their rounding.
+    const std::array sides{dot(direction, cross(a, b)), dot(direction, cross(b, c)), dot(direction, cross(c, a))};
+    const std::array bounds{speed * reach_a * reach_b, speed * reach_b * reach_c, speed * reach_c * reach_a};
+    bool positive = false, negative = false, unsure = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        positive = positive || sides[i] > bounds[i];
+        negative = negative || sides[i] < -bounds[i];
+        unsure = unsure || std::fabs(sides[i]) <= bounds[i];
     }
-
-private:
-    static double random(std::uint32_t& state) { // -1 to 1, the same on every machine
-        state = state * 1664525u + 1013904223u;
-        return static_cast<double>(state >> 8) / 8388608.0 - 1;
+    if (positive && negative) return 0;
+    const Vec3 normal = cross(b - a, c - a);
+    const double ahead = dot(a, normal), along = dot(direction, normal);
+    if (unsure || std::fabs(ahead) <= 1e-14 * (reach_a + reach_b + reach_c) * length(normal)) {
+        clear = false;
+        return 0;
     }
+    if ((ahead > 0) != (along > 0)) return 0; // behind the origin
+    return along > 0 ? 1 : -1;
+}
 
-    bool cast_along(std::uint32_t from, std::uint32_t attempt, std::vector<Crossing>& crossings) const {
-        const Vec3 &a = vertices_[triangles_[from][0]], &b = vertices_[triangles_[from][1]],
-                   &c = vertices_[triangles_[from][2]];
-        const Vec3 origin = (1.0 / 3) * (a + b + c);
-        const Vec3 scaled = cross(b - a, c - a);
-        const double size = length(scaled);
-        if (!(size > 0)) return false;
+/// All other triangles that one ray from the middle of a triangle into the space in front of it crosses. Directions are
+/// tried until one keeps clear, by more than rounding, of every edge and of surface at its origin; false when none
+/// does.
+bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& bvh, std::vector<Crossing>& crossings) {
+    const auto corners = [&](std::uint32_t t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        return std::array{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+    };
+    const auto [a, b, c] = corners(from);
+    const Vec3 origin = (1.0 / 3) * (a + b + c);
+    const Vec3 scaled = cross(b - a, c - a);
+    const double size = length(scaled);
+    if (!(size > 0)) return false;
+    for (std::uint32_t attempt = 0; attempt < 32; ++attempt) {
         std::uint32_t state = attempt * 2654435761u + 1;
-        Vec3 direction = (1 / size) * scaled;
         // At most 0.52 aside, so the ray stays in front.
-        direction = direction + Vec3{0.3 * random(state), 0.3 * random(state), 0.3 * random(state)};
-        if (direction.x == 0 || direction.y == 0 || direction.z == 0) return false;
-
+        const Vec3 direction =
+            (1 / size) * scaled + Vec3{0.3 * random(state), 0.3 * random(state), 0.3 * random(state)};
+        if (direction.x == 0 || direction.y == 0 || direction.z == 0) continue;
         crossings.clear();
         bool clear = true;
-        bvh_.along_ray(origin, direction, [&](std::uint32_t t) {
+        bvh.along_ray(origin, direction, [&](std::uint32_t t) {
             if (t == from || !clear) return;
-            const int sign = cross_triangle(origin, direction, triangles_[t], clear);
+            const auto [p, q, r] = corners(t);
+            const int sign = cross_triangle(direction, p - origin, q - origin, r - origin, clear);
             if (sign != 0) crossings.push_back({t, sign});
         });
-        return clear;
+        if (clear) return true;
     }
-
-    int cross_triangle(const Vec3& origin, const Vec3& direction, const Triangle& t, bool& clear) const {
-        const Vec3 a = vertices_[t[0]] - origin, b = vertices_[t[1]] - origin, c = vertices_[t[2]] - origin;
-        const double reach_a = length(a), reach_b = length(b), reach_c = length(c);
-        const double speed = 1e-14 * length(direction);
-        // Sides of the line at each edge, against a generous bound of their rounding.
-        const std::array sides{dot(direction, cross(a, b)), dot(direction, cross(b, c)), dot(direction, cross(c, a))};
-        const std::array bounds{speed * reach_a * reach_b, speed * reach_b * reach_c, speed * reach_c * reach_a};
-        bool positive = false, negative = false, unsure = false;
-        for (std::size_t i = 0; i < 3; ++i) {
-            positive = positive || sides[i] > bounds[i];
-            negative = negative || sides[i] < -bounds[i];
-            unsure = unsure || std::fabs(sides[i]) <= bounds[i];
-        }
-        if (positive && negative) return 0;
-        const Vec3 normal = cross(b - a, c - a);
-        const double ahead = dot(a, normal), along = dot(direction, normal);
-        const double ahead_bound = 1e-14 * (reach_a + reach_b + reach_c) * length(normal);
-        if (!unsure && std::fabs(ahead) > ahead_bound && (ahead > 0) != (along > 0)) return 0; // behind the origin
-        if (unsure || std::fabs(ahead) <= ahead_bound) {
-            clear = false;
-            return 0;
-        }
-        return along > 0 ? 1 : -1;
-    }
-
-    std::span<const Vec3> vertices_;
-    std::span<const Triangle> triangles_;
-    const TriangleBvh& bvh_;
-};
+    return false;
+}
 
 /// The triangles of each patch that reach furthest along each axis, either way: where a patch that pokes out of another
 /// is not inside it, one of them usually shows it. By place, not by index, so the order of a file does not matter.
-std::vector<std::array<std::uint32_t, 6>>
-extreme_triangles(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Patches& patches) {
+std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& mesh, const Patches& patches) {
     std::vector<std::array<std::uint32_t, 6>> extremes(patches.list.size());
     for (std::size_t p = 0; p < extremes.size(); ++p) extremes[p].fill(patches.list[p].first);
     const auto reach = [&](std::uint32_t t, std::size_t way) {
         double most = -1e300;
-        for (const std::uint32_t v : triangles[t])
-            most = std::max(most, (way % 2 == 0 ? 1 : -1) * axis(vertices[v], way / 2));
+        for (const std::uint32_t v : mesh.triangles[t])
+            most = std::max(most, (way % 2 == 0 ? 1 : -1) * axis(mesh.vertices[v], way / 2));
         return most;
     };
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         std::array<std::uint32_t, 6>& best = extremes[patches.of[t]];
         for (std::size_t way = 0; way < 6; ++way) {
             if (reach(t, way) > reach(best[way], way)) best[way] = t;
@@ -111,52 +98,46 @@ extreme_triangles(std::span<const Vec3> vertices, std::span<const Triangle> tria
     return extremes;
 }
 
-/// The closed patches around every given triangle of a patch: those that rays from there cross an odd number of times.
-std::vector<std::uint32_t> patches_around(std::uint32_t own, std::span<const std::uint32_t> from,
-                                          const Patches& patches, const FrontRays& rays) {
-    std::vector<std::uint32_t> around, met, odd, both;
+/// Whether an odd number of closed patches is around every given triangle of a patch: those that rays from there cross
+/// an odd number of times.
+bool is_cavity(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh, const Patches& patches,
+               const TriangleBvh& bvh) {
+    std::vector<std::uint32_t> around;
     std::vector<Crossing> crossings;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        odd.clear();
-        met.clear();
-        if (!rays.cast(from[k], crossings)) return {}; // not known: not nested
-        for (const Crossing& crossing : crossings) met.push_back(patches.of[crossing.triangle]);
-        std::sort(met.begin(), met.end());
-        for (std::size_t first = 0, last = 0; first < met.size(); first = last) {
-            while (last < met.size() && met[last] == met[first]) ++last;
-            if ((last - first) % 2 == 1 && met[first] != own && patches.list[met[first]].closed)
-                odd.push_back(met[first]);
+        if (!cast_from(from[k], mesh, bvh, crossings)) return false; // not known: not nested
+        std::map<std::uint32_t, std::size_t> times;
+        for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
+        if (k == 0) {
+            for (const auto& [patch, count] : times) {
+                if (patch != own && patches.list[patch].closed) around.push_back(patch);
+            }
         }
-        both.clear();
-        std::set_intersection(around.begin(), around.end(), odd.begin(), odd.end(), std::back_inserter(both));
-        around = k == 0 ? odd : both;
+        std::erase_if(around, [&](std::uint32_t patch) { return times[patch] % 2 == 0; });
         if (around.empty()) break;
     }
-    return around;
+    return around.size() % 2 == 1;
 }
 
 } // namespace
 
-std::vector<char> patches_to_turn(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                  const Patches& patches, const TriangleBvh& bvh) {
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
     const std::size_t count = patches.list.size();
-    const Vec3 near = box_of(vertices).middle();
+    const Vec3 near = box_of(mesh.vertices).middle();
     std::vector<LongSum> volumes(count), sizes(count);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const auto [a, b, c] = triangles[i];
-        const double volume = dot(vertices[a] - near, cross(vertices[b] - near, vertices[c] - near)) / 6;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto [a, b, c] = mesh.triangles[i];
+        const double volume = dot(mesh.vertices[a] - near, cross(mesh.vertices[b] - near, mesh.vertices[c] - near)) / 6;
         volumes[patches.of[i]].add(volume);
         sizes[patches.of[i]].add(std::fabs(volume));
     }
-
-    const FrontRays rays(vertices, triangles, bvh);
     std::vector<std::array<std::uint32_t, 6>> extremes;
-    if (count > 1) extremes = extreme_triangles(vertices, triangles, patches);
+    if (count > 1) extremes = extreme_triangles(mesh, patches);
     std::vector<char> turn(count, 0);
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
         if (!patches.list[p].closed || !(std::fabs(volume) > 1e-12 * sizes[p].value())) continue;
-        const bool cavity = count > 1 && patches_around(p, extremes[p], patches, rays).size() % 2 == 1;
+        const bool cavity = count > 1 && is_cavity(p, extremes[p], mesh, patches, bvh);
         turn[p] = (volume < 0) != cavity ? 1 : 0;
     }
     return turn;
@@ -166,14 +147,12 @@ std::vector<char> patches_to_turn(std::span<const Vec3> vertices, std::span<cons
 // in front of a patch is connected and crosses no triangle (a patch goes on only over edges that have no third
 // triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, speaks for all space
 // next to the surface; and every region of space is next to some.
-bool winds_outward(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Patches& patches,
-                   const TriangleBvh& bvh) {
-    const FrontRays rays(vertices, triangles, bvh);
+bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
     std::vector<std::uint32_t> largest(patches.list.size());
     std::vector<double> area(patches.list.size(), 0);
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        const auto [a, b, c] = triangles[t];
-        const double twice = length(cross(vertices[b] - vertices[a], vertices[c] - vertices[a]));
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        const double twice = length(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
         if (twice > area[patches.of[t]]) {
             area[patches.of[t]] = twice;
             largest[patches.of[t]] = t;
@@ -182,7 +161,7 @@ bool winds_outward(std::span<const Vec3> vertices, std::span<const Triangle> tri
     std::vector<Crossing> crossings;
     for (std::size_t p = 0; p < patches.list.size(); ++p) {
         if (area[p] == 0) continue; // degenerate triangles bound nothing
-        if (!rays.cast(largest[p], crossings)) return false;
+        if (!cast_from(largest[p], mesh, bvh, crossings)) return false;
         int winding = 0;
         for (const Crossing& crossing : crossings) winding += crossing.sign;
         if (winding != 0) return false;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/mesh.h>
+
 #include "mesh/patches.h"
 #include "mesh/triangle_bvh.h"
 
-#include <span>
 #include <vector>
 
 namespace raycontact {
@@ -12,12 +13,10 @@ namespace raycontact {
 /// For each patch whether it must be turned, its windings having been made to agree: a closed patch inside an even
 /// number of others should enclose a positive volume (an outer surface), inside an odd number a negative one (a
 /// cavity). Patches that are open, not orientable or without volume are left alone.
-std::vector<char> patches_to_turn(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                  const Patches& patches, const TriangleBvh& bvh);
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh);
 
 /// Of a closed, oriented mesh without self-intersections: whether its winding number is 0 outside and 1 inside
 /// everywhere.
-bool winds_outward(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Patches& patches,
-                   const TriangleBvh& bvh);
+bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh);
 
 } // namespace raycontact

@@ -26,13 +26,4 @@ struct Patches {
 
 Patches find_patches(std::span<const Triangle> triangles, std::span<const HalfEdge> edges);
 
-/// Calls visit(sides of one edge) for every edge.
-template <class Visit>
-void for_each_edge(std::span<const HalfEdge> edges, Visit&& visit) {
-    for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
-        while (last < edges.size() && edges[last].lo == edges[first].lo && edges[last].hi == edges[first].hi) ++last;
-        visit(edges.subspan(first, last - first));
-    }
-}
-
 } // namespace raycontact

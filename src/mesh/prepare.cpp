@@ -1,67 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/error.h>
-#include <raycontact/mass.h>
 #include <raycontact/mesh.h>
 
 #include "executor/float_environment.h"
-#include "mesh/adjacency.h"
 #include "mesh/check.h"
 #include "mesh/input_file.h"
-#include "mesh/measure.h"
 #include "mesh/nesting.h"
-#include "mesh/patches.h"
 #include "mesh/predicates.h"
-#include "mesh/repair.h"
-#include "mesh/self_intersection.h"
-#include "mesh/weld.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numeric>
+#include <string>
 #include <utility>
+#include <xxhash.h>
 
 namespace raycontact {
 namespace {
 
-[[noreturn]] void fail(const Mesh& mesh, const std::string& what) {
-    throw InputError((mesh.name.empty() ? "mesh" : printable(mesh.name)) + ": " + what);
-}
-
-void check_input(const Mesh& mesh) {
-    // Products of four coordinates must fit float32, with which rays are cast.
-    constexpr double furthest = 1e9;
-    if (mesh.triangles.empty()) fail(mesh, "has no triangles");
-    if (mesh.triangles.size() >= 0xffffffffu / 3 || mesh.vertices.size() >= 0xffffffffu) {
-        fail(mesh, "has more triangles than 32-bit indices can name; split or reduce it");
+/// For each item the lowest index of an equal one, linear: -0 and 0 are made one beforehand. Open addressing; items are
+/// met in order, so the first of its kind is the lowest. No result depends on the hash.
+template <class Item>
+std::vector<std::uint32_t> lowest_equal(const std::vector<Item>& items) {
+    constexpr std::uint32_t empty = 0xffffffffu;
+    const std::size_t slots = std::bit_ceil(2 * items.size() + 1);
+    std::vector<std::uint32_t> table(slots, empty), lowest;
+    lowest.reserve(items.size());
+    for (std::uint32_t i = 0; i < items.size(); ++i) {
+        std::size_t slot = XXH3_64bits(&items[i], sizeof(Item)) & (slots - 1);
+        while (table[slot] != empty && items[table[slot]] != items[i]) slot = (slot + 1) & (slots - 1);
+        if (table[slot] == empty) table[slot] = i;
+        lowest.push_back(table[slot]);
     }
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const Vec3& v = mesh.vertices[i];
-        const double reach = std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
-        if (!std::isfinite(v.x + v.y + v.z)) fail(mesh, "vertex " + std::to_string(i) + " is not finite");
-        if (reach > furthest)
-            fail(mesh, "vertex " + std::to_string(i) + " is further than 1e9 m from the origin; scale the mesh");
-    }
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        for (const std::uint32_t v : mesh.triangles[i]) {
-            if (v >= mesh.vertices.size()) {
-                fail(mesh, "triangle " + std::to_string(i) + ": vertex index " + std::to_string(v) + " is not in 0 to "
-                               + std::to_string(mesh.vertices.size()) + " - 1");
-            }
-        }
-    }
+    return lowest;
 }
 
 /// The triangles of the file over file vertices, the lowest of each place.
 PreparedMesh weld(const Mesh& mesh) {
+    std::vector<Vec3> places(mesh.vertices);
+    for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
+    const std::vector<std::uint32_t> lowest = lowest_equal(places);
     PreparedMesh prepared;
     prepared.name = mesh.name;
-    const std::vector<std::uint32_t> lowest = lowest_at_same_place(mesh.vertices);
-    prepared.triangles.reserve(mesh.triangles.size());
-    prepared.triangle_index.reserve(mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto [a, b, c] = mesh.triangles[i];
-        prepared.triangles.push_back({lowest[a], lowest[b], lowest[c]});
-        prepared.triangle_index.push_back(static_cast<std::uint32_t>(i));
-    }
+    for (const auto& [a, b, c] : mesh.triangles) prepared.triangles.push_back({lowest[a], lowest[b], lowest[c]});
+    prepared.triangle_index.resize(mesh.triangles.size());
+    std::iota(prepared.triangle_index.begin(), prepared.triangle_index.end(), 0u);
     return prepared;
+}
+
+/// A vertex named twice, or all three on one line, exactly.
+bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
+    const auto [a, b, c] = triangle;
+    return a == b || b == c || c == a || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+/// Drops the triangles for which drop(i) holds, and says how many.
+template <class Drop>
+void drop_triangles(PreparedMesh& prepared, const char* kind, Drop&& drop) {
+    std::size_t kept = 0;
+    const std::size_t before = prepared.triangles.size();
+    for (std::size_t i = 0; i < before; ++i) {
+        if (drop(i)) continue;
+        prepared.triangles[kept] = prepared.triangles[i];
+        prepared.triangle_index[kept++] = prepared.triangle_index[i];
+    }
+    prepared.triangles.resize(kept);
+    prepared.triangle_index.resize(kept);
+    if (kept < before) prepared.report.repairs.push_back("dropped " + counted(before - kept, kind));
+}
+
+/// Degenerate triangles, and those with the vertices and the winding of an earlier one.
+void drop_useless(PreparedMesh& prepared, std::span<const Vec3> vertices) {
+    std::vector<Triangle>& triangles = prepared.triangles;
+    drop_triangles(prepared, "degenerate triangle",
+                   [&](std::size_t i) { return is_degenerate(triangles[i], vertices); });
+    std::vector<Triangle> turned(triangles); // so that the lowest vertex comes first
+    for (Triangle& t : turned) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    const std::vector<std::uint32_t> lowest = lowest_equal(turned);
+    drop_triangles(prepared, "duplicate triangle", [&](std::size_t i) { return lowest[i] != i; });
 }
 
 /// From file vertices to the distinct ones in use.
@@ -81,56 +102,69 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
-void fill_report(const Mesh& mesh, PreparedMesh& prepared, const std::vector<Vec3>& snapped_vertices,
-                 const TriangleBvh& bvh) {
-    MeshReport& report = prepared.report;
-    report.vertices = prepared.vertices.size();
-    report.triangles = prepared.triangles.size();
-    report.file_vertices = mesh.vertices.size();
-    report.file_triangles = mesh.triangles.size();
-    const std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
-    const Topology topology =
-        check_topology(prepared.triangles, edges, static_cast<std::uint32_t>(prepared.vertices.size()));
-    report.closed = topology.closed;
-    report.manifold = topology.manifold;
-    report.oriented = topology.oriented;
-    report.components = topology.components;
-    report.self_intersecting = self_intersects(snapped_vertices, prepared.triangles, bvh);
-    if (report.closed && report.oriented && !report.self_intersecting) {
-        report.outward =
-            winds_outward(prepared.vertices, prepared.triangles, find_patches(prepared.triangles, edges), bvh);
+/// Makes the windings of each orientable patch agree, the fewer following the more, then turns closed patches whose
+/// winding contradicts their nesting.
+void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh) {
+    std::vector<Triangle>& triangles = prepared.triangles;
+    const std::vector<Triangle> before(triangles);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Patch& patch = patches.list[patches.of[i]];
+        const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
+        if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
     }
-    report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
-    report.area = area_of(prepared.vertices, prepared.triangles);
-    const Box box = box_of(prepared.vertices);
-    report.box_min = box.low;
-    report.box_max = box.high;
+    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh);
+    std::size_t mended = 0, turned_whole = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const std::uint32_t p = patches.of[i];
+        if (contradicts[p]) std::swap(triangles[i][1], triangles[i][2]);
+        if (patches.list[p].turned > 0 && triangles[i] != before[i]) ++mended;
+    }
+    for (std::size_t p = 0; p < patches.list.size(); ++p) {
+        if (contradicts[p] && patches.list[p].turned == 0) ++turned_whole;
+    }
+    if (mended > 0)
+        prepared.report.repairs.push_back("turned " + counted(mended, "triangle") + " to make windings agree");
+    if (turned_whole > 0) {
+        prepared.report.repairs.push_back("turned " + counted(turned_whole, "component") + " of "
+                                          + std::to_string(patches.list.size())
+                                          + " whose winding contradicts its nesting");
+    }
 }
 
 } // namespace
 
 PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
-    check_input(mesh);
-    PreparedMesh prepared = weld(mesh);
-    std::vector<Vec3> exact(mesh.vertices.size());
-    for (std::size_t i = 0; i < exact.size(); ++i) exact[i] = snapped(mesh.vertices[i]);
-    if (repair == Repair::allowed) {
-        drop_degenerate(prepared, exact);
-        drop_duplicates(prepared);
+    const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
+    check_mesh(mesh, name);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        // Products of four coordinates must fit float32, with which rays are cast.
+        const auto& [x, y, z] = mesh.vertices[i];
+        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > 1e9)
+            throw InputError(name + ": vertex " + std::to_string(i)
+                             + " is further than 1e9 m from the origin; scale the mesh");
     }
+    PreparedMesh prepared = weld(mesh);
+    if (repair == Repair::allowed) drop_useless(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
-    exact.clear();
-    for (const Vec3& v : prepared.vertices) exact.push_back(snapped(v));
 
+    std::vector<Vec3> exact;
+    for (const Vec3& v : prepared.vertices) exact.push_back(snapped(v));
     std::vector<std::uint32_t> with_area;
     for (std::uint32_t i = 0; i < prepared.triangles.size(); ++i) {
         if (!is_degenerate(prepared.triangles[i], exact)) with_area.push_back(i);
     }
-    if (with_area.empty()) fail(mesh, "no triangle has an area");
+    if (with_area.empty()) throw InputError(name + ": no triangle has an area");
     const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area));
-    if (repair == Repair::allowed) mend_windings(prepared, bvh);
-    fill_report(mesh, prepared, exact, bvh);
+    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
+    const Patches patches = find_patches(prepared.triangles, edges);
+    if (repair == Repair::allowed) {
+        mend_windings(prepared, patches, bvh);
+        edges = sorted_half_edges(prepared.triangles);
+    }
+    prepared.report.file_vertices = mesh.vertices.size();
+    prepared.report.file_triangles = mesh.triangles.size();
+    fill_report(prepared, patches, edges, exact, bvh);
     return prepared;
 }
 

@@ -4,37 +4,28 @@
 #include "mesh/triangle_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace raycontact {
-namespace {
-
-constexpr std::uint32_t leaf_size = 4;
-
-} // namespace
 
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
                          std::vector<std::uint32_t> chosen)
     : vertices_(vertices), triangles_(triangles), order_(std::move(chosen)) {
-    if (order_.empty()) return;
     nodes_.reserve(order_.size());
     build(0, static_cast<std::uint32_t>(order_.size()));
     boxes_.reserve(order_.size());
-    for (const std::uint32_t triangle : order_) boxes_.push_back(box_of(triangle));
+    for (const std::uint32_t triangle : order_) boxes_.push_back(triangle_box(triangle));
 }
 
-TriangleBvh::Box TriangleBvh::box_of(std::uint32_t triangle) const {
-    const Triangle& t = triangles_[triangle];
-    const Vec3 &a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
-    return {least(least(a, b), c), most(most(a, b), c)};
+Box TriangleBvh::triangle_box(std::uint32_t triangle) const {
+    const auto [a, b, c] = triangles_[triangle];
+    return box_of(std::array{vertices_[a], vertices_[b], vertices_[c]});
 }
 
 std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t last) {
-    Box box = box_of(order_[first]);
-    for (std::uint32_t i = first + 1; i < last; ++i) {
-        const Box more = box_of(order_[i]);
-        box = {least(box.low, more.low), most(box.high, more.high)};
-    }
+    Box box = triangle_box(order_[first]);
+    for (std::uint32_t i = first + 1; i < last; ++i) box.add(triangle_box(order_[i]));
     const auto node = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back({box, first, last, 0});
     if (last - first <= leaf_size) return node;
@@ -67,8 +58,8 @@ double TriangleBvh::nearest(const Vec3& point, double bound) const {
         double distance;
     };
     Visit open[64];
-    std::size_t count = 0;
-    if (!nodes_.empty()) open[count++] = {0, squared_distance_of(nodes_[0].box, point)};
+    std::size_t count = 1;
+    open[0] = {0, squared_distance_of(nodes_[0].box, point)};
     while (count > 0) {
         const Visit visit = open[--count];
         if (visit.distance >= bound) continue;

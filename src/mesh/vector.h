@@ -33,6 +33,9 @@ inline Vec3 least(const Vec3& a, const Vec3& b) {
 inline Vec3 most(const Vec3& a, const Vec3& b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
+inline bool is_finite(const Vec3& a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 inline double axis(const Vec3& a, std::size_t k) {
     return k == 0 ? a.x : k == 1 ? a.y : a.z;
 }

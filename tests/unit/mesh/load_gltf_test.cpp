@@ -31,10 +31,29 @@ TEST(LoadGltf, BufferInsideAndBeside) {
     const Mesh inside = load_mesh(folder.write("m.glb", as_glb(made)));
     folder.write("m.bin", gltf_buffer(made));
     const Mesh beside = load_mesh(folder.write("m.gltf", gltf_json(made, one, "m.bin")));
-    for (const Mesh& mesh : {inside, beside}) {
+    folder.write("a name.bin", gltf_buffer(made));
+    const Mesh spaced = load_mesh(folder.write("m.gltf", gltf_json(made, one, "a%20name.bin")));
+    for (const Mesh& mesh : {inside, beside, spaced}) {
         EXPECT_EQ(mesh.vertices, made.vertices);
         EXPECT_EQ(mesh.triangles, made.triangles);
     }
+}
+
+TEST(LoadGltf, BufferInBase64) {
+    const TempFolder folder;
+    // (0 0 0), (1 0 0), (0 1 0); then 0 1 2 in 16 bits: 42 bytes.
+    const std::string uri =
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA";
+    const std::string json =
+        R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+        R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+        R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],)"
+        R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],)"
+        R"("buffers":[{"byteLength":42,"uri":")"
+        + uri + R"("}]})";
+    const Mesh mesh = load_mesh(folder.write("m.gltf", json));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
 }
 
 TEST(LoadGltf, NodesInTheirOrderWithTransformsOfAllAncestors) {
