@@ -44,7 +44,7 @@ WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, cons
     return {body, c - e, c + e};
 }
 
-void SweepAndPrune::find_pairs(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) const {
+void sweep_and_prune(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) {
     pairs.clear();
     if (boxes.size() < 2) return;
     const std::size_t first = widest_axis(boxes), second = (first + 1) % 3, third = (first + 2) % 3;

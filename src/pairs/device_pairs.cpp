@@ -30,13 +30,6 @@ kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
 
 } // namespace
 
-void DevicePairs::clear() {
-    slots_.clear();
-    directed_.clear();
-    pairs_.clear();
-    sent_.clear();
-}
-
 void DevicePairs::list_changes(const Update& update) {
     moved_.clear();
     changed_.clear();
@@ -47,23 +40,24 @@ void DevicePairs::list_changes(const Update& update) {
         if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(sent_[i])) continue;
         moved_.push_back(sent_[i] = now);
     }
-    touched_.clear();
-    const bool changed = slots_.match(
-        update.pairs, [](std::size_t, std::size_t, std::size_t) {},
-        [&](std::size_t i, kernels::uint slot) {
-            if (slot == pairs_.size()) pairs_.emplace_back();
-            pairs_[slot] = {update.pairs[i].first, update.pairs[i].second};
-            touched_.push_back(slot);
-        },
-        [&](kernels::uint slot) {
-            pairs_[slot] = {NONE, NONE};
-            touched_.push_back(slot);
-        });
+    const auto keep = [](std::size_t, std::size_t, std::size_t) {};
+    const auto change = [&](kernels::uint slot, const kernels::PairBodies& bodies) {
+        if (slot == pairs_.size()) pairs_.emplace_back();
+        pairs_[slot] = bodies;
+        changed_.push_back({slot, bodies});
+    };
+    const auto open = [&](std::size_t i, kernels::uint slot) {
+        change(slot, {update.pairs[i].first, update.pairs[i].second});
+    };
+    const bool changed = slots_.match(update.pairs, keep, open, [&](kernels::uint slot) {
+        change(slot, {NONE, NONE});
+    });
     if (!changed) return;
     // A slot may be given again in the step in which it becomes free: it is sent once, as it is now.
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    for (const kernels::uint slot : touched_) changed_.push_back({slot, pairs_[slot]});
+    std::ranges::sort(changed_, {}, &kernels::PairChange::slot);
+    const auto again = std::ranges::unique(changed_, {}, &kernels::PairChange::slot);
+    changed_.erase(again.begin(), again.end());
+    for (auto& [slot, bodies] : changed_) bodies = pairs_[slot];
     directed_.resize(2 * pairs_.size());
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const std::size_t slot = slots_.slot(i);
