@@ -34,24 +34,18 @@ void count_smaller(std::span<std::uint64_t> keys, std::uint32_t least) {
 
 // What all contacts of one direction of a pair have in common.
 struct Side {
-    Side(const DirectedPair& bodies, const SlotPair& of, bool first, Direction asked)
-        : pair(of), from_a(first), direction(asked), source(bodies.source.shape->data()),
-          source_pose(bodies.source.pose), target_pose(bodies.target.pose),
-          triangle_index(bodies.target.shape->triangle_index().data()) {}
+    SlotPair pair;
+    bool from_a;
+    Direction direction;
+    const ShapeData &source, &target;
+    const Pose &source_pose, &target_pose;
 
     // Prefetches most of what place() will read: the data of a fine mesh does not fit the caches.
     void send_for(const kernels::LocalContact& local) const {
         __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
         __builtin_prefetch(&source.mesh.vertices[local.vertex]);
-        __builtin_prefetch(&triangle_index[local.triangle]);
+        __builtin_prefetch(&target.mesh.triangle_index[local.triangle]);
     }
-
-    SlotPair pair;
-    bool from_a;
-    Direction direction;
-    const ShapeData& source;
-    const Pose &source_pose, &target_pose;
-    const std::uint32_t* triangle_index;
 };
 
 Vec3 rotate(const Pose& pose, const Vec3& v) {
@@ -68,7 +62,7 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.body_b = side.pair.second;
     contact.vertex_body = side.from_a ? VertexBody::a : VertexBody::b;
     contact.vertex = shape.mesh.vertex_index[local.vertex];
-    contact.triangle = side.triangle_index[local.triangle];
+    contact.triangle = side.target.mesh.triangle_index[local.triangle];
     const Vec3 turned = rotate(side.source_pose, shape.mesh.vertices[local.vertex]);
     const Vec3& origin = side.source_pose.translation;
     contact.point.x = turned.x + origin.x;
@@ -120,7 +114,9 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
         while (!begins_pair(begin)) ++begin;
         for (std::uint32_t next = begin; begin < end; begin = next) {
             const std::uint32_t directed = local[begin].pair;
-            const Side side(directed_pair(bodies, pairs, directed), pairs[directed / 2], directed % 2 == 0, direction);
+            const auto [source, target] = directed_pair(bodies, pairs, directed);
+            const Side side{pairs[directed / 2],  directed % 2 == 0, direction,  source.shape->data(),
+                            target.shape->data(), source.pose,       target.pose};
             do {
                 order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
                 side.send_for(local[next]);

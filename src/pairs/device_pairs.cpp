@@ -15,16 +15,10 @@ namespace {
 // Bits, not values: 0 and -0 are one place, but not one contact.
 using PlaceBits = std::array<std::uint64_t, 13>;
 
-constexpr kernels::uint nowhere = NONE; // no shape: this body was never sent
-
 kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
-    kernels::BodyPlace place;
-    std::copy(body.centred.rotation.begin(), body.centred.rotation.end(), place.rotation);
-    place.translation[0] = body.centred.translation.x;
-    place.translation[1] = body.centred.translation.y;
-    place.translation[2] = body.centred.translation.z;
-    place.shape = body.shape_index;
-    place.slot = slot;
+    const Vec3& t = body.centred.translation;
+    kernels::BodyPlace place{{}, {t.x, t.y, t.z}, body.shape_index, slot};
+    std::ranges::copy(body.centred.rotation, place.rotation);
     return place;
 }
 
@@ -33,7 +27,7 @@ kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
 void DevicePairs::list_changes(const Update& update) {
     moved_.clear();
     changed_.clear();
-    sent_.resize(update.bodies.size(), {{}, {}, nowhere, 0});
+    sent_.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
     for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
         if (update.bodies[i].shape == nullptr) continue;
         const kernels::BodyPlace now = place_of(update.bodies[i], i);
