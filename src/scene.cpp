@@ -31,26 +31,13 @@ bool by_slots(const Pair& p, const Pair& q) {
     return SlotPair(slot_of(p.first), slot_of(p.second)) < SlotPair(slot_of(q.first), slot_of(q.second));
 }
 
-// Shortens the list; frees its memory once less than a quarter of it is in use.
-template <class Element>
-void cut_to(std::vector<Element>& list, std::size_t size) {
-    if (size >= list.size()) return;
-    list.resize(size);
-    if (list.capacity() > 4 * size + 1024) list.shrink_to_fit();
-}
-
 } // namespace
 
 struct Scene::State {
-    struct Body {
-        std::shared_ptr<const Shape> shape; ///< empty once removed
-        Pose pose;
-    };
-
     explicit State(const Settings& settings) : narrow(settings) {}
 
     /// where: the function that was called, for the message.
-    Body& existing(BodyId body, const char* where) {
+    PlacedBody& existing(BodyId body, const char* where) {
         if (!slots.is_there(body)) refuse_missing(body, where);
         return bodies[slot_of(body)];
     }
@@ -71,39 +58,28 @@ struct Scene::State {
     }
 
     void place_bodies() {
-        if (narrow.shapes().pack()) {
-            for (BodySlot i = 0; i < bodies.size(); ++i)
-                if (bodies[i].shape) placed[i].shape_index = narrow.shapes().index_of(bodies[i].shape.get());
+        const bool packed = narrow.shapes().pack();
+        for (PlacedBody& body : bodies) {
+            if (body.shape == nullptr) continue;
+            if (packed) body.shape_index = narrow.shapes().index_of(body.shape);
+            body.centred = centred_pose(*body.shape, body.pose);
         }
-        for (BodySlot i = 0; i < bodies.size(); ++i) {
-            if (!bodies[i].shape) continue;
-            placed[i].pose = bodies[i].pose;
-            placed[i].centred = centred_pose(*bodies[i].shape, bodies[i].pose);
-        }
-    }
-
-    // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
-    double reach_into_open() const {
-        double reach = 0;
-        for (const Body& body : bodies) {
-            if (!body.shape) continue;
-            reach = std::max(reach, double(body.shape->data().header.ray_reach));
-        }
-        return reach;
     }
 
     void find_pairs() {
-        double reach = -1;
+        // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
+        float reach = 0;
+        for (const PlacedBody& body : bodies)
+            if (body.shape != nullptr) reach = std::max(reach, body.shape->data().header.ray_reach);
         boxes.clear();
         for (BodySlot i = 0; i < bodies.size(); ++i) {
-            if (!bodies[i].shape) continue;
+            if (bodies[i].shape == nullptr) continue;
             const Shape& shape = *bodies[i].shape;
             const bool open = shape.data().header.closed == 0;
-            if (open && reach < 0) reach = reach_into_open();
-            boxes.push_back(world_box(i, shape.box_min(), shape.box_max(), bodies[i].pose, open ? reach : 0));
+            boxes.push_back(world_box(i, shape.box_min(), shape.box_max(), bodies[i].pose, open ? double(reach) : 0));
         }
         pairs_stand = false;
-        broad.find_pairs(boxes, slot_pairs);
+        sweep_and_prune(boxes, slot_pairs);
         pairs.clear();
         for (const auto& [a, b] : slot_pairs) pairs.emplace_back(slots.id_in(a), slots.id_in(b));
         pairs_stand = true;
@@ -135,22 +111,22 @@ struct Scene::State {
 
     void find_contacts(double broad_ms) {
         place_bodies();
-        narrow.step(placed, slot_pairs, contacts, stats);
+        narrow.step(bodies, slot_pairs, contacts, stats);
         stats.broad_ms = broad_ms;
         slots.step_done();
         cut_to_slots();
     }
 
+    // Frees memory once less than a quarter of it is in use.
     void cut_to_slots() {
-        cut_to(bodies, slots.end());
-        cut_to(placed, slots.end());
+        if (slots.end() >= bodies.size()) return;
+        bodies.resize(slots.end());
+        if (bodies.capacity() > 4 * bodies.size() + 1024) bodies.shrink_to_fit();
     }
 
     NarrowPhase narrow;
-    SweepAndPrune broad;
     BodySlots slots;
-    std::vector<Body> bodies;       ///< by slot
-    std::vector<PlacedBody> placed; ///< likewise
+    std::vector<PlacedBody> bodies; ///< by slot; without a shape once removed
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
@@ -173,26 +149,23 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
-    if (slot >= s.placed.size()) s.placed.resize(slot + std::size_t{1});
     s.narrow.shapes().add(shape);
-    s.placed[slot] = {shape.get(), s.narrow.shapes().index_of(shape.get()), generation_of(id), pose, pose};
-    s.bodies[slot] = {std::move(shape), pose};
+    s.bodies[slot] = {shape.get(), s.narrow.shapes().index_of(shape.get()), generation_of(id), pose, pose};
     return s.slots.give();
 }
 
 void Scene::remove(BodyId body) {
     State& s = *state_;
-    State::Body& gone = s.existing(body, "Scene::remove");
-    s.narrow.shapes().remove(gone.shape.get());
-    gone.shape.reset();
-    s.placed[slot_of(body)].shape = nullptr;
+    PlacedBody& gone = s.existing(body, "Scene::remove");
+    s.narrow.shapes().remove(gone.shape);
+    gone.shape = nullptr;
     s.pairs_stand = false;
     s.slots.take_back(slot_of(body));
     s.cut_to_slots();
 }
 
 void Scene::set_pose(BodyId body, const Pose& pose) {
-    State::Body& moved = state_->existing(body, "Scene::set_pose");
+    PlacedBody& moved = state_->existing(body, "Scene::set_pose");
     refuse_faulty(pose, body);
     moved.pose = pose;
 }

@@ -103,12 +103,11 @@ void count_all() {
                [&] { placer.run(executor, rc::Direction::reprojected, small.steps[0], small.pairs, local, placed); });
 
     const std::vector<rc::WorldBox> boxes = rb::make_boxes(4096);
-    rc::SweepAndPrune sweep;
     std::vector<rc::WorldBox> sorted;
     std::vector<rc::SlotPair> pairs;
     count_host("sweep,boxes", boxes.size(), [&] {
         sorted = boxes;
-        sweep.find_pairs(sorted, pairs);
+        rc::sweep_and_prune(sorted, pairs);
     });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { rc::Shape::make(small.mesh); });
 }

@@ -12,22 +12,14 @@ namespace {
 
 // The axis of largest variance of the boxes' middles: fewest overlaps per box.
 std::size_t widest_axis(const std::vector<WorldBox>& boxes) {
-    std::size_t widest = 0;
-    double largest = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-        double mean = 0, spread = 0;
-        for (const WorldBox& box : boxes) mean += 0.5 * (axis(box.low, k) + axis(box.high, k));
-        mean /= static_cast<double>(boxes.size());
-        for (const WorldBox& box : boxes) {
-            const double d = 0.5 * (axis(box.low, k) + axis(box.high, k)) - mean;
-            spread += d * d;
-        }
-        if (spread > largest) {
-            largest = spread;
-            widest = k;
-        }
+    Vec3 mean, spread;
+    for (const WorldBox& box : boxes) mean = mean + 0.5 * (box.low + box.high);
+    mean = (1 / static_cast<double>(boxes.size())) * mean;
+    for (const WorldBox& box : boxes) {
+        const Vec3 d = 0.5 * (box.low + box.high) - mean;
+        spread = spread + Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
     }
-    return widest;
+    return spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
 }
 
 } // namespace
@@ -44,7 +36,7 @@ WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, cons
     return {body, c - e, c + e};
 }
 
-void SweepAndPrune::find_pairs(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) const {
+void sweep_and_prune(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) {
     pairs.clear();
     if (boxes.size() < 2) return;
     const std::size_t first = widest_axis(boxes), second = (first + 1) % 3, third = (first + 2) % 3;

@@ -21,9 +21,6 @@ WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, cons
 
 /// Sweep and prune along the axis on which the boxes lie farthest apart: O(n log n) plus the overlaps on that axis.
 /// Touching boxes count. The result is sorted and does not depend on the order of the input.
-class SweepAndPrune {
-public:
-    void find_pairs(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) const;
-};
+void sweep_and_prune(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs);
 
 } // namespace raycontact

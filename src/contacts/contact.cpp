@@ -9,21 +9,14 @@
 
 namespace raycontact {
 
-namespace {
-
-std::string key_of(VertexBody body, std::uint32_t vertex) {
-    char text[11];
-    std::snprintf(text, sizeof text, "%c0%08x", body == VertexBody::a ? 'a' : 'b', vertex);
-    return text;
-}
-
-} // namespace
-
 std::string contact_key(const Contact& contact) {
-    return key_of(contact.vertex_body, contact.vertex);
+    return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.vertex});
 }
+
 std::string contact_key(const LostContact& contact) {
-    return key_of(contact.vertex_body, contact.vertex);
+    char text[11];
+    std::snprintf(text, sizeof text, "%c0%08x", contact.vertex_body == VertexBody::a ? 'a' : 'b', contact.vertex);
+    return text;
 }
 
 ContactHash::ContactHash() : state_(XXH64_createState()) {
@@ -36,26 +29,17 @@ ContactHash::~ContactHash() {
 }
 
 void ContactHash::add(std::uint32_t step, std::span<const Contact> contacts) {
-    unsigned char bytes[6 * 4 + 5 * 4 + 3 * 8];
-    const auto put = [](unsigned char* to, auto bits) { // little-endian on every machine
-        for (std::size_t i = 0; i < sizeof bits; ++i) to[i] = static_cast<unsigned char>(bits >> (8 * i));
-    };
     for (const Contact& c : contacts) {
-        const std::uint32_t words[] = {step,
-                                       c.body_a,
-                                       c.body_b,
-                                       static_cast<std::uint32_t>(c.vertex_body),
-                                       c.vertex,
-                                       c.triangle,
-                                       std::bit_cast<std::uint32_t>(c.normal[0]),
-                                       std::bit_cast<std::uint32_t>(c.normal[1]),
-                                       std::bit_cast<std::uint32_t>(c.normal[2]),
-                                       std::bit_cast<std::uint32_t>(c.depth),
-                                       std::bit_cast<std::uint32_t>(c.ray_length)};
-        const std::uint64_t point[] = {std::bit_cast<std::uint64_t>(c.point.x), std::bit_cast<std::uint64_t>(c.point.y),
-                                       std::bit_cast<std::uint64_t>(c.point.z)};
-        for (std::size_t i = 0; i < 11; ++i) put(bytes + 4 * i, words[i]);
-        for (std::size_t i = 0; i < 3; ++i) put(bytes + 44 + 8 * i, point[i]);
+        unsigned char bytes[6 * 4 + 5 * 4 + 3 * 8];
+        unsigned char* to = bytes;
+        const auto put = [&to](auto bits) { // little-endian on every machine
+            for (std::size_t i = 0; i < sizeof bits; ++i) *to++ = static_cast<unsigned char>(bits >> (8 * i));
+        };
+        for (const auto word : {step, c.body_a, c.body_b, std::uint32_t(c.vertex_body), c.vertex, c.triangle})
+            put(word);
+        for (const float x : {c.normal[0], c.normal[1], c.normal[2], c.depth, c.ray_length})
+            put(std::bit_cast<std::uint32_t>(x));
+        for (const double x : {c.point.x, c.point.y, c.point.z}) put(std::bit_cast<std::uint64_t>(x));
         XXH64_update(static_cast<XXH64_state_t*>(state_), bytes, sizeof bytes);
     }
 }

@@ -10,6 +10,10 @@
 
 namespace raycontact {
 
+/// Sorts the contacts of one direction of a pair by vertex. keys: the vertex in the upper word, no two alike; the lower
+/// word moves along and does not affect the order.
+void sort_by_vertex(std::span<std::uint64_t> keys);
+
 /// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points
 /// are in double.
 class Placer {

@@ -7,20 +7,35 @@
 
 namespace raycontact {
 
+/// Refers to a caller's lambda over [begin, end); std::function would allocate one every step.
+struct SliceReference {
+    const void* function;
+    void (*call)(const void*, std::uint32_t, std::uint32_t);
+    /// Under FloatEnvironment.
+    void operator()(std::uint32_t begin, std::uint32_t end) const;
+};
+
+/// Two threads or more: oneTBB, or plain std::thread where a sanitizer must see every lock (RAYCONTACT_EXECUTOR=std).
+class ThreadPool {
+public:
+    virtual ~ThreadPool() = default;
+    virtual void wake() = 0;
+    virtual void run(std::uint32_t count, std::uint32_t grain, SliceReference slice) = 0;
+};
+std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads);
+
 /// Runs slices of an index range on a fixed number of threads. Which thread takes a slice never decides a result.
-/// Built on oneTBB, or on plain std::thread where a sanitizer must see every lock (RAYCONTACT_EXECUTOR=std).
 class Executor {
 public:
     /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core (the
     /// system's number, see usable_core).
     explicit Executor(std::uint32_t threads, int core = -1);
-    ~Executor();
-    Executor(const Executor&) = delete;
-    Executor& operator=(const Executor&) = delete;
 
-    std::uint32_t threads() const;
+    std::uint32_t threads() const { return threads_; }
     /// Calls for the threads, which take a while to wake up, without waiting for them: work is about to come.
-    void wake();
+    void wake() {
+        if (pool_) pool_->wake();
+    }
     /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, under FloatEnvironment, and returns when
     /// all are done. The first exception of a slice is thrown here.
     template <typename Slice>
@@ -32,16 +47,11 @@ public:
     }
 
 private:
-    // Refers to a caller's lambda; std::function would allocate one every step.
-    struct SliceReference {
-        const void* function;
-        void (*call)(const void*, std::uint32_t, std::uint32_t);
-        void operator()(std::uint32_t begin, std::uint32_t end) const { call(function, begin, end); }
-    };
     void run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice);
 
-    struct State;
-    std::unique_ptr<State> state_;
+    std::uint32_t threads_;
+    int core_;
+    std::unique_ptr<ThreadPool> pool_; ///< null for one thread
 };
 
 /// How many cores this process may use, and the system's number of the k-th of them (-1: there are not so many).

@@ -15,55 +15,43 @@ namespace {
 // Bits, not values: 0 and -0 are one place, but not one contact.
 using PlaceBits = std::array<std::uint64_t, 13>;
 
-constexpr kernels::uint nowhere = NONE; // no shape: this body was never sent
-
 kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
-    kernels::BodyPlace place;
-    std::copy(body.centred.rotation.begin(), body.centred.rotation.end(), place.rotation);
-    place.translation[0] = body.centred.translation.x;
-    place.translation[1] = body.centred.translation.y;
-    place.translation[2] = body.centred.translation.z;
-    place.shape = body.shape_index;
-    place.slot = slot;
+    const Vec3& t = body.centred.translation;
+    kernels::BodyPlace place{{}, {t.x, t.y, t.z}, body.shape_index, slot};
+    std::ranges::copy(body.centred.rotation, place.rotation);
     return place;
 }
 
 } // namespace
 
-void DevicePairs::clear() {
-    slots_.clear();
-    directed_.clear();
-    pairs_.clear();
-    sent_.clear();
-}
-
 void DevicePairs::list_changes(const Update& update) {
     moved_.clear();
     changed_.clear();
-    sent_.resize(update.bodies.size(), {{}, {}, nowhere, 0});
+    sent_.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
     for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
         if (update.bodies[i].shape == nullptr) continue;
         const kernels::BodyPlace now = place_of(update.bodies[i], i);
         if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(sent_[i])) continue;
         moved_.push_back(sent_[i] = now);
     }
-    touched_.clear();
-    const bool changed = slots_.match(
-        update.pairs, [](std::size_t, std::size_t, std::size_t) {},
-        [&](std::size_t i, kernels::uint slot) {
-            if (slot == pairs_.size()) pairs_.emplace_back();
-            pairs_[slot] = {update.pairs[i].first, update.pairs[i].second};
-            touched_.push_back(slot);
-        },
-        [&](kernels::uint slot) {
-            pairs_[slot] = {NONE, NONE};
-            touched_.push_back(slot);
-        });
+    const auto keep = [](std::size_t, std::size_t, std::size_t) {};
+    const auto change = [&](kernels::uint slot, const kernels::PairBodies& bodies) {
+        if (slot == pairs_.size()) pairs_.emplace_back();
+        pairs_[slot] = bodies;
+        changed_.push_back({slot, bodies});
+    };
+    const auto open = [&](std::size_t i, kernels::uint slot) {
+        change(slot, {update.pairs[i].first, update.pairs[i].second});
+    };
+    const bool changed = slots_.match(update.pairs, keep, open, [&](kernels::uint slot) {
+        change(slot, {NONE, NONE});
+    });
     if (!changed) return;
     // A slot may be given again in the step in which it becomes free: it is sent once, as it is now.
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    for (const kernels::uint slot : touched_) changed_.push_back({slot, pairs_[slot]});
+    std::ranges::sort(changed_, {}, &kernels::PairChange::slot);
+    const auto again = std::ranges::unique(changed_, {}, &kernels::PairChange::slot);
+    changed_.erase(again.begin(), again.end());
+    for (auto& [slot, bodies] : changed_) bodies = pairs_[slot];
     directed_.resize(2 * pairs_.size());
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const std::size_t slot = slots_.slot(i);

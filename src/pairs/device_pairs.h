@@ -11,7 +11,7 @@ namespace raycontact {
 class DevicePairs {
 public:
     void place(const Update& update);
-    void clear();
+    void clear() { *this = {}; }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
     const Array<kernels::OrderedPair>& ordered() const { return ordered_; }
@@ -26,7 +26,6 @@ private:
     std::vector<std::uint32_t> directed_;
     std::vector<kernels::BodyPlace> sent_, moved_; ///< by body; of those that moved
     std::vector<kernels::PairBodies> pairs_;       ///< by slot
-    std::vector<kernels::uint> touched_;           ///< slots
     std::vector<kernels::PairChange> changed_;
     std::vector<kernels::OrderedPair> host_ordered_; ///< of a device without double
 

@@ -3,7 +3,6 @@
 
 #include "shape/shape_data.h"
 
-
 namespace raycontact {
 
 void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::OrderedPair& ordered) {

@@ -56,12 +56,7 @@ public:
     /// All slots are below this.
     std::uint32_t end() const { return end_; }
 
-    void clear() {
-        open_.clear();
-        slots_.clear();
-        free_.clear();
-        end_ = 0;
-    }
+    void clear() { *this = {}; }
 
 private:
     std::uint32_t new_slot() {

@@ -74,12 +74,7 @@ public:
     }
 
     /// Forgets every pair.
-    void clear() {
-        slots_.clear();
-        states_.clear();
-        hot_.clear();
-        incoming_.clear();
-    }
+    void clear() { *this = {}; }
 
     std::uint64_t bytes() const {
         return slots_.pairs().size() * (sizeof(SlotPair) + sizeof(std::uint32_t) + sizeof(Hot) + sizeof(State));

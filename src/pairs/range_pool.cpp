@@ -31,10 +31,4 @@ void RangePool::release(Range range) {
     in_use_ -= range.capacity;
 }
 
-void RangePool::clear() {
-    for (auto& list : free_) list.clear();
-    end_ = 0;
-    in_use_ = 0;
-}
-
 } // namespace raycontact

@@ -17,7 +17,7 @@ public:
     /// Throws std::length_error beyond 2^31 elements.
     Range allocate(std::uint32_t count);
     void release(Range range);
-    void clear();
+    void clear() { *this = {}; }
 
     std::uint32_t end() const { return end_; }       ///< the array must be this long
     std::uint64_t in_use() const { return in_use_; } ///< elements of the allocated ranges

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shape/bvh.h"
-
-#include "mesh/vector.h"
+#include "shape/build.h"
 
 #include <raycontact/error.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace raycontact {
 
@@ -16,12 +13,10 @@ namespace {
 
 using kernels::uint;
 constexpr std::size_t block_size = TRIANGLE_LANES;
+constexpr float infinite = std::numeric_limits<float>::infinity();
 
 struct Box {
-    std::array<float, 3> low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
-                             std::numeric_limits<float>::max()};
-    std::array<float, 3> high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
-                              std::numeric_limits<float>::lowest()};
+    std::array<float, 3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
 
     void add(const Box& other) {
         for (int i = 0; i < 3; ++i) {
@@ -32,7 +27,7 @@ struct Box {
     double area() const {
         const double x = double(high[0]) - double(low[0]), y = double(high[1]) - double(low[1]),
                      z = double(high[2]) - double(low[2]);
-        return x < 0 ? 0 : x * y + y * z + z * x;
+        return x * y + y * z + z * x;
     }
 };
 
@@ -42,188 +37,162 @@ struct Item {
     uint triangle;
 };
 
+// Where to part items that are sorted along an axis.
+struct Cut {
+    double cost = std::numeric_limits<double>::infinity();
+    int axis = 0;
+    std::size_t left = 0; // so many on one side
+
+    void improve(const Cut& other) {
+        if (other.cost < cost) *this = other;
+    }
+};
+
 // How a branch is covered at the least cost: by itself, or so many for its left part and the rest for its right.
 struct Way {
     float cost = 0;
-    int of_left = 0;
+    std::size_t of_left = 0;
 };
 
 struct Branch {
     Box box;
-    int left = -1, right = -1;
-    uint block = 0; // of a leaf
+    std::size_t left = 0, right = 0;    // 0: a leaf
+    uint block = 0;                     // of a leaf
+    std::array<Way, NODE_LANES> ways{}; // with up to 1, 2, ... of them
+};
+
+// Both keep a tree within the depth of the traversal's trail. They cost rays time and are seldom needed.
+struct Limits {
+    bool balanced;    // the binary tree
+    bool four_levels; // of the binary tree make a wide node
 };
 
 class Builder {
 public:
-    Builder(ShapeData& shape, double grow, bool balanced) : shape_(shape), grow_(grow), balanced_(balanced) {}
+    Builder(ShapeData& shape, double grow, const Limits& limits) : shape_(shape), grow_(grow), limits_(limits) {}
 
-    // False when the tree came out too deep for the traversal's trail.
-    bool build(std::vector<Item> items) {
-        items_ = std::move(items);
-        const int root = split(0, items_.size());
-        if (!balanced_) {
-            weigh();
-            if (collapse(root, 0, 1)) return true;
-            ways_ = {};
-            shape_.nodes.clear();
-        }
-        return collapse(root, 0, 1);
+    // False when the tree came out too deep.
+    bool build(std::vector<Item>& items) {
+        split(items);
+        weigh();
+        return collapse(0, 0, 1);
     }
 
 private:
-    int split(std::size_t begin, std::size_t end) {
-        const int id = static_cast<int>(branches_.size());
+    std::size_t split(std::span<Item> items) {
+        const std::size_t id = branches_.size();
         branches_.emplace_back();
-        Box box;
-        for (std::size_t i = begin; i < end; ++i) box.add(items_[i].box);
-        branches_[id].box = box;
-        if (end - begin <= block_size) {
-            branches_[id].block = write_block(begin, end);
+        for (const Item& item : items) branches_[id].box.add(item.box);
+        if (items.size() <= block_size) {
+            branches_[id].block = write_block(items);
             return id;
         }
-        const std::size_t middle = begin + partition(std::span(items_).subspan(begin, end - begin));
-        const int left = split(begin, middle);
-        const int right = split(middle, end);
+        const std::size_t middle = partition(items);
+        const std::size_t left = split(items.first(middle)), right = split(items.subspan(middle));
         branches_[id].left = left;
         branches_[id].right = right;
         return id;
     }
 
-    static auto order(int axis) {
-        return [axis](const Item& a, const Item& b) {
-            return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.triangle < b.triangle;
-        };
-    }
-
     // Sorts the items so that the first n, a multiple of a block, make the left child; returns n.
     std::size_t partition(std::span<Item> items) {
         constexpr std::size_t sweep_at_most = 1 << 14;
-        const std::size_t blocks = (items.size() + block_size - 1) / block_size;
-        int best_axis = 0;
-        std::size_t best_left = block_size * (blocks / 2);
-        if (balanced_ || items.size() > sweep_at_most) {
-            // The longest axis in the middle: good enough where a sweep would cost too much.
-            Box centres;
-            for (const Item& item : items) centres.add({item.centre, item.centre});
-            for (int axis = 1; axis < 3; ++axis)
-                if (centres.high[axis] - centres.low[axis] > centres.high[best_axis] - centres.low[best_axis])
-                    best_axis = axis;
-        } else {
-            double best_cost = std::numeric_limits<double>::infinity();
-            for (int axis = 0; axis < 3; ++axis) {
-                std::sort(items.begin(), items.end(), order(axis));
-                sweep(items, axis, best_cost, best_axis, best_left);
+        const auto before = [](int axis) {
+            return [axis](const Item& a, const Item& b) {
+                return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.triangle < b.triangle;
+            };
+        };
+        Cut best;
+        for (int axis = 0; axis < 3; ++axis)
+            if (limits_.balanced || items.size() > sweep_at_most) {
+                // The longest axis in the middle: good enough where a sweep would cost too much.
+                const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
+                best.improve({low->centre[axis] - high->centre[axis], axis, block_size * (blocks_of(items) / 2)});
+            } else {
+                std::sort(items.begin(), items.end(), before(axis));
+                sweep(items, axis, best);
             }
-        }
-        std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(best_left), items.end(),
-                         order(best_axis));
-        return best_left;
+        std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(best.left), items.end(),
+                         before(best.axis));
+        return best.left;
     }
 
-    void sweep(std::span<const Item> items, int axis, double& best_cost, int& best_axis, std::size_t& best_left) {
-        const std::size_t blocks = (items.size() + block_size - 1) / block_size;
-        right_area_.assign(blocks + 1, 0);
+    static std::size_t blocks_of(std::span<const Item> items) { return (items.size() + block_size - 1) / block_size; }
+
+    void sweep(std::span<const Item> items, int axis, Cut& best) {
+        const std::size_t blocks = blocks_of(items);
+        right_area_.resize(blocks);
         Box box;
         for (std::size_t i = items.size(); i-- > block_size;) {
             box.add(items[i].box);
             if (i % block_size == 0) right_area_[i / block_size] = box.area();
         }
         box = {};
-        for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+        for (std::size_t i = 0; i < block_size * (blocks - 1); ++i) {
             box.add(items[i].box);
-            if ((i + 1) % block_size != 0) continue;
             const std::size_t left = (i + 1) / block_size;
-            const double cost = box.area() * double(left) + right_area_[left] * double(blocks - left);
-            if (cost < best_cost) {
-                best_cost = cost;
-                best_axis = axis;
-                best_left = i + 1;
-            }
+            if ((i + 1) % block_size == 0)
+                best.improve({box.area() * double(left) + right_area_[left] * double(blocks - left), axis, i + 1});
         }
     }
 
-    uint write_block(std::size_t begin, std::size_t end) {
-        std::sort(items_.begin() + static_cast<std::ptrdiff_t>(begin),
-                  items_.begin() + static_cast<std::ptrdiff_t>(end),
-                  [](const Item& a, const Item& b) { return a.triangle < b.triangle; });
-        kernels::TriangleBlock block;
+    uint write_block(std::span<Item> items) {
+        std::ranges::sort(items, {}, &Item::triangle);
+        const auto id = static_cast<uint>(shape_.triangle_blocks.size());
+        kernels::TriangleBlock& block = shape_.triangle_blocks.emplace_back();
         for (std::size_t lane = 0; lane < block_size; ++lane) {
-            const bool empty = begin + lane >= end;
-            block.triangle[lane] = empty ? NONE : items_[begin + lane].triangle;
+            const bool empty = lane >= items.size();
+            block.triangle[lane] = empty ? NONE : items[lane].triangle;
             block.cap[lane] = 0;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-                Point3f p{nan, nan, nan};
-                if (!empty) p = shape_.points[shape_.mesh.triangles[items_[begin + lane].triangle][corner]];
+                const Point3f p =
+                    empty ? Point3f{nan, nan, nan} : shape_.points[shape_.mesh.triangles[items[lane].triangle][corner]];
                 block.corner[3 * corner + 0][lane] = p.x;
                 block.corner[3 * corner + 1][lane] = p.y;
                 block.corner[3 * corner + 2][lane] = p.z;
             }
+            if (!empty) shape_.faces[items[lane].triangle].slot = static_cast<uint>(block_size * id + lane);
         }
-        shape_.triangle_blocks.push_back(block);
-        return static_cast<uint>(shape_.triangle_blocks.size() - 1);
+        return id;
     }
 
     // Which binary branches become wide nodes, so that the sum of their areas, the nodes that a ray is expected to
     // visit, is least: of each branch, the cheapest way to cover it with up to so many leaves and nodes, from below
     // (after Pinter 2010). The largest branches opened first would leave most nodes above the leaves nearly empty.
     void weigh() {
-        ways_.resize(branches_.size());
         for (std::size_t id = branches_.size(); id-- > 0;) { // children come after their parents
-            const Branch& b = branches_[id];
-            std::array<Way, NODE_LANES>& ways = ways_[id];
-            if (b.left < 0) continue; // a leaf is tested however it is reached
-            const auto &left = ways_[b.left], &right = ways_[b.right];
+            Branch& b = branches_[id];
+            if (b.left == 0) continue; // a leaf is tested however it is reached
+            const auto &left = branches_[b.left].ways, &right = branches_[b.right].ways;
             for (std::size_t most = 1; most < NODE_LANES; ++most) {
-                ways[most].cost = std::numeric_limits<float>::infinity();
-                for (std::size_t k = 0; k < most; ++k) {
+                b.ways[most] = {infinite, (most + 1) / 2};
+                for (std::size_t k = 0; k < most && !limits_.four_levels; ++k) {
                     const float cost = left[k].cost + right[most - 1 - k].cost;
-                    if (cost < ways[most].cost) ways[most] = {cost, static_cast<int>(k) + 1};
+                    if (cost < b.ways[most].cost) b.ways[most] = {cost, k + 1};
                 }
             }
-            ways[0] = {static_cast<float>(b.box.area()) + ways[NODE_LANES - 1].cost, 0};
-            for (std::size_t most = 1; most + 1 < NODE_LANES; ++most)
-                if (ways[0].cost <= ways[most].cost) ways[most] = ways[0];
+            b.ways[0] = {static_cast<float>(b.box.area()) + b.ways[NODE_LANES - 1].cost, 0};
+            for (std::size_t most = 1; most + 1 < NODE_LANES && !limits_.four_levels; ++most)
+                if (b.ways[0].cost <= b.ways[most].cost) b.ways[most] = b.ways[0];
         }
     }
 
     // What covers a branch with up to `most` children of a wide node.
-    void cover(int branch, std::size_t most, std::vector<int>& children) const {
-        const int of_left = ways_[branch][most - 1].of_left;
+    void cover(std::size_t branch, std::size_t most, std::vector<std::size_t>& children) const {
+        const Branch& b = branches_[branch];
+        const std::size_t of_left = b.ways[most - 1].of_left;
         if (of_left == 0) return children.push_back(branch);
-        cover(branches_[branch].left, static_cast<std::size_t>(of_left), children);
-        cover(branches_[branch].right, most - static_cast<std::size_t>(of_left), children);
+        cover(b.left, of_left, children);
+        cover(b.right, most - of_left, children);
     }
 
-    std::vector<int> children_of(int branch) const {
-        if (ways_.empty()) return four_levels(branch);
-        std::vector<int> children;
-        cover(branch, NODE_LANES, children);
-        return children;
-    }
-
-    // To bound the depth.
-    std::vector<int> four_levels(int branch) const {
-        std::vector<int> children{branch};
-        while (children.size() < NODE_LANES) {
-            // Breadth first: the children go to the end of the queue.
-            const auto next =
-                std::find_if(children.begin(), children.end(), [&](int child) { return branches_[child].left >= 0; });
-            if (next == children.end()) break;
-            const Branch& b = branches_[*next];
-            children.erase(next);
-            children.push_back(b.left);
-            children.push_back(b.right);
-        }
-        return children;
-    }
-
-    bool collapse(int branch, uint parent, int level) {
+    bool collapse(std::size_t branch, uint parent, int level) {
         if (level > NODE_LEVELS) return false;
         const uint id = static_cast<uint>(shape_.nodes.size());
         shape_.nodes.emplace_back();
-        const std::vector<int> children = children_of(branch);
+        std::vector<std::size_t> children;
+        cover(branch, NODE_LANES, children);
         kernels::Node node{};
         node.parent = parent;
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
@@ -237,7 +206,7 @@ private:
             node.child[lane] = NONE;
             if (empty) continue;
             const Branch& b = branches_[children[lane]];
-            if (b.left < 0) {
+            if (b.left == 0) {
                 node.child[lane] = LEAF | b.block;
             } else {
                 node.child[lane] = static_cast<uint>(shape_.nodes.size());
@@ -253,22 +222,18 @@ private:
 
     ShapeData& shape_;
     double grow_;
-    bool balanced_;
-    std::vector<Item> items_;
+    Limits limits_;
     std::vector<Branch> branches_;
-    std::vector<std::array<Way, NODE_LANES>> ways_; ///< by branch, with up to 1, 2, ... of them
     std::vector<double> right_area_;
 };
 
 } // namespace
 
-void build_bvh(ShapeData& shape, std::span<const Vec3> face_normals, double grow) {
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow) {
     std::vector<Item> items;
-    items.reserve(shape.mesh.triangles.size());
     for (uint i = 0; i < shape.mesh.triangles.size(); ++i) {
-        if (face_normals[i] == Vec3{}) continue;
-        Item item;
-        item.triangle = i;
+        if (normals[i] == Vec3{}) continue;
+        Item item{{}, {}, i};
         for (const std::uint32_t v : shape.mesh.triangles[i]) {
             const Point3f p = shape.points[v];
             item.box.add({{p.x, p.y, p.z}, {p.x, p.y, p.z}});
@@ -276,10 +241,10 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> face_normals, double grow
         for (int axis = 0; axis < 3; ++axis) item.centre[axis] = item.box.low[axis] + item.box.high[axis];
         items.push_back(item);
     }
-    for (const bool balanced : {false, true}) {
+    for (const Limits limits : {Limits{false, false}, Limits{false, true}, Limits{true, true}}) {
         shape.triangle_blocks.clear();
         shape.nodes.clear();
-        if (Builder(shape, grow, balanced).build(items)) return;
+        if (Builder(shape, grow, limits).build(items)) return;
     }
     throw InputError("mesh '" + shape.mesh.name + "': more than 16 million triangles; split it into several meshes");
 }

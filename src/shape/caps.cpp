@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shape/caps.h"
-
 #include "mesh/triangle_distance.h"
 #include "mesh/vector.h"
+#include "shape/build.h"
 
 #include <algorithm>
 #include <array>
@@ -32,8 +31,8 @@ struct Cone {
 
 class Caps {
 public:
-    Caps(const ShapeData& shape, std::span<const Vec3> face_normals)
-        : shape_(shape), normals_(face_normals), cones_(shape.nodes.size()) {
+    Caps(const ShapeData& shape, std::span<const Vec3> normals)
+        : shape_(shape), normals_(normals), cones_(shape.nodes.size()) {
         std::vector<uint> below;
         find_cones(0, below);
     }
@@ -43,11 +42,6 @@ public:
         double bound2 = bound * bound;
         search(0, from, normal, least_cosine, bound2);
         return std::sqrt(bound2);
-    }
-
-    Vec3 corner(uint triangle, int i) const {
-        const Point3f& p = shape_.points[shape_.mesh.triangles[triangle][i]];
-        return {p.x, p.y, p.z};
     }
 
 private:
@@ -80,10 +74,10 @@ private:
     }
 
     static double squared_distance_of(const kernels::Node& node, int lane, const Vec3& p) {
-        const double off[3] = {std::max({node.bounds[0][lane] - p.x, p.x - node.bounds[3][lane], 0.0}),
-                               std::max({node.bounds[1][lane] - p.y, p.y - node.bounds[4][lane], 0.0}),
-                               std::max({node.bounds[2][lane] - p.z, p.z - node.bounds[5][lane], 0.0})};
-        return off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+        const Vec3 off{std::max({node.bounds[0][lane] - p.x, p.x - node.bounds[3][lane], 0.0}),
+                       std::max({node.bounds[1][lane] - p.y, p.y - node.bounds[4][lane], 0.0}),
+                       std::max({node.bounds[2][lane] - p.z, p.z - node.bounds[5][lane], 0.0})};
+        return dot(off, off);
     }
 
     void search(uint n, const Vec3& from, const Vec3& normal, double least_cosine, double& bound2) const {
@@ -105,7 +99,8 @@ private:
             }
             for (const uint t : shape_.triangle_blocks[child & ~LEAF].triangle)
                 if (t != NONE && !(dot(normals_[t], normal) > least_cosine))
-                    bound2 = std::min(bound2, squared_distance(from, corner(t, 0), corner(t, 1), corner(t, 2)));
+                    bound2 = std::min(
+                        bound2, squared_distance(from, shape_.corner(t, 0), shape_.corner(t, 1), shape_.corner(t, 2)));
         }
     }
 
@@ -116,22 +111,22 @@ private:
 
 } // namespace
 
-void build_caps(ShapeData& shape, std::span<const Vec3> face_normals) {
+void build_caps(ShapeData& shape, std::span<const Vec3> normals) {
     if (shape.header.outward == 0) return;
-    const Caps caps(shape, face_normals);
+    const Caps caps(shape, normals);
     std::size_t with_cap = 0;
     const double tolerance = shape.header.tolerance, unit = double(CAP_UNIT_TOLERANCES) * tolerance;
     for (kernels::TriangleBlock& block : shape.triangle_blocks)
         for (int lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const uint t = block.triangle[lane];
             if (t == NONE) continue;
-            const Vec3 a = caps.corner(t, 0), b = caps.corner(t, 1), c = caps.corner(t, 2);
+            const Vec3 a = shape.corner(t, 0), b = shape.corner(t, 1), c = shape.corner(t, 2);
             const double longest = std::max({length(b - a), length(c - b), length(a - c)});
             if (length(cross(b - a, c - a)) < least_height * tolerance * longest) continue;
             const Vec3 centre = (1.0 / 3) * (a + b + c);
             const double own = std::max({length(a - centre), length(b - centre), length(c - centre)});
             const auto steps = [&](float cosine, double bound) {
-                const double radius = caps.nearest_unlike(centre, face_normals[t], double(cosine), bound);
+                const double radius = caps.nearest_unlike(centre, normals[t], double(cosine), bound);
                 // One step less: float32 finds the centre elsewhere.
                 return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
             };

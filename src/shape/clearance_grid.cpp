@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shape/clearance_grid.h"
-
 #include "mesh/triangle_bvh.h"
-#include "mesh/vector.h"
+#include "shape/build.h"
+#include "shape/cells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <numeric>
 
@@ -24,13 +21,13 @@ constexpr int farthest = CLEARANCE_OFFSET - 1; // cells from a cell to the middl
 
 // Without surface, around the middle of a cell; lengths in cells.
 struct Ball {
-    int x = 0, y = 0, z = 0;
+    Cell middle{};
     double radius = -1; // none
 
     // About how deep the points of a cell lie in it, on average. At the middle alone its own ball would always win, and
     // be small.
-    double depth_at(int at_x, int at_y, int at_z) const {
-        const int dx = x - at_x, dy = y - at_y, dz = z - at_z;
+    double depth_at(const Cell& cell) const {
+        const int dx = middle[0] - cell[0], dy = middle[1] - cell[1], dz = middle[2] - cell[2];
         if (radius < 0 || std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) > farthest) return -far;
         return radius - std::sqrt(double(dx * dx + dy * dy + dz * dz) + 0.6);
     }
@@ -54,100 +51,57 @@ public:
         const double longest_side = std::max({extent[0], extent[1], extent[2]});
         const double wanted = wanted_cells(double(shape.mesh.triangles.size()));
         double side = std::max(std::cbrt(extent[0] * extent[1] * extent[2] / wanted), longest_side / 200);
-        const auto cells = [&] {
+        const auto count = [&] {
             double product = 1;
             for (const double length : extent) product *= std::ceil(length / side) + 2 * pad;
             return product;
         };
-        while (cells() > 8 * wanted + 8000) side *= 1.1; // a flat mesh has hardly a volume to be divided
+        while (count() > 8 * wanted + 8000) side *= 1.1; // a flat mesh has hardly a volume to be divided
         scale_ = static_cast<float>(1 / side);
         for (int axis = 0; axis < 3; ++axis) {
             low_[axis] = static_cast<float>(double(low[axis]) - pad * side);
-            size_[axis] = static_cast<int>(std::ceil(extent[axis] * double(scale_))) + 2 * pad;
+            cells_.size[axis] = static_cast<int>(std::ceil(extent[axis] * double(scale_))) + 2 * pad;
         }
+        distance_.resize(static_cast<std::size_t>(cells_.count()));
+        outside_.resize(distance_.size());
     }
 
     // Of the middles, in cells: exactly near the surface, where there are few, and farther off for every second, then
-    // every fourth along each axis. The others keep what follows from the one before them, which is no more.
+    // every fourth along each axis. The others keep what follows from one that was measured before, which is no more.
     void measure(const ShapeData& shape) {
         std::vector<Vec3> points;
         points.reserve(shape.points.size());
-        for (const Point3f& p : shape.points) points.push_back(in_cells({p.x, p.y, p.z}));
+        for (const Point3f& p : shape.points)
+            points.push_back(double(scale_)
+                             * Vec3{double(p.x) - low_[0], double(p.y) - low_[1], double(p.z) - low_[2]});
         std::vector<std::uint32_t> every(shape.mesh.triangles.size());
         std::iota(every.begin(), every.end(), 0u);
         const TriangleBvh tree(points, shape.mesh.triangles, std::move(every));
-        distance_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
-        for (int z = 0; z < size_[2]; z += 4)
-            for (int y = 0; y < size_[1]; y += 4) {
-                double last = 1e6;
-                for (int x = 0; x < size_[0]; x += 4)
-                    distance_[index(x, y, z)] = last = nearest(tree, x, y, z, last + 4);
-            }
-        measure_between(tree, 2, 8);
-        measure_between(tree, 1, 4); // less than 8 by more than a diagonal: what bounds a search was measured itself
-    }
-
-    // Two neighbouring middles whose empty balls meet lie on the same side. From the box's faces inwards.
-    void find_outside() {
-        outside_.assign(distance_.size(), false);
-        std::vector<std::array<int, 3>> open;
-        const auto enter = [&](int x, int y, int z, double from) {
-            const std::size_t i = index(x, y, z);
-            if (outside_[i] || distance_[i] + from <= 1.001) return; // the two balls do not meet
-            outside_[i] = true;
-            open.push_back({x, y, z});
-        };
-        for (int z = 0; z < size_[2]; ++z)
-            for (int y = 0; y < size_[1]; ++y)
-                for (int x = 0; x < size_[0]; ++x)
-                    if (x == 0 || y == 0 || z == 0 || x == size_[0] - 1 || y == size_[1] - 1 || z == size_[2] - 1)
-                        enter(x, y, z, 2.0); // beyond the box
-        while (!open.empty()) {
-            const auto [x, y, z] = open.back();
-            open.pop_back();
-            const double own = distance_[index(x, y, z)];
-            if (x > 0) enter(x - 1, y, z, own);
-            if (y > 0) enter(x, y - 1, z, own);
-            if (z > 0) enter(x, y, z - 1, own);
-            if (x + 1 < size_[0]) enter(x + 1, y, z, own);
-            if (y + 1 < size_[1]) enter(x, y + 1, z, own);
-            if (z + 1 < size_[2]) enter(x, y, z + 1, own);
-        }
-    }
-
-    // For each cell, of the empty balls around middles near it the one that reaches farthest past its own middle. A
-    // large ball that touches the surface tells the distance of the points between almost exactly.
-    std::vector<Ball> choose_balls(bool outside) const {
-        std::vector<Ball> balls(distance_.size());
-        for (int z = 0; z < size_[2]; ++z)
-            for (int y = 0; y < size_[1]; ++y)
-                for (int x = 0; x < size_[0]; ++x) {
-                    const std::size_t i = index(x, y, z);
-                    if (outside_.empty() || outside_[i] == outside) balls[i] = {x, y, z, distance_[i]};
-                }
-        for (const int step : {1, -1}) {
-            const auto from = [&](int axis) { return step > 0 ? 0 : size_[axis] - 1; };
-            const auto within = [&](int at, int axis) { return at >= 0 && at < size_[axis]; };
-            for (int z = from(2); within(z, 2); z += step)
-                for (int y = from(1); within(y, 1); y += step)
-                    for (int x = from(0); within(x, 0); x += step) {
-                        Ball& own = balls[index(x, y, z)];
-                        double best = own.depth_at(x, y, z);
-                        const auto offer = [&](int nx, int ny, int nz) {
-                            if (!within(nx, 0) || !within(ny, 1) || !within(nz, 2)) return;
-                            const Ball& other = balls[index(nx, ny, nz)];
-                            const double depth = other.depth_at(x, y, z);
-                            if (depth <= best) return;
-                            best = depth;
-                            own = other;
-                        };
-                        for (int dx = -1; dx <= 1; ++dx)
-                            for (int dy = -1; dy <= 1; ++dy) offer(x + dx, y + dy, z - step);
-                        for (int dx = -1; dx <= 1; ++dx) offer(x + dx, y - step, z);
-                        offer(x - step, y, z);
+        distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
+        for (int stride = 256; stride >= 1; stride /= 2) {
+            // Less than that of the strides before by more than a diagonal: what bounds a search was measured itself.
+            const double near = stride < 4 ? 4 * stride : far;
+            for (int z = 0; z < cells_.size[2]; z += stride)
+                for (int y = 0; y < cells_.size[1]; y += stride)
+                    for (int x = 0; x < cells_.size[0]; x += stride) {
+                        const int dx = x % (2 * stride), dy = y % (2 * stride), dz = z % (2 * stride);
+                        const double off = length({double(dx), double(dy), double(dz)});
+                        if (off == 0) continue; // measured with a longer stride
+                        const double known = distance_[cells_.index({x - dx, y - dy, z - dz})];
+                        distance_[cells_.index({x, y, z})] =
+                            known - off > near ? known - off : nearest(tree, {x, y, z}, known + off);
                     }
         }
-        return balls;
+    }
+
+    // Two neighbouring middles whose empty balls meet lie on the same side.
+    void find_outside() {
+        cells_.flood([&](int i, int from) {
+            const double before = from < 0 ? 2.0 : distance_[from]; // beyond the box
+            const bool enters = !outside_[i] && distance_[i] + before > 1.001;
+            if (enters) outside_[i] = true;
+            return enters;
+        });
     }
 
     void write(ShapeData& shape) const {
@@ -155,62 +109,68 @@ public:
             shape.header.clearance_low[axis] = low_[axis];
             // A look-up at the upper end, however it is rounded, is in the last cell.
             shape.header.clearance_high[axis] =
-                static_cast<float>(double(low_[axis]) + (size_[axis] - 0.01) / double(scale_));
-            shape.header.clearance_size[axis] = static_cast<uint>(size_[axis]);
+                static_cast<float>(double(low_[axis]) + (cells_.size[axis] - 0.01) / double(scale_));
+            shape.header.clearance_size[axis] = static_cast<uint>(cells_.size[axis]);
         }
         shape.header.clearance_scale = scale_;
         shape.header.clearance_cell = static_cast<float>(1 / double(scale_));
         shape.header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
         shape.clearances.assign(distance_.size(), 0);
-        const std::vector<Ball> outer = choose_balls(true);
-        const std::vector<Ball> other = outside_.empty() ? outer : choose_balls(false);
-        for (int z = 0; z < size_[2]; ++z)
-            for (int y = 0; y < size_[1]; ++y)
-                for (int x = 0; x < size_[0]; ++x) {
-                    const std::size_t i = index(x, y, z);
-                    // A ball outside first, where it reaches into the cell at all: vertices there are the many.
-                    const Ball& ball = outer[i].depth_at(x, y, z) > -half_diagonal ? outer[i] : other[i];
-                    if (ball.radius >= 0) shape.clearances[i] = word(ball, x, y, z);
-                }
+        const std::vector<Ball> outer = choose_balls(true), other = choose_balls(false);
+        for (int i = 0; i < cells_.count(); ++i) {
+            const Cell cell = cells_.at(i);
+            // A ball outside first, where it reaches into the cell at all: vertices there are the many.
+            const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
+            if (ball.radius >= 0) shape.clearances[i] = word(ball, cell);
+        }
     }
 
 private:
     // Of a middle whose distance is known to be no more than `bound`.
-    static double nearest(const TriangleBvh& tree, int x, int y, int z, double bound) {
-        return std::sqrt(tree.nearest({x + 0.5, y + 0.5, z + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
+    static double nearest(const TriangleBvh& tree, const Cell& cell, double bound) {
+        return std::sqrt(tree.nearest({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
     }
 
-    // The middles that a stride twice as long has left out; those that may be nearer than `near` exactly.
-    void measure_between(const TriangleBvh& tree, int stride, double near) {
-        const auto before = [&](int at) { return at - at % (2 * stride); };
-        for (int z = 0; z < size_[2]; z += stride)
-            for (int y = 0; y < size_[1]; y += stride)
-                for (int x = 0; x < size_[0]; x += stride) {
-                    const int bx = before(x), by = before(y), bz = before(z);
-                    const double known = distance_[index(bx, by, bz)];
-                    const double off = length({double(x - bx), double(y - by), double(z - bz)});
-                    if (off == 0) continue;
-                    distance_[index(x, y, z)] = known - off > near ? known - off : nearest(tree, x, y, z, known + off);
-                }
+    // For each cell, of the empty balls around middles near it, on one side, the one that reaches farthest past its own
+    // middle. A large ball that touches the surface tells the distance of the points between almost exactly.
+    std::vector<Ball> choose_balls(bool outside) const {
+        std::vector<Ball> balls(distance_.size());
+        for (int i = 0; i < cells_.count(); ++i)
+            if (outside_[i] == outside) balls[i] = {cells_.at(i), distance_[i]};
+        for (const int step : {1, -1})
+            for (int n = 0; n < cells_.count(); ++n) {
+                const int i = step > 0 ? n : cells_.count() - 1 - n;
+                const Cell cell = cells_.at(i);
+                double best = balls[i].depth_at(cell);
+                const auto offer = [&](int dx, int dy, int dz) {
+                    const Cell next{cell[0] + dx, cell[1] + dy, cell[2] + dz};
+                    if (!cells_.has(next)) return;
+                    const Ball& other = balls[cells_.index(next)];
+                    const double depth = other.depth_at(cell);
+                    if (depth <= best) return;
+                    best = depth;
+                    balls[i] = other;
+                };
+                for (int dx = -1; dx <= 1; ++dx)
+                    for (int dy = -1; dy <= 1; ++dy) offer(dx, dy, -step);
+                for (int dx = -1; dx <= 1; ++dx) offer(dx, -step, 0);
+                offer(-step, 0, 0);
+            }
+        return balls;
     }
-    std::size_t index(int x, int y, int z) const {
-        return (static_cast<std::size_t>(z) * size_[1] + static_cast<std::size_t>(y)) * size_[0]
-               + static_cast<std::size_t>(x);
-    }
-    uint word(const Ball& ball, int x, int y, int z) const {
-        const auto at = [](int offset) { return static_cast<uint>(offset + CLEARANCE_OFFSET); };
+
+    uint word(const Ball& ball, const Cell& cell) const {
+        const auto offset = [&](int axis) {
+            return static_cast<uint>(ball.middle[axis] - cell[axis] + CLEARANCE_OFFSET) << 5 * axis;
+        };
         // A thousandth of a cell is far more than the rounding above and in a look-up.
         const uint radius = static_cast<uint>(std::clamp((ball.radius - 1e-3) * CLEARANCE_STEPS, 0.0, 65535.0));
-        const bool outside = !outside_.empty() && outside_[index(ball.x, ball.y, ball.z)];
-        return at(ball.x - x) | at(ball.y - y) << 5 | at(ball.z - z) << 10 | (outside ? CLEARANCE_OUTSIDE : 0u)
+        return offset(0) | offset(1) | offset(2) | (outside_[cells_.index(ball.middle)] ? CLEARANCE_OUTSIDE : 0u)
                | radius << 16;
-    }
-    Vec3 in_cells(const Vec3& p) const {
-        return double(scale_) * Vec3{p.x - double(low_[0]), p.y - double(low_[1]), p.z - double(low_[2])};
     }
 
     float low_[3], scale_;
-    int size_[3];
+    Cells cells_;
     std::vector<double> distance_; // of the middles, in cells
     std::vector<bool> outside_;
 };

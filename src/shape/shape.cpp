@@ -4,14 +4,7 @@
 #include "executor/float_environment.h"
 #include "mesh/adjacency.h"
 #include "mesh/measure.h"
-#include "shape/bvh.h"
-#include "shape/caps.h"
-#include "shape/clearance_grid.h"
-#include "shape/clusters.h"
-#include "shape/exit_distances.h"
-#include "shape/outside_grid.h"
-#include "shape/shape_data.h"
-#include "shape/vertex_normals.h"
+#include "shape/build.h"
 
 #include <raycontact/error.h>
 
@@ -48,18 +41,6 @@ void round_vertices(ShapeData& shape) {
     shape.box_max = shape.centre + high;
 }
 
-// For walks from triangle to triangle.
-void link_faces(ShapeData& shape) {
-    shape.faces.resize(shape.mesh.triangles.size());
-    for (std::size_t t = 0; t < shape.faces.size(); ++t)
-        shape.faces[t] = {NONE, {shape.neighbours[t][0], shape.neighbours[t][1], shape.neighbours[t][2]}};
-    for (std::size_t b = 0; b < shape.triangle_blocks.size(); ++b)
-        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
-            const kernels::uint triangle = shape.triangle_blocks[b].triangle[lane];
-            if (triangle != NONE) shape.faces[triangle].slot = static_cast<kernels::uint>(TRIANGLE_LANES * b + lane);
-        }
-}
-
 } // namespace
 
 Shape::Shape(std::unique_ptr<ShapeData> data) : data_(std::move(data)) {}
@@ -84,14 +65,12 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.centre = box_of(shape.mesh.vertices).middle();
     round_vertices(shape);
 
-    std::vector<Vec3> offsets;
-    offsets.reserve(shape.points.size());
-    for (const Point3f& p : shape.points) offsets.push_back({p.x, p.y, p.z});
-    const std::vector<Vec3> normals = face_normals(offsets, shape.mesh.triangles);
+    const std::vector<Vec3> normals = face_normals(shape);
     if (std::all_of(normals.begin(), normals.end(), [](const Vec3& n) { return n == Vec3{}; }))
         throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
     shape.neighbours = triangle_neighbours(shape.mesh.triangles);
-    shape.vertex_normals = angle_weighted_normals(offsets, shape.mesh.triangles, normals);
+    for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});
+    shape.vertex_normals = angle_weighted_normals(shape, normals);
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
 
@@ -102,14 +81,13 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
-
     build_caps(shape, normals);
-    link_faces(shape);
 
     shape.exit_distances = measure_exits(shape, normals);
+    float longest_exit = 0;
     for (const float exit : shape.exit_distances)
-        if (std::isfinite(exit)) shape.exit_max = std::max(shape.exit_max, exit);
-    shape.header.ray_reach = shape.exit_max > 0 ? shape.exit_max : static_cast<float>(shape.diagonal);
+        if (std::isfinite(exit)) longest_exit = std::max(longest_exit, exit);
+    shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
     build_clusters(shape);
     build_outside_grid(shape);
     build_clearance_grid(shape);

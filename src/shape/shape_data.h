@@ -23,9 +23,8 @@ struct ShapeData {
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
     double diagonal = 0;   ///< of the box, metres
     double radius = 0;
-    double grain = 0;   ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
-    double reach = 0;   ///< largest distance of a vertex from centre, metres
-    float exit_max = 0; ///< largest finite exit distance, metres
+    double grain = 0; ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
+    double reach = 0; ///< largest distance of a vertex from centre, metres
 
     std::vector<kernels::TriangleBlock> triangle_blocks;
     std::vector<kernels::Node> nodes;
@@ -36,6 +35,9 @@ struct ShapeData {
     std::vector<kernels::uint> outside_cells;   ///< a bit for each cell of the grid
     std::vector<kernels::uint> clearances;      ///< a ball for each cell of the clearance grid
     kernels::ShapeHeader header{};
+
+    Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }
+    Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }
 };
 
 } // namespace raycontact

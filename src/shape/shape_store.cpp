@@ -11,11 +11,14 @@ namespace raycontact {
 
 namespace {
 
-// Kernels count in 32 bits.
-kernels::uint first_index(std::size_t size, std::size_t more) {
-    if (size + more >= std::numeric_limits<kernels::uint>::max() / VERTEX_LANES)
+// Appends to an array and returns where; kernels count in 32 bits.
+template <class T>
+kernels::uint append(Device& device, Array<T>& array, const std::vector<T>& more) {
+    const std::size_t first = array.size();
+    if (first + more.size() >= std::numeric_limits<kernels::uint>::max() / VERTEX_LANES)
         throw std::length_error("the shapes of this scene hold more than 2^28 vertices or triangles");
-    return static_cast<kernels::uint>(size);
+    array.append(device, std::span(more));
+    return static_cast<kernels::uint>(first);
 }
 
 } // namespace
@@ -54,27 +57,18 @@ bool ShapeStore::pack() {
 void ShapeStore::upload(Entry& entry) {
     const ShapeData& data = entry.shape->data();
     kernels::ShapeHeader header = data.header;
-    header.node_first = first_index(arrays_.nodes.size(), data.nodes.size());
-    header.triangle_block_first = first_index(arrays_.triangle_blocks.size(), data.triangle_blocks.size());
-    header.vertex_block_first = first_index(arrays_.vertex_blocks.size(), data.vertex_blocks.size());
-    header.normal_first = first_index(arrays_.face_normals.size(), data.face_normals.size());
-    header.face_first = first_index(arrays_.faces.size(), data.faces.size());
-    header.clearance_first = first_index(arrays_.clearances.size(), data.clearances.size());
-    header.grid_first = first_index(arrays_.outside_cells.size(), data.outside_cells.size());
-    for (kernels::uint& first : header.cluster_first)
-        first += first_index(arrays_.clusters.size(), data.clusters.size());
-    entry.index = static_cast<kernels::uint>(arrays_.headers.size());
-    headers_.reserve(entry.index + std::size_t{1});
+    header.node_first = append(device_, arrays_.nodes, data.nodes);
+    header.triangle_block_first = append(device_, arrays_.triangle_blocks, data.triangle_blocks);
+    header.vertex_block_first = append(device_, arrays_.vertex_blocks, data.vertex_blocks);
+    header.normal_first = append(device_, arrays_.face_normals, data.face_normals);
+    header.face_first = append(device_, arrays_.faces, data.faces);
+    header.clearance_first = append(device_, arrays_.clearances, data.clearances);
+    header.grid_first = append(device_, arrays_.outside_cells, data.outside_cells);
+    const kernels::uint cluster_first = append(device_, arrays_.clusters, data.clusters);
+    for (kernels::uint& first : header.cluster_first) first += cluster_first;
+    headers_.reserve(headers_.size() + 1);
     arrays_.headers.append(device_, std::span(&header, 1));
-    arrays_.triangle_blocks.append(device_, std::span(data.triangle_blocks));
-    arrays_.nodes.append(device_, std::span(data.nodes));
-    arrays_.faces.append(device_, std::span(data.faces));
-    arrays_.vertex_blocks.append(device_, std::span(data.vertex_blocks));
-    arrays_.clusters.append(device_, std::span(data.clusters));
-    arrays_.face_normals.append(device_, std::span(data.face_normals));
-    arrays_.outside_cells.append(device_, std::span(data.outside_cells));
-    arrays_.clearances.append(device_, std::span(data.clearances));
-    headers_.resize(entry.index);
+    entry.index = static_cast<kernels::uint>(headers_.size());
     headers_.push_back(header);
     bytes_used_ += entry.shape->memory_bytes();
 }

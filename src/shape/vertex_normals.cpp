@@ -1,40 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shape/vertex_normals.h"
-
 #include "shape/angle.h"
+#include "shape/build.h"
 
 namespace raycontact {
 
-std::vector<Vec3> face_normals(std::span<const Vec3> vertices,
-                               std::span<const std::array<std::uint32_t, 3>> triangles) {
+std::vector<Vec3> face_normals(const ShapeData& shape) {
     std::vector<Vec3> normals;
-    normals.reserve(triangles.size());
-    for (const auto& t : triangles) {
-        const Vec3 n = cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]]);
+    for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
+        const Vec3 n = cross(shape.corner(t, 1) - shape.corner(t, 0), shape.corner(t, 2) - shape.corner(t, 0));
         const double size = length(n);
         normals.push_back(size > 0 ? (1 / size) * n : Vec3{});
     }
     return normals;
 }
 
-std::vector<Vec3> angle_weighted_normals(std::span<const Vec3> vertices,
-                                         std::span<const std::array<std::uint32_t, 3>> triangles,
-                                         std::span<const Vec3> face_normals) {
-    std::vector<Vec3> normals(vertices.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            const std::uint32_t at = triangles[i][c];
-            const Vec3 a = vertices[triangles[i][(c + 1) % 3]] - vertices[at];
-            const Vec3 b = vertices[triangles[i][(c + 2) % 3]] - vertices[at];
-            normals[at] = normals[at] + angle_between(a, b) * face_normals[i];
+std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals) {
+    std::vector<Vec3> sums(shape.points.size());
+    for (std::uint32_t t = 0; t < normals.size(); ++t)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3 at = shape.corner(t, c);
+            const Vec3 a = shape.corner(t, (c + 1) % 3) - at, b = shape.corner(t, (c + 2) % 3) - at;
+            Vec3& sum = sums[shape.mesh.triangles[t][c]];
+            sum = sum + angle_between(a, b) * normals[t];
         }
-    }
-    for (Vec3& n : normals) {
+    for (Vec3& n : sums) {
         // Faces that fold back on each other leave only rounding, which points anywhere.
         const double size = length(n);
         n = size > 1e-9 ? (1 / size) * n : Vec3{};
     }
-    return normals;
+    return sums;
 }
 
 } // namespace raycontact

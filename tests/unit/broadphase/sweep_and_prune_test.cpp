@@ -35,10 +35,10 @@ TEST(SweepAndPrune, AgreesWithEveryPairTested) {
         }
         const std::vector<SlotPair> expected = all_pairs(boxes);
         std::vector<SlotPair> pairs, again;
-        SweepAndPrune().find_pairs(boxes, pairs);
+        sweep_and_prune(boxes, pairs);
         EXPECT_EQ(pairs, expected);
         std::shuffle(boxes.begin(), boxes.end(), random);
-        SweepAndPrune().find_pairs(boxes, again);
+        sweep_and_prune(boxes, again);
         EXPECT_EQ(again, expected) << "the order of the bodies decides nothing";
         found += pairs.size();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contacts/vertex_order.h"
+#include "contacts/place.h"
 
 #include "reference/random.h"
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shape/shape_data.h"
+
+namespace raycontact {
+
+// The stages of Shape::make(), in their order. `normals` are the unit normals of the faces in double. Deterministic.
+
+/// Outward unit normal of each triangle; zero for one without area.
+std::vector<Vec3> face_normals(const ShapeData& shape);
+
+/// Angle-weighted unit normal of each vertex (Thuermer and Wuethrich 1998); zero where the faces around it cancel out.
+std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals);
+
+/// Fills triangle_blocks, nodes and the slots of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
+/// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
+/// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow);
+
+/// Fills the caps of triangle_blocks (kernels/cap.h), from below; 0, where the mesh is not closed and outward, of
+/// needles and of triangles larger than their cap. Wants the tree and the header's flags and tolerance.
+void build_caps(ShapeData& shape, std::span<const Vec3> normals);
+
+/// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
+/// closest face met from inside, the triangles around the vertex left out. +inf where there is none, 0 where the ray
+/// points out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. A rigid body's never
+/// change, so the paper's second test ("before leaving the source object", section 2.1) costs nothing at run time.
+std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals);
+
+/// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
+/// a block, and clusters with the boxes of an implicit sixteen-wide tree above them.
+void build_clusters(ShapeData& shape);
+
+/// Fills outside_cells and the grid of the header: a bit for each cubic cell of the box, set when the whole cell, grown
+/// by the rounding of a look-up, lies outside the mesh. A vertex there cannot be in contact, whatever its ray, since
+/// the first face that it meets is met from outside. Only for meshes whose winding number is 0 outside and 1 inside
+/// everywhere (report.outward); others, and meshes of needles longer than a grid is worth, get no grid and lose nothing
+/// but time. No distance is stored: nothing depends on the resolution but how many rays need not be cast.
+void build_outside_grid(ShapeData& shape);
+
+/// Fills `clearances` and its part of the header: for each cubic cell around the shape the largest useful ball that no
+/// surface enters, and whether it is certainly outside (closed, outward meshes only). From one look-up follows how far
+/// a vertex can move before it could touch (docs/certified.md). No contact is made from it; a coarser grid only makes
+/// pairs wake up earlier.
+void build_clearance_grid(ShapeData& shape);
+
+} // namespace raycontact
