@@ -67,7 +67,7 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::OrderedPai
 
 bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {
     const bool fits = sum.sums[0] <= blocks_.size();
-    if (!fits) make_room(device, sum.sums[0]);
+    if (!fits) make_room(device, std::size_t{sum.sums[0]} + sum.sums[0] / 2); // the next step may have a few more
     return fits;
 }
 
