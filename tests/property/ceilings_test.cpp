@@ -68,5 +68,33 @@ TEST(ceilings, launches_and_reads_of_a_step) {
     }
 }
 
+// Bodies that draw closer: each step needs more room than the one before, and few of them find too little.
+TEST(ceilings, a_growing_heap_seldom_repeats_a_step) {
+    Settings settings;
+    settings.method = Method::standard;
+    settings.threads = 1;
+    Scene scene(settings);
+    Random random(22);
+    std::vector<Pose> poses;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+        const auto& subjects = closed_subjects();
+        Pose pose = random.rotation();
+        pose.translation = 6.0 * random.in_ball();
+        scene.add(subjects[i % subjects.size()].shape, pose);
+        poses.push_back(pose);
+    }
+    std::vector<std::uint64_t> reads;
+    for (int step = 0; step < 40; ++step) {
+        scene.step();
+        reads.push_back(scene.stats().work[0].reads);
+        for (BodyId body = 0; body < poses.size(); ++body) {
+            poses[body].translation = 0.98 * poses[body].translation;
+            scene.set_pose(body, poses[body]);
+        }
+    }
+    EXPECT_GT(scene.stats().vertices, 4 * 16 * 4096u); // the first room has been outgrown
+    EXPECT_EQ(median(reads), 1u); // one more for each repetition
+}
+
 } // namespace
 } // namespace raycontact
