@@ -8,9 +8,9 @@
 #include "mesh/nesting.h"
 #include "mesh/self_intersection.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -91,11 +91,18 @@ void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const
     report.vertices = prepared.vertices.size();
     report.triangles = prepared.triangles.size();
     fill_topology(report, prepared.triangles, edges);
-    report.self_intersecting = self_intersects(snapped_vertices, prepared.triangles, bvh);
+    report.self_intersecting = bvh.any_pair([&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
+        return triangles_meet(snapped_vertices, prepared.triangles[i], prepared.triangles[k]);
+    });
     if (report.closed && report.oriented && !report.self_intersecting)
         report.outward = winds_outward(prepared, patches, bvh);
     report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
-    report.area = area_of(prepared.vertices, prepared.triangles);
+    LongSum area;
+    for (const auto& [a, b, c] : prepared.triangles) {
+        const Vec3& corner = prepared.vertices[a];
+        area.add(length(cross(prepared.vertices[b] - corner, prepared.vertices[c] - corner)) / 2);
+    }
+    report.area = area.value();
     const Box box = box_of(prepared.vertices);
     report.box_min = box.low;
     report.box_max = box.high;

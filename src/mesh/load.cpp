@@ -7,31 +7,22 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace raycontact {
-namespace {
-
-using Reader = Mesh (*)(const InputFile&);
-
-struct Format {
-    std::string_view ending;
-    Reader read;
-};
-
-constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
-                             Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
-
-} // namespace
 
 Mesh load_mesh(const std::filesystem::path& path) {
     std::string ending = path.extension().string();
     for (char& c : ending) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
+    using Format = std::pair<std::string_view, Mesh (*)(const InputFile&)>;
+    constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
+                                 Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
     const InputFile file = InputFile::read(path);
-    for (const Format& format : formats) {
-        if (ending != format.ending) continue;
-        Mesh mesh = format.read(file);
+    for (const auto& [known, read] : formats) {
+        if (ending != known) continue;
+        Mesh mesh = read(file);
         check_mesh(mesh, file.shown);
         mesh.name = printable(path.filename().string());
         return mesh;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader over a JSON parser: tinygltf takes a property of the wrong kind for one that is not there, so that a
 // damaged `indices` turns a mesh into a soup. Places in the file are named as the JSON names them: nodes[3].
-#include "mesh/byte_reader.h"
 #include "mesh/input_file.h"
 #include "mesh/vector.h"
 
@@ -125,7 +124,7 @@ public:
             if (!nodes_[n].in_scene || member(node.value, "mesh").is_null()) continue;
             const Item mesh = item("meshes", whole(node, "mesh"));
             for (const json& primitive : list(mesh, "primitives")) {
-                read_primitive({primitive, mesh.name}, node.name, nodes_[n].placement);
+                read_primitive({primitive, mesh.name + ".primitives"}, node.name, nodes_[n].placement);
             }
         }
         return std::move(mesh_);
@@ -158,20 +157,22 @@ private:
         return {entries[index], name};
     }
 
+    static Item member_of(const Item& of, const char* key) { return {member(of.value, key), of.name + "." + key}; }
+
     /// Null, which has no entries, where it is missing.
     const json& list(const Item& of, const char* key) const {
-        const json& found = member(of.value, key);
-        if (!found.is_array() && !found.is_null()) fail(of, in_quotes(key) + " is no list");
-        return found;
+        const Item found = member_of(of, key);
+        if (!found.value.is_array() && !found.value.is_null()) fail(found, "is no list");
+        return found.value;
     }
 
     std::size_t whole(const Item& of, const char* key, std::optional<std::size_t> otherwise = {}) const {
-        const json& found = member(of.value, key);
-        return found.is_null() && otherwise ? *otherwise : whole({found, of.name + ": " + in_quotes(key)});
+        const Item found = member_of(of, key);
+        return found.value.is_null() && otherwise ? *otherwise : whole(found);
     }
 
     std::size_t whole(const Item& number) const {
-        if (!number.value.is_number_unsigned()) file_.fail(number.name + " is not a whole number of at least 0");
+        if (!number.value.is_number_unsigned()) fail(number, "is not a whole number of at least 0");
         return number.value.get<std::size_t>();
     }
 
@@ -179,7 +180,7 @@ private:
     std::vector<std::size_t> node_list(const Item& of, const char* key) const {
         std::vector<std::size_t> found;
         for (const json& entry : list(of, key)) {
-            found.push_back(whole({entry, of.name + ": an entry of " + in_quotes(key)}));
+            found.push_back(whole({entry, of.name + "." + key}));
             if (found.back() >= nodes_.size()) fail(of, "node " + std::to_string(found.back()) + " does not exist");
         }
         return found;
@@ -187,13 +188,11 @@ private:
 
     /// As many numbers as told, or none where the list is missing.
     std::vector<double> numbers(const Item& of, const char* key, std::size_t size) const {
-        std::vector<double> found;
-        for (const json& entry : list(of, key)) {
-            if (entry.is_number()) found.push_back(entry.get<double>());
-        }
-        if (list(of, key).size() != found.size() || (!found.empty() && found.size() != size))
-            fail(of, in_quotes(key) + " has not " + std::to_string(size) + " numbers");
-        return found;
+        const json& entries = list(of, key);
+        if (entries.empty()) return {};
+        if (entries.size() != size || !std::ranges::all_of(entries, [](const json& e) { return e.is_number(); }))
+            fail(of, std::string(key) + " has not " + std::to_string(size) + " numbers");
+        return entries.get<std::vector<double>>();
     }
 
     std::string read_buffer(const Item& buffer) const {
@@ -313,18 +312,13 @@ private:
         if (member(accessor.value, "type") != type) fail(accessor, "is not of type " + std::string(type));
         const ComponentType& component = component_type(accessor);
         const std::size_t count = whole(accessor, "count");
-        std::vector<double> found;
-        if (!member(accessor.value, "bufferView").is_null()) {
-            found = stored(accessor, component.number, count, width);
-        } else if (count <= most_zeros) {
-            found.resize(count * width);
-        } else {
-            fail(accessor, "has " + std::to_string(count) + " records and no data");
-        }
-        const Item sparse{member(accessor.value, "sparse"), accessor.name + ".sparse"};
+        const bool has_data = !member(accessor.value, "bufferView").is_null();
+        if (!has_data && count > most_zeros) fail(accessor, "has " + std::to_string(count) + " records and no data");
+        std::vector<double> found(has_data ? 0 : count * width, 0.0);
+        if (has_data) found = stored(accessor, component.number, count, width);
+        const Item sparse = member_of(accessor, "sparse");
         if (!sparse.value.is_null()) {
-            const Item indices{member(sparse.value, "indices"), sparse.name + ".indices"};
-            const Item values{member(sparse.value, "values"), sparse.name + ".values"};
+            const Item indices = member_of(sparse, "indices"), values = member_of(sparse, "values");
             const std::size_t replaced = whole(sparse, "count");
             const std::vector<double> where = stored(indices, component_type(indices).number, replaced, 1);
             const std::vector<double> with = stored(values, component.number, replaced, width);
@@ -362,9 +356,9 @@ private:
         constexpr std::size_t triangles = 4, strip = 5, fan = 6;
         const std::size_t mode = whole(primitive, "mode", triangles);
         if (mode < triangles || mode > fan) return;
-        const Item attributes{member(primitive.value, "attributes"), primitive.name};
-        if (member(attributes.value, "POSITION").is_null()) return; // allowed, and nothing to see
-        const Item accessor = item("accessors", whole(attributes, "POSITION"));
+        const Item position = member_of(member_of(primitive, "attributes"), "POSITION");
+        if (position.value.is_null()) return; // allowed, and nothing to see
+        const Item accessor = item("accessors", whole(position));
         const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
         const std::vector<std::uint32_t> list = corners(primitive, points.size() / 3);
 
@@ -378,28 +372,21 @@ private:
         // A mirroring node turns the winding over (glTF 2.0, section 3.7.4).
         const auto& [x, y, z, origin] = placement;
         const bool mirrors = dot({x.x, y.x, z.x}, cross({x.y, y.y, z.y}, {x.z, y.z, z.z})) < 0;
-        const auto add = [&](std::size_t i, std::size_t j, std::size_t k) {
-            if (mirrors) std::swap(j, k);
-            const auto first = static_cast<std::uint32_t>(base);
-            mesh_.triangles.push_back({first + list[i], first + list[j], first + list[k]});
-        };
         if (mode == triangles && list.size() % 3 != 0) {
-            fail(primitive,
-                 "a primitive of triangles has " + std::to_string(list.size()) + " corners, not a multiple of 3");
+            fail(primitive, "triangles have " + std::to_string(list.size()) + " corners, not a multiple of 3");
         }
         for (std::size_t i = 0; i + 2 < list.size(); i += mode == triangles ? 3 : 1) {
-            if (mode == fan) {
-                add(0, i + 1, i + 2);
-            } else {
-                const std::size_t odd = mode == strip ? i % 2 : 0;
-                add(i, i + 1 + odd, i + 2 - odd);
-            }
+            const std::size_t odd = mode == strip ? i % 2 : 0;
+            std::array triangle{list[mode == fan ? 0 : i], list[i + 1 + odd], list[i + 2 - odd]};
+            if (mirrors) std::swap(triangle[1], triangle[2]);
+            for (std::uint32_t& corner : triangle) corner += static_cast<std::uint32_t>(base);
+            mesh_.triangles.push_back(triangle);
         }
     }
 
     const InputFile& file_;
     json json_;
-    const Item root_{json_, "the file"};
+    const Item root_{json_, "glTF"};
     std::size_t after_json_ = std::string::npos; ///< where the second chunk of a GLB starts
     std::vector<std::string> buffers_;
     std::vector<Node> nodes_;

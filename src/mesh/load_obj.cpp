@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -17,12 +18,6 @@ constexpr auto other_statements = std::to_array<std::string_view>(
      "surf", "parm",  "trim",     "hole",     "scrv", "sp",         "end",       "con",    "g",      "s",    "mg",
      "o",    "bevel", "c_interp", "d_interp", "lod",  "usemtl",     "mtllib",    "usemap", "maplib", "call", "csh",
      "res",  "bsp",   "bzp",      "cdc",      "cdp",  "shadow_obj", "trace_obj", "ctech",  "stech"});
-
-/// A face that named a vertex not yet seen; legal when the vertex comes later in the file.
-struct Forward {
-    std::uint64_t vertex;
-    std::size_t line;
-};
 
 class ObjReader {
 public:
@@ -42,11 +37,10 @@ public:
                 scanner_.fail(in_quotes(statement) + " is no OBJ statement; the file is damaged or of another format");
             }
         } while (scanner_.next_line());
-        for (const Forward& forward : forward_) {
-            if (forward.vertex >= mesh_.vertices.size()) {
-                file_.fail_at(forward.line, "vertex " + std::to_string(forward.vertex + 1)
-                                                + " does not exist; the file has "
-                                                + std::to_string(mesh_.vertices.size()));
+        for (const auto& [vertex, line] : forward_) {
+            if (vertex >= mesh_.vertices.size()) {
+                file_.fail_at(line, "vertex " + std::to_string(vertex + 1) + " does not exist; the file has "
+                                        + std::to_string(mesh_.vertices.size()));
             }
         }
         return std::move(mesh_);
@@ -77,10 +71,10 @@ private:
             scanner_.fail("vertex index " + std::to_string(index) + " reaches before the first of "
                           + std::to_string(count));
         }
-        const std::int64_t vertex = index > 0 ? index - 1 : count + index;
-        if (vertex >= 0xffffffffll) scanner_.fail("vertex index " + std::to_string(index) + " is out of range");
-        if (vertex >= count) forward_.push_back({static_cast<std::uint64_t>(vertex), scanner_.line()});
-        return static_cast<std::uint32_t>(vertex);
+        if (index > 0xffffffffll) scanner_.fail("vertex index " + std::to_string(index) + " is out of range");
+        const auto vertex = static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+        if (index > count) forward_.emplace_back(vertex, scanner_.line());
+        return vertex;
     }
 
     // Texture and normal indices are not used, but one that is no number is damage.
@@ -95,7 +89,8 @@ private:
     TextScanner scanner_;
     Mesh mesh_;
     std::vector<std::uint32_t> corners_;
-    std::vector<Forward> forward_;
+    /// Vertices that come later in the file than a face that names them, which is legal; with the line of the face.
+    std::vector<std::pair<std::uint32_t, std::size_t>> forward_;
 };
 
 } // namespace

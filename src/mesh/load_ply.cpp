@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements in silence.
-#include "mesh/byte_reader.h"
 #include "mesh/text_scanner.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp welds and reorders vertices by its own rules, keeps text coordinates as float32 and accepts
 // truncated files in silence.
-#include "mesh/byte_reader.h"
 #include "mesh/text_scanner.h"
 #include "mesh/vector.h"
 
+#include <algorithm>
 #include <string_view>
 
 namespace raycontact {
@@ -70,11 +70,7 @@ private:
     }
 
     static bool same(std::string_view word, std::string_view lower) {
-        if (word.size() != lower.size()) return false;
-        for (std::size_t i = 0; i < word.size(); ++i) {
-            if ((word[i] | 0x20) != lower[i]) return false;
-        }
-        return true;
+        return std::ranges::equal(word, lower, [](char found, char wanted) { return (found | 0x20) == wanted; });
     }
 
     void expect(std::string_view lower) {

@@ -3,6 +3,8 @@
 
 #include <raycontact/mass.h>
 
+#include "mesh/adjacency.h"
+
 namespace raycontact {
 
 void LongSum::add(double x) {
@@ -16,13 +18,6 @@ Box box_of(std::span<const Vec3> points) {
     Box box{points.front(), points.front()};
     for (const Vec3& p : points) box.add({p, p});
     return box;
-}
-
-double area_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-    LongSum sum;
-    for (const auto& [a, b, c] : triangles)
-        sum.add(length(cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) / 2);
-    return sum.value();
 }
 
 // Sums over the tetrahedra (q, a, b, c), q near the mesh so that nothing cancels far from the origin. Seen from q, with

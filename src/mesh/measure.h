@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/adjacency.h"
 #include "mesh/vector.h"
 
 #include <span>
-#include <vector>
 
 namespace raycontact {
 
@@ -29,7 +27,5 @@ struct Box {
     }
 };
 Box box_of(std::span<const Vec3> points);
-
-double area_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
 } // namespace raycontact

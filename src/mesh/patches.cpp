@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/patches.h"
 
-#include <algorithm>
-#include <array>
 #include <map>
 
 namespace raycontact {
-namespace {
-
-struct Across {
-    std::uint32_t triangle = 0xffffffffu;
-    bool against = false; ///< the two triangles run along their edge in the same direction
-};
-
-} // namespace
 
 Patches find_patches(std::span<const Triangle> triangles, std::span<const HalfEdge> edges) {
-    std::vector<std::array<Across, 3>> across(triangles.size());
+    std::vector<const HalfEdge*> across(3 * triangles.size(), nullptr); // the other side, where there is just one
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
         if (sides.size() != 2 || sides[0].triangle() == sides[1].triangle()) return;
-        const bool against = sides[0].forward == sides[1].forward;
-        across[sides[0].triangle()][sides[0].corner % 3] = {sides[1].triangle(), against};
-        across[sides[1].triangle()][sides[1].corner % 3] = {sides[0].triangle(), against};
+        across[sides[0].corner] = &sides[1];
+        across[sides[1].corner] = &sides[0];
     });
 
     constexpr std::uint32_t none = 0xffffffffu;
@@ -40,14 +29,17 @@ Patches find_patches(std::span<const Triangle> triangles, std::span<const HalfEd
             open.pop_back();
             ++patch.size;
             patch.turned += patches.against[t] ? 1 : 0;
-            for (const Across& next : across[t]) {
-                if (next.triangle == none) continue;
-                const bool against = (patches.against[t] != 0) != next.against;
-                if (patches.of[next.triangle] == none) {
-                    patches.of[next.triangle] = id;
-                    patches.against[next.triangle] = against ? 1 : 0;
-                    open.push_back(next.triangle);
-                } else if ((patches.against[next.triangle] != 0) != against) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const HalfEdge* const other = across[3 * std::size_t{t} + k];
+                if (other == nullptr) continue;
+                const bool forward = triangles[t][k] < triangles[t][(k + 1) % 3];
+                const std::uint32_t next = other->triangle();
+                const bool against = (patches.against[t] != 0) != (forward == other->forward);
+                if (patches.of[next] == none) {
+                    patches.of[next] = id;
+                    patches.against[next] = against ? 1 : 0;
+                    open.push_back(next);
+                } else if ((patches.against[next] != 0) != against) {
                     patch.orientable = false;
                 }
             }

@@ -13,6 +13,12 @@ namespace {
 /// `add`, which is exact for any summand (Shewchuk 1997, theorem 10); zeros are left out.
 class Expansion {
 public:
+    Expansion() = default;
+    Expansion(double a, double b) { // a - b
+        add(a);
+        add(-b);
+    }
+
     void add(double summand) {
         double carry = summand;
         std::size_t kept = 0;
@@ -26,14 +32,6 @@ public:
         }
         if (carry != 0) parts_[kept++] = carry;
         size_ = kept;
-    }
-
-    /// a - b.
-    static Expansion difference(double a, double b) {
-        Expansion result;
-        result.add(a);
-        result.add(-b);
-        return result;
     }
 
     /// Adds sign * a * b.
@@ -60,10 +58,6 @@ constexpr double half_ulp = 1.1102230246251565e-16;
 constexpr double bound3 = (7 + 56 * half_ulp) * half_ulp;
 constexpr double bound2 = (3 + 16 * half_ulp) * half_ulp;
 
-int sign_of(double value) {
-    return value > 0 ? 1 : -1;
-}
-
 Expansion minor_of(const Expansion& a, const Expansion& b, const Expansion& c, const Expansion& d) {
     Expansion result; // a d - b c
     result.add_product(a, d, 1);
@@ -75,7 +69,7 @@ int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     std::array<std::array<Expansion, 3>, 3> row;
     const std::array points{&a, &b, &c};
     for (std::size_t r = 0; r < 3; ++r) {
-        for (std::size_t k = 0; k < 3; ++k) row[r][k] = Expansion::difference(axis(*points[r], k), axis(d, k));
+        for (std::size_t k = 0; k < 3; ++k) row[r][k] = Expansion(axis(*points[r], k), axis(d, k));
     }
     Expansion sum;
     for (std::size_t r = 0; r < 3; ++r) {
@@ -94,7 +88,7 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const double permanent = std::fabs(p.z) * (std::fabs(qr1) + std::fabs(qr2))
                              + std::fabs(q.z) * (std::fabs(rp1) + std::fabs(rp2))
                              + std::fabs(r.z) * (std::fabs(pq1) + std::fabs(pq2));
-    if (std::fabs(det) > bound3 * permanent) return sign_of(det);
+    if (std::fabs(det) > bound3 * permanent) return det > 0 ? 1 : -1;
     // A computed difference is 0 only where the exact one is: faces in a plane across an axis end here.
     if (permanent == 0) return 0;
     return orient3d_exact(a, b, c, d);
@@ -105,11 +99,9 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t drop) {
     const double au = axis(a, u), av = axis(a, v), bu = axis(b, u), bv = axis(b, v), cu = axis(c, u), cv = axis(c, v);
     const double left = (au - cu) * (bv - cv), right = (av - cv) * (bu - cu);
     const double det = left - right, permanent = std::fabs(left) + std::fabs(right);
-    if (std::fabs(det) > bound2 * permanent) return sign_of(det);
+    if (std::fabs(det) > bound2 * permanent) return det > 0 ? 1 : -1;
     if (permanent == 0) return 0;
-    return minor_of(Expansion::difference(au, cu), Expansion::difference(av, cv), Expansion::difference(bu, cu),
-                    Expansion::difference(bv, cv))
-        .sign();
+    return minor_of(Expansion(au, cu), Expansion(av, cv), Expansion(bu, cu), Expansion(bv, cv)).sign();
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -55,29 +55,24 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, int p_side, int q_side
     return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
 }
 
-bool disjoint_triangles_meet(const Corners& a, const Corners& b) {
+/// Closed triangles that share no corner (`shared` 0), or their corner 0 (1). Where they meet, an edge of one meets the
+/// other: the common segment ends on an edge, and of coplanar ones the boundaries cross or one holds the other. What
+/// they have in common besides corner 0 is convex with it, so it reaches an opposite edge.
+bool edges_meet(const Corners& a, const Corners& b, std::size_t shared) {
+    const auto one_side = [&](const std::array<int, 3>& side) {
+        return side[1] == side[2] && side[2] != 0 && (shared == 1 || side[0] == side[1]);
+    };
     std::array<int, 3> side_a{}, side_b{};
-    for (std::size_t i = 0; i < 3; ++i) side_a[i] = orient3d(b[0], b[1], b[2], a[i]);
-    if (side_a[0] == side_a[1] && side_a[1] == side_a[2] && side_a[0] != 0) return false;
-    for (std::size_t i = 0; i < 3; ++i) side_b[i] = orient3d(a[0], a[1], a[2], b[i]);
-    if (side_b[0] == side_b[1] && side_b[1] == side_b[2] && side_b[0] != 0) return false;
-    // Where triangles meet, an edge of one meets the other: the common segment ends on an edge, and of coplanar ones
-    // the boundaries cross or one holds the other.
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = shared; i < 3; ++i) side_a[i] = orient3d(b[0], b[1], b[2], a[i]);
+    if (one_side(side_a)) return false;
+    for (std::size_t i = shared; i < 3; ++i) side_b[i] = orient3d(a[0], a[1], a[2], b[i]);
+    if (one_side(side_b)) return false;
+    for (std::size_t i = shared; i < 3 - shared; ++i) {
         const std::size_t k = (i + 1) % 3;
         if (segment_meets_triangle(a[i], a[k], side_a[i], side_a[k], b)) return true;
         if (segment_meets_triangle(b[i], b[k], side_b[i], side_b[k], a)) return true;
     }
     return false;
-}
-
-/// a and b share their corner 0. What else they have in common is convex with it, so it reaches an opposite edge.
-bool fans_meet(const Corners& a, const Corners& b) {
-    const int side1 = orient3d(b[0], b[1], b[2], a[1]), side2 = orient3d(b[0], b[1], b[2], a[2]);
-    if (side1 * side2 > 0) return false;
-    const int side3 = orient3d(a[0], a[1], a[2], b[1]), side4 = orient3d(a[0], a[1], a[2], b[2]);
-    if (side3 * side4 > 0) return false;
-    return segment_meets_triangle(a[1], a[2], side1, side2, b) || segment_meets_triangle(b[1], b[2], side3, side4, a);
 }
 
 /// A plane through the shared corner with one triangle on either side, clear of rounding: the common case, for four dot
@@ -125,21 +120,9 @@ bool triangles_meet(std::span<const Vec3> vertices, const Triangle& a, const Tri
         u[i] = vertices[p[i]];
         v[i] = vertices[q[i]];
     }
-    switch (shared) {
-    case 0:
-        return disjoint_triangles_meet(u, v);
-    case 1:
-        return !clearly_apart(u, v) && fans_meet(u, v);
-    case 2:
-        return !clearly_open(u, v) && folded_flat(u, v);
-    default:
-        return true;
-    }
-}
-
-bool self_intersects(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const TriangleBvh& bvh) {
-    return bvh.any_pair(
-        [&](std::uint32_t i, std::uint32_t k) { return triangles_meet(vertices, triangles[i], triangles[k]); });
+    if (shared == 0) return edges_meet(u, v, 0);
+    if (shared == 1) return !clearly_apart(u, v) && edges_meet(u, v, 1);
+    return shared == 3 || (!clearly_open(u, v) && folded_flat(u, v));
 }
 
 } // namespace raycontact

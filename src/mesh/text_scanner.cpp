@@ -10,11 +10,11 @@
 namespace raycontact {
 namespace {
 
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
 bool is_line_end(char c) {
     return c == '\n' || c == '\r';
+}
+bool is_space(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
 template <class Number>
@@ -34,16 +34,15 @@ TextScanner::TextScanner(const InputFile& file)
     if (file.bytes.starts_with("\xef\xbb\xbf")) at_ += 3; // a byte order mark
 }
 
-bool TextScanner::at_joiner() const {
-    return joins_lines && *at_ == '\\' && at_ + 1 != end_ && is_line_end(at_[1]);
+bool TextScanner::joins(const char* backslash) const {
+    return joins_lines && backslash + 1 != end_ && is_line_end(backslash[1]);
 }
 
 void TextScanner::skip_blanks() {
-    while (at_ != end_ && (is_blank(*at_) || at_joiner())) {
-        if (at_joiner())
-            next_line();
-        else
-            ++at_;
+    for (;;) {
+        while (at_ != end_ && is_space(*at_) && !is_line_end(*at_)) ++at_;
+        if (at_ == end_ || *at_ != '\\' || !joins(at_)) break;
+        next_line();
     }
     if (at_ != end_ && *at_ == comment) at_ = std::find_if(at_, end_, is_line_end);
 }
@@ -51,8 +50,10 @@ void TextScanner::skip_blanks() {
 std::string_view TextScanner::word_on_line() {
     skip_blanks();
     const char* const first = at_;
-    while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && *at_ != comment && !at_joiner()) ++at_;
-    return {first, static_cast<std::size_t>(at_ - first)};
+    const char* last = first;
+    while (last != end_ && !is_space(*last) && *last != comment && (*last != '\\' || !joins(last))) ++last;
+    at_ = last;
+    return {first, static_cast<std::size_t>(last - first)};
 }
 
 bool TextScanner::next_line() {

@@ -40,7 +40,7 @@ public:
     [[noreturn]] void fail(const std::string& what) const { file_.fail_at(line_, what); }
 
 private:
-    bool at_joiner() const;
+    bool joins(const char* backslash) const;
     void skip_blanks();
 
     const InputFile& file_;

@@ -46,37 +46,23 @@ std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t last) {
 }
 
 double TriangleBvh::squared_distance_of(const Box& box, const Vec3& p) {
-    const Vec3 off{std::max({box.low.x - p.x, p.x - box.high.x, 0.0}),
-                   std::max({box.low.y - p.y, p.y - box.high.y, 0.0}),
-                   std::max({box.low.z - p.z, p.z - box.high.z, 0.0})};
+    const Vec3 off = most(most(box.low - p, p - box.high), Vec3{});
     return dot(off, off);
 }
 
-double TriangleBvh::nearest(const Vec3& point, double bound) const {
-    struct Visit {
-        std::uint32_t node;
-        double distance;
-    };
-    Visit open[64];
-    std::size_t count = 1;
-    open[0] = {0, squared_distance_of(nodes_[0].box, point)};
-    while (count > 0) {
-        const Visit visit = open[--count];
-        if (visit.distance >= bound) continue;
-        const Node& node = nodes_[visit.node];
-        if (node.right == 0) {
-            for (std::uint32_t i = node.first; i < node.last; ++i) {
-                if (squared_distance_of(boxes_[i], point) >= bound) continue;
-                const Triangle& t = triangles_[order_[i]];
-                bound = std::min(bound, squared_distance(point, vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]));
-            }
-            continue;
-        }
-        Visit near{visit.node + 1, squared_distance_of(nodes_[visit.node + 1].box, point)};
-        Visit far{node.right, squared_distance_of(nodes_[node.right].box, point)};
-        if (far.distance < near.distance) std::swap(near, far);
-        open[count++] = far;
-        open[count++] = near;
+double TriangleBvh::nearest(const Vec3& point, double bound, std::uint32_t below) const {
+    const Node& node = nodes_[below];
+    for (std::uint32_t i = node.first; node.right == 0 && i < node.last; ++i) {
+        if (squared_distance_of(boxes_[i], point) >= bound) continue;
+        const auto [a, b, c] = triangles_[order_[i]];
+        bound = std::min(bound, squared_distance(point, vertices_[a], vertices_[b], vertices_[c]));
+    }
+    if (node.right == 0) return bound;
+    std::pair near{squared_distance_of(nodes_[below + 1].box, point), below + 1};
+    std::pair far{squared_distance_of(nodes_[node.right].box, point), node.right};
+    if (far.first < near.first) std::swap(near, far);
+    for (const auto& [distance, child] : {near, far}) {
+        if (distance < bound) bound = nearest(point, bound, child);
     }
     return bound;
 }

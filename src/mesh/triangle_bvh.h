@@ -37,7 +37,7 @@ public:
     }
 
     /// Squared distance of a point from the nearest triangle, or `bound` where none is nearer than that.
-    double nearest(const Vec3& point, double bound) const;
+    double nearest(const Vec3& point, double bound, std::uint32_t below = 0) const;
 
 private:
     static constexpr std::uint32_t leaf_size = 4;
