@@ -61,21 +61,19 @@ struct Branch {
     std::array<Way, NODE_LANES> ways{}; // with up to 1, 2, ... of them
 };
 
-// Both keep a tree within the depth of the traversal's trail. They cost rays time and are seldom needed.
-struct Limits {
-    bool balanced;    // the binary tree
-    bool four_levels; // of the binary tree make a wide node
-};
-
 class Builder {
 public:
-    Builder(ShapeData& shape, double grow, const Limits& limits) : shape_(shape), grow_(grow), limits_(limits) {}
+    Builder(ShapeData& shape, double grow, bool balanced) : shape_(shape), grow_(grow), balanced_(balanced) {}
 
-    // False when the tree came out too deep.
+    // False when the tree came out too deep for the traversal's trail.
     bool build(std::vector<Item>& items) {
         split(items);
-        weigh();
-        return collapse(0, 0, 1);
+        for (const bool four_levels : {balanced_, true}) {
+            weigh(four_levels);
+            shape_.nodes.clear();
+            if (collapse(0, 0, 1)) return true;
+        }
+        return false;
     }
 
 private:
@@ -104,7 +102,7 @@ private:
         };
         Cut best;
         for (int axis = 0; axis < 3; ++axis)
-            if (limits_.balanced || items.size() > sweep_at_most) {
+            if (balanced_ || items.size() > sweep_at_most) {
                 // The longest axis in the middle: good enough where a sweep would cost too much.
                 const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
                 best.improve({low->centre[axis] - high->centre[axis], axis, block_size * (blocks_of(items) / 2)});
@@ -159,21 +157,22 @@ private:
 
     // Which binary branches become wide nodes, so that the sum of their areas, the nodes that a ray is expected to
     // visit, is least: of each branch, the cheapest way to cover it with up to so many leaves and nodes, from below
-    // (after Pinter 2010). The largest branches opened first would leave most nodes above the leaves nearly empty.
-    void weigh() {
+    // (after Pinter 2010). The largest branches opened first would leave most nodes above the leaves nearly empty. Or,
+    // to bound the depth, always four levels of branches.
+    void weigh(bool four_levels) {
         for (std::size_t id = branches_.size(); id-- > 0;) { // children come after their parents
             Branch& b = branches_[id];
             if (b.left == 0) continue; // a leaf is tested however it is reached
             const auto &left = branches_[b.left].ways, &right = branches_[b.right].ways;
             for (std::size_t most = 1; most < NODE_LANES; ++most) {
                 b.ways[most] = {infinite, (most + 1) / 2};
-                for (std::size_t k = 0; k < most && !limits_.four_levels; ++k) {
+                for (std::size_t k = 0; k < most && !four_levels; ++k) {
                     const float cost = left[k].cost + right[most - 1 - k].cost;
                     if (cost < b.ways[most].cost) b.ways[most] = {cost, k + 1};
                 }
             }
             b.ways[0] = {static_cast<float>(b.box.area()) + b.ways[NODE_LANES - 1].cost, 0};
-            for (std::size_t most = 1; most + 1 < NODE_LANES && !limits_.four_levels; ++most)
+            for (std::size_t most = 1; most + 1 < NODE_LANES && !four_levels; ++most)
                 if (b.ways[0].cost <= b.ways[most].cost) b.ways[most] = b.ways[0];
         }
     }
@@ -222,7 +221,7 @@ private:
 
     ShapeData& shape_;
     double grow_;
-    Limits limits_;
+    bool balanced_;
     std::vector<Branch> branches_;
     std::vector<double> right_area_;
 };
@@ -241,10 +240,9 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow) {
         for (int axis = 0; axis < 3; ++axis) item.centre[axis] = item.box.low[axis] + item.box.high[axis];
         items.push_back(item);
     }
-    for (const Limits limits : {Limits{false, false}, Limits{false, true}, Limits{true, true}}) {
+    for (const bool balanced : {false, true}) {
         shape.triangle_blocks.clear();
-        shape.nodes.clear();
-        if (Builder(shape, grow, limits).build(items)) return;
+        if (Builder(shape, grow, balanced).build(items)) return;
     }
     throw InputError("mesh '" + shape.mesh.name + "': more than 16 million triangles; split it into several meshes");
 }

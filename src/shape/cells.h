@@ -18,7 +18,8 @@ struct Cells {
     int index(const Cell& c) const { return (c[2] * size[1] + c[1]) * size[0] + c[0]; }
     Cell at(int index) const { return {index % size[0], index / size[0] % size[1], index / size[0] / size[1]}; }
     bool has(const Cell& c) const {
-        return c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && c[0] < size[0] && c[1] < size[1] && c[2] < size[2];
+        const auto within = [&](int k) { return static_cast<unsigned>(c[k]) < static_cast<unsigned>(size[k]); };
+        return within(0) && within(1) && within(2);
     }
 
     /// Goes from beyond the grid's faces inwards, from cell to cell: enters(i, from) tells whether the way from cell
@@ -33,9 +34,10 @@ struct Cells {
         }
         while (!open.empty()) {
             const int from = open.back();
+            const Cell cell = at(from);
             open.pop_back();
             for (int side = 0; side < 6; ++side) {
-                Cell next = at(from);
+                Cell next = cell;
                 next[side / 2] += side % 2 == 0 ? -1 : 1;
                 if (has(next) && enters(index(next), from)) open.push_back(index(next));
             }

@@ -22,7 +22,7 @@ constexpr int farthest = CLEARANCE_OFFSET - 1; // cells from a cell to the middl
 // Without surface, around the middle of a cell; lengths in cells.
 struct Ball {
     Cell middle{};
-    double radius = -1; // none
+    double radius = -far; // none
 
     // About how deep the points of a cell lie in it, on average. At the middle alone its own ball would always win, and
     // be small.
@@ -145,7 +145,8 @@ private:
                 const auto offer = [&](int dx, int dy, int dz) {
                     const Cell next{cell[0] + dx, cell[1] + dy, cell[2] + dz};
                     if (!cells_.has(next)) return;
-                    const Ball& other = balls[cells_.index(next)];
+                    const Ball& other = balls[i + cells_.index({dx, dy, dz})];
+                    if (other.radius <= best) return; // the depth is less
                     const double depth = other.depth_at(cell);
                     if (depth <= best) return;
                     best = depth;
