@@ -29,33 +29,17 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
     return closest;
 }
 
-// What the ray meets first, by the BVH. Where a grid has sorted out the vertices far outside, most rays end close by
-// (`short_first`): a short one visits few boxes, and what it finds within its length is the closest of all.
-DEVICE Closest find_closest(uint short_first, const RayFrame* frame, float reach,
-                            GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                            GLOBAL const TriangleBlock* RESTRICT blocks) {
-    const float probe = probe_of(shape);
-    if (short_first != 0u && probe < reach) {
-        const Closest near = traverse_bvh(frame, probe, shape, nodes, blocks);
-        if (near.back <= probe || near.front <= probe) return near;
-    }
-    return traverse_bvh(frame, reach, shape, nodes, blocks);
-}
-
-// find_closest() for each ray of a group, or for its opposite.
-DEVICE void find_group(Closest* own, Group* group, const bool opposite, uint short_first,
-                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                       GLOBAL const TriangleBlock* RESTRICT blocks) {
+// What each ray of a group meets first, or its opposite, by the BVH. Where a group is more than one ray, they are cast
+// together as far as each one's `length`: what is met so near is the closest of all. The others are cast alone.
+DEVICE void find_group(Closest* own, Group* group, const bool opposite, GLOBAL const ShapeHeader* RESTRICT shapes,
+                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
     frame_group(group, opposite);
-    const bool grouped = RAYS_IN_GROUP > 1 && short_first != 0u;
-    const uint alone = grouped ? traverse_group(own, group, nodes, blocks) : 0u;
+    const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, nodes, blocks) : 1u;
     for (uint r = 0u; r < group->count; ++r) {
-        GLOBAL const ShapeHeader* shape = shapes + group->target[r];
         const float length = group->length[r], reach = group->reach[r];
-        const uint found = grouped ? (uint)(own[r].back <= length) | (uint)(own[r].front <= length) : 0u;
-        if (grouped && ((alone >> r) & 1u) == 0u && (found != 0u || length >= reach)) continue;
+        if (((alone >> r) & 1u) == 0u && (length >= reach || own[r].back <= length || own[r].front <= length)) continue;
         const RayFrame frame = frame_of(group, r);
-        own[r] = find_closest(grouped ? 0u : short_first, &frame, reach, shape, nodes, blocks);
+        own[r] = traverse_bvh(&frame, reach, shapes + group->target[r], nodes, blocks);
     }
 }
 
@@ -110,11 +94,11 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
 }
 
 // What the rays of a group meet, and what that makes of each of them: hits by whose they are.
-DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL const ShapeHeader* RESTRICT shapes,
+DEVICE void cast_group(Closest* own, Group* group, GLOBAL const ShapeHeader* RESTRICT shapes,
                        GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                        GLOBAL const Packed3* RESTRICT normals, uint stride, GLOBAL Hit* RESTRICT hits,
                        GLOBAL uint* RESTRICT outcomes) {
-    find_group(own, group, false, short_first, shapes, nodes, blocks);
+    find_group(own, group, false, shapes, nodes, blocks);
     for (uint r = 0u; r < group->count; ++r)
         if (own[r].back < UNBOUNDED) PREFETCH(normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
     for (uint r = 0u; r < group->count; ++r) {
@@ -125,7 +109,7 @@ DEVICE void cast_group(Closest* own, Group* group, uint short_first, GLOBAL cons
 }
 
 // Every vertex is in the bounds.
-KERNEL void cast_rays_bvh(COUNT(count), uint short_first, uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
+KERNEL void cast_rays_bvh(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
                           GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
@@ -140,7 +124,7 @@ KERNEL void cast_rays_bvh(COUNT(count), uint short_first, uint stride, GLOBAL co
             const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
             add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
         }
-        cast_group(own, &group, short_first, shapes, nodes, blocks, normals, stride, hits, outcomes);
+        cast_group(own, &group, shapes, nodes, blocks, normals, stride, hits, outcomes);
     }
 }
 

@@ -212,7 +212,7 @@ KERNEL void copy_candidates(COUNT(count), GLOBAL const Segment* RESTRICT segment
 DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL uint* RESTRICT nexts) {
     Closest met[RAYS_IN_GROUP];
-    find_group(met, ahead, true, 1u, shapes, nodes, blocks);
+    find_group(met, ahead, true, shapes, nodes, blocks);
     for (uint r = 0u; r < ahead->count; ++r) nexts[ahead->at[r]] = predicted(met + r, ahead->reach[r]);
     ahead->count = 0u;
 }
@@ -224,7 +224,7 @@ DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GL
                                uint stride, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes,
                                GLOBAL uint* RESTRICT nexts) {
     Closest met[RAYS_IN_GROUP];
-    cast_group(met, casting, 1u, shapes, nodes, blocks, normals, stride, hits, outcomes);
+    cast_group(met, casting, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < casting->count; ++r) {
         const uint at = casting->at[r], pair = casting->pair[r];
         nexts[at] = hits[at].triangle;

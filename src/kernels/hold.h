@@ -70,7 +70,7 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const HeldRange* RESTRICT 
                                GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
                                GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
     Closest own[RAYS_IN_GROUP];
-    cast_group(own, waiting, 1u, shapes, nodes, blocks, normals, stride, hits, outcomes);
+    cast_group(own, waiting, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < waiting->count; ++r) {
         GLOBAL const HeldRange* held_range = held_ranges + waiting->pair[r];
         if (is_idle(held_range)) continue;

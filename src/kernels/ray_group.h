@@ -25,16 +25,12 @@ DEVICE void clear_group(Group* group) {
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
-DEVICE float probe_of(GLOBAL const ShapeHeader* RESTRICT shape) {
-    return PROBE_TOLERANCES * shape->tolerance;
-}
-
 // at: whose ray it is. The group seeks no farther than a short ray.
 DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
                     GLOBAL const ShapeHeader* RESTRICT shapes) {
     const uint r = group->count;
     GLOBAL const ShapeHeader* RESTRICT shape = shapes + target;
-    const float probe = probe_of(shape);
+    const float probe = PROBE_TOLERANCES * shape->tolerance;
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
         group->direction[i][r] = ray->direction[i];
