@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Caps (docs/certified.md): of each triangle of a closed, outward mesh, the balls around its centre in which all
 // normals are within an angle of its own. A ray from there along them can only leave the mesh, and once at most,
-// however many triangles there are. NOLINTBEGIN(modernize-use-using): this text is C as well
+// however many triangles there are.
 
 #define CAP_UNIT_TOLERANCES 2.0f // a step of the stored radii
 // The two angles: 30 and 55 degrees.
@@ -28,9 +28,9 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
 }
 
 // Whether its cap will know a ray by the triangle that it met, while it meets it.
-DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const ShapeHeader* RESTRICT shape,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, uint slot) {
-    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape,
+                      READS(TriangleBlock) blocks, uint slot) {
+    READS(TriangleBlock) block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
     const uint lane = slot % TRIANGLE_LANES;
     float far2 = 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -40,4 +40,3 @@ DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL c
     }
     return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
-// NOLINTEND(modernize-use-using)

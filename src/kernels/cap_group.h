@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Held rays that no tube decides, asked of their triangles' caps (cap.h) together, and from triangle to triangle; and
 // where rays without a triangle begin.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define OUTSIDE_TOLERANCES 4.0f
 #define MOST_STEPS 16u   // before a ray is cast instead
@@ -43,13 +42,12 @@ DEVICE void ask_caps(HeldGroup* group) {
 }
 
 // Rays that passed their triangle by go on to the one across that edge. Returns how many did.
-DEVICE uint step_over(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                      GLOBAL const Packed3* RESTRICT normals) {
+DEVICE uint step_over(HeldGroup* group, READS(ShapeHeader) shapes, READS(TriangleBlock) blocks, READS(Face) faces,
+                      READS(Packed3) normals) {
     uint stepped = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) {
         if (group->beyond[r] == 0u) continue;
-        GLOBAL const Face* own = faces + shapes[group->rays.target[r]].face_first;
+        READS(Face) own = faces + shapes[group->rays.target[r]].face_first;
         const uint next = own[group->triangle[r]].neighbour[group->beyond[r] - 1u];
         const uint slot = next != NONE ? own[next].slot : NONE;
         if (slot == NONE) continue;
@@ -62,9 +60,8 @@ DEVICE uint step_over(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shape
 }
 
 // What held rays' tubes say, else their caps.
-DEVICE void ask_tubes_and_caps(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                               GLOBAL const Packed3* RESTRICT normals) {
+DEVICE void ask_tubes_and_caps(HeldGroup* group, READS(ShapeHeader) shapes, READS(TriangleBlock) blocks,
+                               READS(Face) faces, READS(Packed3) normals) {
     ask_held(group);
     uint asks = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) asks |= group->asks_cap[r] & (group->is_known[r] ^ 1u);
@@ -77,11 +74,10 @@ DEVICE void ask_tubes_and_caps(HeldGroup* group, GLOBAL const ShapeHeader* RESTR
 }
 
 // A triangle that a ray beside that place was known by: from there a ray without one may find its own.
-DEVICE uint triangle_nearby(GLOBAL const Held* RESTRICT held, uint count, uint place) {
+DEVICE uint triangle_nearby(READS(Held) held, uint count, uint place) {
     for (uint k = 0u; k < PLACES_NEARBY; ++k) {
         if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;
         if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
     }
     return NONE;
 }
-// NOLINTEND(modernize-use-using)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays from the vertices of one mesh along their inward normals into the other (Hermann et al. 2008; paper
 // section 2.1).
-// NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this text is C as well
+// NOLINTBEGIN(modernize-redundant-void-arg): this text is C as well
 
 #define SIDE_DIRECTIONS 4
 #define CASTER_BASIC 0
@@ -21,8 +21,8 @@ DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
     return closest->back + tolerance < closest->front ? 1 : 0;
 }
 
-DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
-                        GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, READS(ShapeHeader) shape,
+                        READS(Node) nodes, READS(TriangleBlock) blocks) {
     if (caster == CASTER_BVH) return traverse_bvh(ray, reach, shape, nodes, blocks);
     Closest closest = nothing_hit(reach, shape->tolerance);
     traverse_basic(&closest, ray, 1u, shape, blocks);
@@ -31,8 +31,8 @@ DEVICE Closest traverse(const uint caster, const RayFrame* ray, float reach, GLO
 
 // What each ray of a group meets first, or its opposite, by the BVH. Where a group is more than one ray, they are cast
 // together as far as each one's `length`: what is met so near is the closest of all. The others are cast alone.
-DEVICE void find_group(Closest* own, Group* group, const bool opposite, GLOBAL const ShapeHeader* RESTRICT shapes,
-                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE void find_group(Closest* own, Group* group, const bool opposite, READS(ShapeHeader) shapes, READS(Node) nodes,
+                       READS(TriangleBlock) blocks) {
     frame_group(group, opposite);
     const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, nodes, blocks) : 1u;
     for (uint r = 0u; r < group->count; ++r) {
@@ -58,8 +58,7 @@ DEVICE uint is_contact(const Hit hit) {
 }
 
 // How a ray ended. Columns of outcomes: it is a contact; its side tests; it was cast in full.
-DEVICE void record_hit(const Hit hit, uint was_cast, uint at, uint stride, GLOBAL Hit* RESTRICT hits,
-                       GLOBAL uint* RESTRICT outcomes) {
+DEVICE void record_hit(const Hit hit, uint was_cast, uint at, uint stride, WRITES(Hit) hits, WRITES(uint) outcomes) {
     hits[at] = hit;
     outcomes[at] = is_contact(hit);
     outcomes[stride + at] = hit.sides;
@@ -70,9 +69,8 @@ DEVICE void record_hit(const Hit hit, uint was_cast, uint at, uint stride, GLOBA
 // faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
 // contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
 // An open mesh has no inside, so there such a ray is no contact.
-DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, GLOBAL const ShapeHeader* RESTRICT shape,
-                  GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                  GLOBAL const Packed3* RESTRICT normals) {
+DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, READS(ShapeHeader) shape,
+                  READS(Node) nodes, READS(TriangleBlock) blocks, READS(Packed3) normals) {
     int decided = verdict(own, ray->reach, shape->tolerance);
     uint sides = 0u;
     while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
@@ -94,10 +92,9 @@ DEVICE Hit decide(const uint caster, const SourceRay* ray, const Closest* own, G
 }
 
 // What the rays of a group meet, and what that makes of each of them: hits by whose they are.
-DEVICE void cast_group(Closest* own, Group* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                       GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                       GLOBAL const Packed3* RESTRICT normals, uint stride, GLOBAL Hit* RESTRICT hits,
-                       GLOBAL uint* RESTRICT outcomes) {
+DEVICE void cast_group(Closest* own, Group* group, READS(ShapeHeader) shapes, READS(Node) nodes,
+                       READS(TriangleBlock) blocks, READS(Packed3) normals, uint stride, WRITES(Hit) hits,
+                       WRITES(uint) outcomes) {
     find_group(own, group, false, shapes, nodes, blocks);
     for (uint r = 0u; r < group->count; ++r)
         if (own[r].back < UNBOUNDED) PREFETCH(normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
@@ -109,11 +106,9 @@ DEVICE void cast_group(Closest* own, Group* group, GLOBAL const ShapeHeader* RES
 }
 
 // Every vertex is in the bounds.
-KERNEL void cast_rays_bvh(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
-                          GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                          GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                          GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                          GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                          READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
+                          READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         Group group;
         Closest own[RAYS_IN_GROUP];
@@ -129,18 +124,16 @@ KERNEL void cast_rays_bvh(COUNT(count), uint stride, GLOBAL const OrderedPair* R
 }
 
 // A vertex that has left the bounds is no contact, whatever its ray meets.
-KERNEL void cast_rays_basic(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                            GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                            READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
+                            READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
     FOR_EACH_FEW(i, few, RAYS_AT_ONCE, count) {
         SourceRay source[RAYS_AT_ONCE];
         RayFrame frame[RAYS_AT_ONCE];
         Closest own[RAYS_AT_ONCE];
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
-            GLOBAL const OrderedPair* pair = pairs + ray.pair;
+            READS(OrderedPair) pair = pairs + ray.pair;
             source[r] = source_ray(pair, vertices, ray.slot);
             frame[r] = frame_ray(source[r].position, source[r].direction);
             own[r] = nothing_hit(source[r].reach, shapes[pair->target].tolerance);
@@ -151,7 +144,7 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, GLOBAL const OrderedPair*
             traverse_basic(own + r, frame + r, same, shapes + target, blocks);
         }
         for (uint r = 0u; r < few; ++r) {
-            GLOBAL const OrderedPair* pair = pairs + rays[i + r].pair;
+            READS(OrderedPair) pair = pairs + rays[i + r].pair;
             const Hit hit = in_bounds(pair, source[r].position) ? decide(CASTER_BASIC, source + r, own + r,
                                                                          shapes + pair->target, nodes, blocks, normals)
                                                                 : no_contact();
@@ -159,4 +152,4 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, GLOBAL const OrderedPair*
         }
     }
 }
-// NOLINTEND(modernize-use-using,modernize-redundant-void-arg)
+// NOLINTEND(modernize-redundant-void-arg)

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far points can move before they could be in contact: a clearance grid keeps of each cell a ball without surface
 // (docs/certified.md).
-// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
+// NOLINTBEGIN(modernize-loop-convert): this text is C as well
 
-typedef struct {
+STRUCT(SafeLanes) {
     float safe[VERTEX_LANES]; // metres a vertex can move before it could be in contact; may be negative
-} SafeLanes;
+};
 
 // A clearance grid, without its balls.
-typedef struct {
+STRUCT(Clearance) {
     float low_x, low_y, low_z, high_x, high_y, high_z; // a box around that of the shape
     float scale, cell, unit;
     uint size_x, size_y;
     uint outward;
-} Clearance;
+};
 
-DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
+DEVICE Clearance clearance_of(READS(ShapeHeader) shape) {
     Clearance grid;
     grid.low_x = shape->clearance_low[0];
     grid.low_y = shape->clearance_low[1];
@@ -33,11 +33,11 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
 }
 
 // The nearest point of the grid's box, and its cell; NaN takes its lower corner.
-typedef struct {
+STRUCT(GridPlace) {
     float x, y, z;
     int cell_x, cell_y, cell_z;
     uint at; // of the grid's words
-} GridPlace;
+};
 
 DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
     GridPlace place;
@@ -55,8 +55,7 @@ DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
 
 // No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
 // its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
-                           float reach) {
+DEVICE float safe_distance(const Clearance grid, READS(uint) balls, float x, float y, float z, float reach) {
     const GridPlace p = place_in(grid, x, y, z);
     const uint word = balls[p.at];
     const float off_x = x - p.x, off_y = y - p.y, off_z = z - p.z;
@@ -86,14 +85,13 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     return gap_xy > gap_z ? gap_xy : gap_z;
 }
 
-DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair* RESTRICT pair,
-                            GLOBAL const VertexBlock* RESTRICT block, GLOBAL const ShapeHeader* RESTRICT target,
-                            GLOBAL const uint* RESTRICT clearances) {
+DEVICE SafeLanes safe_lanes(const InsideLanes* placed, READS(OrderedPair) pair, READS(VertexBlock) block,
+                            READS(ShapeHeader) target, READS(uint) clearances) {
     SafeLanes found;
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    READS(uint) balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTEX_LANES) {
         const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
         const float clear = safe_distance(grid, balls, x, y, z, block->exit[k]);
@@ -105,8 +103,7 @@ DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair*
 }
 
 // Sends for the words that safe_lanes() will ask.
-DEVICE void send_for_words(const InsideLanes* placed, GLOBAL const ShapeHeader* RESTRICT target,
-                           GLOBAL const uint* RESTRICT clearances) {
+DEVICE void send_for_words(const InsideLanes* placed, READS(ShapeHeader) target, READS(uint) clearances) {
     const Clearance grid = clearance_of(target);
     uint at[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
@@ -122,12 +119,11 @@ DEVICE float least_of_sixteen(const float* values) {
 }
 
 // What the ball around a block's box says for all its vertices, without looking at them.
-DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT source,
-                        GLOBAL const ClusterBlock* RESTRICT clusters, uint vertex_block,
-                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
+DEVICE float safe_block(READS(OrderedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
+                        uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
     const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
-    GLOBAL const ClusterBlock* RESTRICT box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
-    GLOBAL const float* r = pair->rotation;
+    READS(ClusterBlock) box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
+    READS(float) r = pair->rotation;
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
     const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
     const Clearance grid = clearance_of(target);
@@ -139,4 +135,4 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
                          ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
            - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
 }
-// NOLINTEND(modernize-use-using,modernize-loop-convert)
+// NOLINTEND(modernize-loop-convert)

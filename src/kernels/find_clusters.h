@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which blocks of sixteen vertices may reach into the target's bounds? Down a tree of boxes, sixteen children wide.
-// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
+// NOLINTBEGIN(modernize-use-nullptr): this text is C as well
 
 // The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
-typedef struct {
+STRUCT(PairBounds) {
     float rotation[9], size[9]; // size: magnitudes of the rotation
     float offset[3];            // source origin relative to the middle of the bounds, target frame
     float half_size[3];
     float source_centre[3], source_half_size[3]; // the same box in the source's frame, axis-aligned there
-} PairBounds;
+};
 
-DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
+DEVICE PairBounds bounds_of(READS(OrderedPair) pair) {
     PairBounds b;
     for (int i = 0; i < 9; ++i) {
         b.rotation[i] = pair->rotation[i];
@@ -47,7 +47,7 @@ DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
 }
 
 // Child boxes that may reach into the bounds: no face of either box separates them.
-DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RESTRICT block) {
+DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
     int hit[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
@@ -71,11 +71,10 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
 
 // Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
 // the bounds cannot be in contact before it reaches them. least_safe: lowered to the safe distance of the other boxes.
-DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block,
-                       GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances, float horizon,
-                       float* least_safe) {
+DEVICE uint near_lanes(READS(OrderedPair) pair, READS(ClusterBlock) block, READS(ShapeHeader) target,
+                       READS(uint) clearances, float horizon, float* least_safe) {
     const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    READS(uint) balls = clearances + target->clearance_first;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
@@ -101,9 +100,9 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
 }
 
 // by_horizon: near_lanes(), the boxes that `horizon` and the target's clearance grid leave; else overlapping_lanes().
-DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool by_horizon,
-                          GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe) {
+DEVICE uint reached_lanes(const PairBounds* bounds, READS(ClusterBlock) block, const bool by_horizon,
+                          READS(OrderedPair) pair, READS(ShapeHeader) target, READS(uint) clearances, float horizon,
+                          float* least_safe) {
     return by_horizon ? near_lanes(pair, block, target, clearances, horizon, least_safe)
                       : overlapping_lanes(bounds, block);
 }
@@ -121,11 +120,9 @@ DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
 
 // Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
 // from `first` on when asked to.
-DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                           GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, float* least_safe, const bool write, uint first,
-                           GLOBAL PairBlock* RESTRICT found) {
+DEVICE uint reach_clusters(uint p, READS(OrderedPair) pair, READS(ShapeHeader) shape, READS(ClusterBlock) clusters,
+                           const bool by_horizon, READS(ShapeHeader) target, READS(uint) clearances, float horizon,
+                           float* least_safe, const bool write, uint first, WRITES(PairBlock) found) {
     const PairBounds bounds = bounds_of(pair);
     uint count = 0u;
     const uint top = shape->cluster_levels - 1u;
@@ -162,12 +159,11 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
 
 // block_masks: for a source of few blocks the blocks found, a bit each. least_safe: if no block was found, how far the
 // pair can at least move before a contact; only with `by_horizon`.
-DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe,
-                          GLOBAL ulong* RESTRICT block_masks) {
-    GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-    GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
+DEVICE uint count_reached(uint p, READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) clusters,
+                          const bool by_horizon, READS(uint) clearances, float horizon, float* least_safe,
+                          WRITES(ulong) block_masks) {
+    READS(ShapeHeader) shape = shapes + pairs[p].source;
+    READS(ShapeHeader) target = shapes + pairs[p].target;
     *least_safe = UNBOUNDED;
     if (shape->vertex_block_count > BLOCKS_IN_MASK)
         return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
@@ -185,12 +181,11 @@ DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
     return number;
 }
 
-DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
-                          GLOBAL PairBlock* RESTRICT found) {
-    GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-    GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
+DEVICE void write_reached(uint p, READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) clusters,
+                          const bool by_horizon, READS(uint) clearances, float horizon, ulong block_mask, uint first,
+                          WRITES(PairBlock) found) {
+    READS(ShapeHeader) shape = shapes + pairs[p].source;
+    READS(ShapeHeader) target = shapes + pairs[p].target;
     if (shape->vertex_block_count > BLOCKS_IN_MASK) {
         float least_safe = UNBOUNDED;
         reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, &least_safe, true, first,
@@ -212,11 +207,9 @@ DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOB
 // that cannot be in contact before they have moved that far. No horizons, or horizons[p] < 0: all of them.
 // safe_distances, where there are horizons: for a pair without blocks, how far its vertices can move before one could
 // be in contact; may be less, also negative.
-KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT safe_distances,
-                           GLOBAL ulong* RESTRICT block_masks) {
+KERNEL void count_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                           READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
+                           WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
         counts[p] = 0u;
         if (pairs[p].source == NONE) continue;
@@ -230,11 +223,9 @@ KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pair
     }
 }
 
-KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL const ulong* RESTRICT block_masks, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL PairBlock* RESTRICT found) {
+KERNEL void write_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                           READS(ClusterBlock) clusters, READS(uint) clearances, READS(ulong) block_masks,
+                           READS(uint) firsts, WRITES(PairBlock) found) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
         const float horizon = horizons != 0 ? horizons[p] : -1.0f;
@@ -244,4 +235,4 @@ KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pair
             write_reached(p, pairs, shapes, clusters, true, clearances, horizon, block_masks[p], firsts[p], found);
     }
 }
-// NOLINTEND(modernize-use-using,modernize-use-nullptr)
+// NOLINTEND(modernize-use-nullptr)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3),
 // and predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 // Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
 #define IN_FULL NONE
@@ -12,11 +11,11 @@
 #define LOST 2u
 #define CAST 4u
 
-typedef struct {
+STRUCT(Outcome) {
     Hit hit;
     uint next; // triangle to begin at in the next step, NONE: not followed
     uint how;
-} Outcome;
+};
 
 // The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
 // (paper equation 1), where the ray is cut (paper section 5.3).
@@ -27,8 +26,8 @@ DEVICE uint predicted(const Closest* ahead, float culling) {
 // By the basic caster, the ray in full, and where it is no contact what lies ahead (culling below 0: nothing). `own`:
 // whether the vertex may be in contact at all.
 DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive, float culling,
-                          GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                          GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+                          READS(ShapeHeader) shape, READS(Node) nodes, READS(TriangleBlock) blocks,
+                          READS(Packed3) normals) {
     const RayFrame frame = frame_ray(ray->position, ray->direction);
     Closest closest = nothing_hit(ray->reach, shape->tolerance), ahead = nothing_hit(culling, shape->tolerance);
     if (predictive != 0u && culling >= 0.0f) {
@@ -45,13 +44,13 @@ DEVICE Outcome cast_basic(const SourceRay* ray, uint own, const uint predictive,
 }
 
 // One step of a walk: where the ray's line passes, as seen from one triangle.
-typedef struct {
+STRUCT(Passage) {
     uint through; // the line passes through it, from inside out as the ray goes
     uint across;  // else the edge beyond which it passes, farthest first; NONE: none
     float t;
-} Passage;
+};
 
-DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane, uint came_by) {
+DEVICE Passage pass_triangle(const RayFrame* ray, READS(TriangleBlock) block, uint lane, uint came_by) {
     float x[3], y[3], z[3], edge[3], beyond[3];
     for (int c = 0; c < 3; ++c) {
         z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
@@ -89,8 +88,8 @@ DEVICE Passage pass_triangle(const RayFrame* ray, GLOBAL const TriangleBlock* RE
 // Algorithm 1: from the last triangle over neighbours, across the edge that the line passes farthest beyond, until the
 // line passes through one that it leaves through. Ends after max_iterations, at a border, and where it would turn back.
 DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_iterations, const uint predictive,
-                    float culling, GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Face* RESTRICT faces,
-                    GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+                    float culling, READS(ShapeHeader) shape, READS(Face) faces, READS(TriangleBlock) blocks,
+                    READS(Packed3) normals) {
     Outcome end;
     end.hit = no_contact();
     end.next = NONE;
@@ -103,7 +102,7 @@ DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_i
         uint came_by = NONE;
         for (uint e = 0u; e < 3u; ++e)
             if (came_from != NONE && face.neighbour[e] == came_from) came_by = e;
-        GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + face.slot / TRIANGLE_LANES;
+        READS(TriangleBlock) block = blocks + shape->triangle_block_first + face.slot / TRIANGLE_LANES;
         const Passage passage = pass_triangle(&frame, block, face.slot % TRIANGLE_LANES, came_by);
         if (passage.through != 0u) {
             const Packed3 n = normals[shape->normal_first + at];
@@ -129,9 +128,8 @@ DEVICE Outcome walk(const SourceRay* ray, uint inside, uint triangle, uint max_i
 
 // What a walk says of a ray. CAST: nothing yet, it is to be cast in full.
 DEVICE Outcome follow_ray(const SourceRay* ray, uint inside, uint start, uint max_iterations, const uint predictive,
-                          const uint cast_lost, float culling, GLOBAL const ShapeHeader* RESTRICT shape,
-                          GLOBAL const Face* RESTRICT faces, GLOBAL const TriangleBlock* RESTRICT blocks,
-                          GLOBAL const Packed3* RESTRICT normals) {
+                          const uint cast_lost, float culling, READS(ShapeHeader) shape, READS(Face) faces,
+                          READS(TriangleBlock) blocks, READS(Packed3) normals) {
     Outcome end;
     end.hit = no_contact();
     end.next = NONE;
@@ -146,16 +144,14 @@ DEVICE Outcome follow_ray(const SourceRay* ray, uint inside, uint start, uint ma
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
 // the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The
 // upper half of PairBlock.lanes tells those whose own ray must be cast. counts: as of count_rays().
-KERNEL void count_near_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT wide,
-                            GLOBAL const float* RESTRICT reach, GLOBAL const float* RESTRICT margins,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const uint* RESTRICT clearances, GLOBAL PairBlock* RESTRICT near_blocks,
-                            GLOBAL uint* RESTRICT counts) {
+KERNEL void count_near_rays(COUNT(count), uint stride, READS(OrderedPair) wide, READS(float) reach,
+                            READS(float) margins, READS(ShapeHeader) shapes, READS(VertexBlock) vertices,
+                            READS(uint) clearances, WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = wide + near_blocks[i].pair;
-        GLOBAL const ShapeHeader* target = shapes + pair->target;
+        READS(OrderedPair) pair = wide + near_blocks[i].pair;
+        READS(ShapeHeader) target = shapes + pair->target;
         const float near = reach[near_blocks[i].pair], margin = margins[near_blocks[i].pair];
-        GLOBAL const VertexBlock* block = vertices + near_blocks[i].vertex_block;
+        READS(VertexBlock) block = vertices + near_blocks[i].vertex_block;
         const InsideLanes held = inside_lanes(pair, block);
         const SafeLanes found = safe_lanes(&held, pair, block, target, clearances);
         int close[VERTEX_LANES], unsafe[VERTEX_LANES];
@@ -171,9 +167,8 @@ KERNEL void count_near_rays(COUNT(count), uint stride, GLOBAL const OrderedPair*
     }
 }
 
-KERNEL void write_near_rays(COUNT(count), GLOBAL const PairBlock* RESTRICT near_blocks,
-                            GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays,
-                            GLOBAL uint* RESTRICT starts) {
+KERNEL void write_near_rays(COUNT(count), READS(PairBlock) near_blocks, READS(uint) firsts, WRITES(Ray) rays,
+                            WRITES(uint) starts) {
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
         uint lanes = found.lanes & 0xffffu;
@@ -192,9 +187,8 @@ KERNEL void write_near_rays(COUNT(count), GLOBAL const PairBlock* RESTRICT near_
 }
 
 // Candidates of the last step become rays of this one. Segment.first: of the candidates; firsts[s]: of the rays.
-KERNEL void copy_candidates(COUNT(count), GLOBAL const Segment* RESTRICT segments, GLOBAL const uint* RESTRICT firsts,
-                            GLOBAL const Candidate* RESTRICT candidates, GLOBAL Ray* RESTRICT rays,
-                            GLOBAL uint* RESTRICT starts) {
+KERNEL void copy_candidates(COUNT(count), READS(Segment) segments, READS(uint) firsts, READS(Candidate) candidates,
+                            WRITES(Ray) rays, WRITES(uint) starts) {
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint i = 0u; i < segment.count; ++i) {
@@ -209,8 +203,8 @@ KERNEL void copy_candidates(COUNT(count), GLOBAL const Segment* RESTRICT segment
 }
 
 // Predictive rays of vertices that are not in contact; nexts: see Outcome.
-DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                             GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL uint* RESTRICT nexts) {
+DEVICE_BATCH void cast_ahead(Group* ahead, READS(ShapeHeader) shapes, READS(Node) nodes, READS(TriangleBlock) blocks,
+                             WRITES(uint) nexts) {
     Closest met[RAYS_IN_GROUP];
     find_group(met, ahead, true, shapes, nodes, blocks);
     for (uint r = 0u; r < ahead->count; ++r) nexts[ahead->at[r]] = predicted(met + r, ahead->reach[r]);
@@ -218,11 +212,10 @@ DEVICE_BATCH void cast_ahead(Group* ahead, GLOBAL const ShapeHeader* RESTRICT sh
 }
 
 // Where such a ray is no contact, what lies ahead is cast next.
-DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GLOBAL const float* RESTRICT cullings,
-                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals,
-                               uint stride, GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes,
-                               GLOBAL uint* RESTRICT nexts) {
+DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, READS(float) cullings,
+                               READS(ShapeHeader) shapes, READS(Node) nodes, READS(TriangleBlock) blocks,
+                               READS(Packed3) normals, uint stride, WRITES(Hit) hits, WRITES(uint) outcomes,
+                               WRITES(uint) nexts) {
     Closest met[RAYS_IN_GROUP];
     cast_group(met, casting, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < casting->count; ++r) {
@@ -238,13 +231,10 @@ DEVICE_BATCH void cast_in_full(Group* casting, Group* ahead, uint predictive, GL
 
 // hows and nexts: see Outcome.
 KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
-                            GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                            GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
-                            GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
-                            GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes, GLOBAL uint* RESTRICT nexts,
-                            GLOBAL uint* RESTRICT hows) {
+                            READS(OrderedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
+                            READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
+                            READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
+                            WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
     Group casting, ahead;
     clear_group(&casting);
     clear_group(&ahead);
@@ -252,7 +242,7 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
         const Ray ray = rays[i];
         const uint target = pairs[ray.pair].target;
         const float culling = cullings[ray.pair];
-        GLOBAL const ShapeHeader* shape = shapes + target;
+        READS(ShapeHeader) shape = shapes + target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
         const uint inside = (uint)in_bounds(pairs + ray.pair, source.position);
         const Outcome end = follow_ray(&source, inside, starts[i], max_iterations, predictive, cast_lost, culling,
@@ -279,16 +269,13 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
 }
 
 KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
-                              GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const float* RESTRICT cullings,
-                              GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                              GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks,
-                              GLOBAL const Face* RESTRICT faces, GLOBAL const Packed3* RESTRICT normals,
-                              GLOBAL const Ray* RESTRICT rays, GLOBAL const uint* RESTRICT starts,
-                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes, GLOBAL uint* RESTRICT nexts,
-                              GLOBAL uint* RESTRICT hows) {
+                              READS(OrderedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
+                              READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
+                              READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
+                              WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
     FOR_EACH(i, count) {
-        GLOBAL const OrderedPair* pair = pairs + rays[i].pair;
-        GLOBAL const ShapeHeader* shape = shapes + pair->target;
+        READS(OrderedPair) pair = pairs + rays[i].pair;
+        READS(ShapeHeader) shape = shapes + pair->target;
         const float culling = cullings[rays[i].pair];
         const SourceRay ray = source_ray(pair, vertices, rays[i].slot);
         const uint inside = (uint)in_bounds(pair, ray.position);
@@ -307,7 +294,7 @@ KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive
 }
 
 // Rays of a pair lie together. ranges: first and end of each pair, zero where it has none.
-KERNEL void find_ranges(COUNT(count), GLOBAL const Ray* RESTRICT rays, GLOBAL uint* RESTRICT ranges) {
+KERNEL void find_ranges(COUNT(count), READS(Ray) rays, WRITES(uint) ranges) {
     FOR_EACH(i, count) {
         const uint pair = rays[i].pair;
         if (i == 0u || rays[i - 1u].pair != pair) ranges[2u * pair] = i;
@@ -315,9 +302,8 @@ KERNEL void find_ranges(COUNT(count), GLOBAL const Ray* RESTRICT rays, GLOBAL ui
     }
 }
 
-KERNEL void count_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, GLOBAL const Hit* RESTRICT hits,
-                             GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT hows,
-                             GLOBAL Followed* RESTRICT followed, GLOBAL uint* RESTRICT counts) {
+KERNEL void count_candidates(COUNT(count), READS(uint) ranges, READS(Hit) hits, READS(uint) nexts, READS(uint) hows,
+                             WRITES(Followed) followed, WRITES(uint) counts) {
     FOR_EACH(p, count) {
         Followed sum;
         sum.kept = 0u;
@@ -338,9 +324,8 @@ KERNEL void count_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, G
     }
 }
 
-KERNEL void write_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, GLOBAL const Ray* RESTRICT rays,
-                             GLOBAL const uint* RESTRICT nexts, GLOBAL const uint* RESTRICT firsts,
-                             GLOBAL Candidate* RESTRICT candidates) {
+KERNEL void write_candidates(COUNT(count), READS(uint) ranges, READS(Ray) rays, READS(uint) nexts, READS(uint) firsts,
+                             WRITES(Candidate) candidates) {
     FOR_EACH(p, count) {
         uint at = firsts[p];
         for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
@@ -354,4 +339,3 @@ KERNEL void write_candidates(COUNT(count), GLOBAL const uint* RESTRICT ranges, G
         }
     }
 }
-// NOLINTEND(modernize-use-using)

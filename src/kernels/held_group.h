@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what is known of a ray still decides it (docs/certified.md), asked of a group of rays together, a lane each:
 // nearly every ray at rest is decided so. On a GPU a group is one ray.
-// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
+// NOLINTBEGIN(modernize-loop-convert): this text is C as well
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
 
 // Rays, and what was held of each.
-typedef struct {
+STRUCT(HeldGroup) {
     Group rays;
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
@@ -25,7 +25,7 @@ typedef struct {
     float edge[3][RAYS_IN_GROUP];
     uint is_inside_edges[RAYS_IN_GROUP], is_exit[RAYS_IN_GROUP];
     uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the cap of the neighbour is tested next; 0: none
-} HeldGroup;
+};
 
 // Lanes without a ray, or without a triangle, are asked with the others.
 DEVICE void clear_held(HeldGroup* group) {
@@ -40,14 +40,13 @@ DEVICE void clear_held(HeldGroup* group) {
 }
 
 // Each of its words lies in another line.
-DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint lane) {
+DEVICE void send_for_triangle(READS(TriangleBlock) block, uint lane) {
     PREFETCH(block->triangle, lane);
     for (int k = 0; k < 9; ++k) PREFETCH(block->corner[k], lane);
 }
 
-DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
-                     GLOBAL const HeldRange* RESTRICT held_range, uint pair, uint target,
-                     GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held, READS(HeldRange) held_range,
+                     uint pair, uint target, READS(ShapeHeader) shapes, READS(TriangleBlock) blocks) {
     const uint r = group->rays.count;
     add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
     for (int i = 0; i < 3; ++i) {
@@ -61,15 +60,15 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
-    GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
+    READS(TriangleBlock) block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
     if (held_range->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
-DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+DEVICE void fetch_triangle(HeldGroup* group, uint r, READS(ShapeHeader) shapes, READS(TriangleBlock) blocks,
+                           READS(Packed3) normals) {
     const uint slot = group->triangle_slot[r], lane = slot % TRIANGLE_LANES;
-    GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
+    READS(TriangleBlock) block = blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
     group->cap[r] = group->asks_cap[r] != 0u ? block->cap[lane] : 0u;
@@ -77,8 +76,8 @@ DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* R
 }
 
 // What add_held() has sent for.
-DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                            GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+DEVICE void fetch_triangles(HeldGroup* group, READS(ShapeHeader) shapes, READS(TriangleBlock) blocks,
+                            READS(Packed3) normals) {
     for (uint r = 0u; r < group->rays.count; ++r)
         if (group->triangle_slot[r] != NONE) fetch_triangle(group, r, shapes, blocks, normals);
 }
@@ -146,8 +145,7 @@ DEVICE void ask_held(HeldGroup* group) {
 }
 
 // As decide() would have it: of one triangle there is nothing to tell apart, so no other direction is asked.
-DEVICE Hit held_hit(const HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
-                    GLOBAL const Packed3* RESTRICT normals) {
+DEVICE Hit held_hit(const HeldGroup* group, uint r, READS(ShapeHeader) shapes, READS(Packed3) normals) {
     Hit hit = no_contact();
     if (group->is_hit[r] != 0u) {
         const Packed3 n = normals[shapes[group->rays.target[r]].normal_first + group->triangle[r]];
@@ -158,4 +156,4 @@ DEVICE Hit held_hit(const HeldGroup* group, uint r, GLOBAL const ShapeHeader* RE
     }
     return hit;
 }
-// NOLINTEND(modernize-use-using,modernize-loop-convert)
+// NOLINTEND(modernize-loop-convert)

@@ -2,14 +2,13 @@
 // Rays that need not be cast again (docs/certified.md). What is known by a tube (tube.h) lasts until a point of the ray
 // has moved as far as that is wide: one triangle alone can be met, or none. What a triangle's cap says is asked anew in
 // each step (cap_group.h).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
 
 // The place of a ray among those that its pair held, which ascend by slot, or of the first one after it. likely: its
 // place among those of this step, mostly the same.
-DEVICE uint find_held(GLOBAL const Held* RESTRICT held, uint count, uint slot, uint likely) {
+DEVICE uint find_held(READS(Held) held, uint count, uint slot, uint likely) {
     if (likely < count && held[likely].slot == slot) return likely;
     uint low = 0u, high = count;
     while (low < high) {
@@ -33,14 +32,13 @@ DEVICE Held nothing_held(uint slot) {
 }
 
 // Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
-DEVICE bool is_idle(GLOBAL const HeldRange* RESTRICT held_range) {
+DEVICE bool is_idle(READS(HeldRange) held_range) {
     return held_range->count == 0u && held_range->radius <= 0.0f && held_range->asks_caps == 0u;
 }
 
 // What is known of a ray from now on, where it had to be cast.
-DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL const HeldRange* RESTRICT held_range,
-                           GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const Node* RESTRICT nodes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, READS(HeldRange) held_range,
+                           READS(ShapeHeader) shape, READS(Node) nodes, READS(TriangleBlock) blocks) {
     Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
@@ -64,19 +62,18 @@ DEVICE_RARE Held seek_tube(const SourceRay* ray, const Closest* own, GLOBAL cons
 
 // Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
 // from now on.
-DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const HeldRange* RESTRICT held_ranges,
-                               GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                               GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                               GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
-                               GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+DEVICE_BATCH void cast_waiting(Group* waiting, READS(HeldRange) held_ranges, READS(ShapeHeader) shapes,
+                               READS(Node) nodes, READS(TriangleBlock) blocks, READS(Face) faces,
+                               READS(Packed3) normals, WRITES(Held) after, uint stride, WRITES(Hit) hits,
+                               WRITES(uint) outcomes) {
     Closest own[RAYS_IN_GROUP];
     cast_group(own, waiting, shapes, nodes, blocks, normals, stride, hits, outcomes);
     for (uint r = 0u; r < waiting->count; ++r) {
-        GLOBAL const HeldRange* held_range = held_ranges + waiting->pair[r];
+        READS(HeldRange) held_range = held_ranges + waiting->pair[r];
         if (is_idle(held_range)) continue;
         const uint at = waiting->at[r];
         const SourceRay source = ray_of(waiting, r);
-        GLOBAL const ShapeHeader* shape = shapes + waiting->target[r];
+        READS(ShapeHeader) shape = shapes + waiting->target[r];
         Held held = after[at];
         const uint slot = held.slot;
         const bool had_tube = held.safe > 0.0f;
@@ -100,11 +97,9 @@ DEVICE_BATCH void cast_waiting(Group* waiting, GLOBAL const HeldRange* RESTRICT 
 }
 
 // The rays of a group that neither their tube nor a cap decides are cast.
-DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const HeldRange* RESTRICT held_ranges,
-                              GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const Node* RESTRICT nodes,
-                              GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                              GLOBAL const Packed3* RESTRICT normals, GLOBAL Held* RESTRICT after, uint stride,
-                              GLOBAL Hit* RESTRICT hits, GLOBAL uint* RESTRICT outcomes) {
+DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, READS(HeldRange) held_ranges, READS(ShapeHeader) shapes,
+                              READS(Node) nodes, READS(TriangleBlock) blocks, READS(Face) faces, READS(Packed3) normals,
+                              WRITES(Held) after, uint stride, WRITES(Hit) hits, WRITES(uint) outcomes) {
     fetch_triangles(group, shapes, blocks, normals);
     ask_tubes_and_caps(group, shapes, blocks, faces, normals);
     for (uint r = 0u; r < group->rays.count; ++r) {
@@ -128,13 +123,10 @@ DEVICE_BATCH void decide_held(HeldGroup* group, Group* waiting, GLOBAL const Hel
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds. before, after: rays held in the last
 // step and now, those of idle pairs left as they are.
-KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
-                      GLOBAL const HeldRange* RESTRICT held_ranges, GLOBAL const ShapeHeader* RESTRICT shapes,
-                      GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const Node* RESTRICT nodes,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Face* RESTRICT faces,
-                      GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                      GLOBAL const Held* RESTRICT before, GLOBAL Held* RESTRICT after, GLOBAL Hit* RESTRICT hits,
-                      GLOBAL uint* RESTRICT outcomes) {
+KERNEL void hold_rays(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(HeldRange) held_ranges,
+                      READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(Node) nodes,
+                      READS(TriangleBlock) blocks, READS(Face) faces, READS(Packed3) normals, READS(Ray) rays,
+                      READS(Held) before, WRITES(Held) after, WRITES(Hit) hits, WRITES(uint) outcomes) {
     Group waiting;
     HeldGroup group;
     clear_group(&waiting);
@@ -145,13 +137,13 @@ KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTR
             PREFETCH(pairs, rays[i + 8u].pair);
             PREFETCH(held_ranges, rays[i + 8u].pair);
         }
-        GLOBAL const HeldRange* held_range = held_ranges + ray.pair;
+        READS(HeldRange) held_range = held_ranges + ray.pair;
         const uint target = pairs[ray.pair].target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
         bool held = false;
         if (!is_idle(held_range)) {
-            GLOBAL const Held* own = before + held_range->first;
+            READS(Held) own = before + held_range->first;
             const uint place = find_held(own, held_range->count, ray.slot, i - held_range->now_first);
             const bool capped = held_range->asks_caps != 0u;
             Held known = nothing_held(ray.slot);
@@ -181,4 +173,3 @@ KERNEL void hold_rays(COUNT(count), uint stride, GLOBAL const OrderedPair* RESTR
         cast_waiting(&waiting, held_ranges, shapes, nodes, blocks, faces, normals, after, stride, hits, outcomes);
     }
 }
-// NOLINTEND(modernize-use-using)

@@ -2,7 +2,7 @@
 // A look at what a pair watches: the blocks that are due are asked of the target's balls, for which vertices could be
 // in contact, and until when the others may sleep. The bounds are asked of each ray (hold.h).
 //
-// NOLINTBEGIN(modernize-use-using,modernize-redundant-void-arg): this text is C as well
+// NOLINTBEGIN(modernize-redundant-void-arg): this text is C as well
 
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 
@@ -32,11 +32,10 @@ DEVICE Look known_block(uint lanes, float wake, uint bit) {
     return found;
 }
 
-DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segment,
-                          GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const VertexBlock* RESTRICT vertices, GLOBAL const uint* RESTRICT clearances,
-                          GLOBAL Watch* RESTRICT watches) {
-    GLOBAL Watch* RESTRICT watch = watches + i;
+DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segment, READS(OrderedPair) pair,
+                          READS(ShapeHeader) target, READS(VertexBlock) vertices, READS(uint) clearances,
+                          WRITES(Watch) watches) {
+    WRITES(Watch) watch = watches + i;
     const SafeLanes asked = safe_lanes(placed, pair, vertices + watch->vertex_block, target, clearances);
     int unsafe[VERTEX_LANES];
     float others[VERTEX_LANES];
@@ -60,30 +59,28 @@ DEVICE Look look_at_block(uint i, const InsideLanes* placed, const Segment segme
 
 // A block that is due. The words of its cells are not near: a grid is large, or the caches went to others since the
 // last step. So looks wait for each other: what one reads is under way while others are done.
-typedef struct {
+STRUCT(WaitingLook) {
     uint segment, watch;
     InsideLanes placed;
-} WaitingLook;
+};
 
 // All of it: what a look leaves its rays will read.
-DEVICE void send_for_block(GLOBAL const VertexBlock* RESTRICT vertices, uint block) {
+DEVICE void send_for_block(READS(VertexBlock) vertices, uint block) {
     for (uint line = 0u; line < 8u; ++line) PREFETCH((GLOBAL const float*)(vertices + block), VERTEX_LANES * line);
 }
 
-DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const OrderedPair* RESTRICT pairs,
-                                GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                                GLOBAL const uint* RESTRICT clearances, GLOBAL const Segment* RESTRICT segments,
-                                GLOBAL Watch* RESTRICT watches, GLOBAL Look* RESTRICT looks,
-                                GLOBAL uint* RESTRICT rays) {
+DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                                READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
+                                WRITES(Watch) watches, WRITES(Look) looks, WRITES(uint) rays) {
     for (uint k = 0u; k < count; ++k) {
         WaitingLook* look = waiting + k;
-        GLOBAL const OrderedPair* pair = pairs + segments[look->segment].pair;
+        READS(OrderedPair) pair = pairs + segments[look->segment].pair;
         look->placed = inside_lanes(pair, vertices + watches[look->watch].vertex_block);
         send_for_words(&look->placed, shapes + pair->target, clearances);
     }
     for (uint k = 0u; k < count; ++k) {
         const uint s = waiting[k].segment;
-        GLOBAL const OrderedPair* pair = pairs + segments[s].pair;
+        READS(OrderedPair) pair = pairs + segments[s].pair;
         const WaitingLook* look = waiting + k;
         looks[s] = add_looks(looks[s], look_at_block(look->watch, &look->placed, segments[s], pair,
                                                      shapes + pair->target, vertices, clearances, watches));
@@ -91,10 +88,9 @@ DEVICE_BATCH void look_together(WaitingLook* waiting, uint count, GLOBAL const O
     }
 }
 
-KERNEL void look_at_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                            GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                            GLOBAL const uint* RESTRICT clearances, GLOBAL const Segment* RESTRICT segments,
-                            GLOBAL Watch* RESTRICT watches, GLOBAL Look* RESTRICT looks, GLOBAL uint* RESTRICT rays) {
+KERNEL void look_at_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                            READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
+                            WRITES(Watch) watches, WRITES(Look) looks, WRITES(uint) rays) {
     WaitingLook waiting[LOOKS_TOGETHER];
     uint waits = 0u;
     FOR_EACH(s, count) {
@@ -125,4 +121,4 @@ KERNEL void look_at_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pai
     if (LOOKS_TOGETHER > 1)
         look_together(waiting, waits, pairs, shapes, vertices, clearances, segments, watches, looks, rays);
 }
-// NOLINTEND(modernize-use-using,modernize-redundant-void-arg)
+// NOLINTEND(modernize-redundant-void-arg)

@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of a pair begin side by side, and short ones end there: what of the tree reaches into the box around them is
 // sought once for all, and each ray is tested against those leaves alone. Of use where RAYS_IN_GROUP is more than 1.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define GROUP_VISITS (8 * RAYS_IN_GROUP) // a ray alone has two or three leaves
 
 // Rays of a group that belong to one pair lie side by side, short ones in a small box.
-typedef struct {
+STRUCT(Runs) {
     float box[RAYS_IN_GROUP][6]; // lower x y z, upper x y z
     uint rays[RAYS_IN_GROUP];    // a bit each
     uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
     uint count;
-} Runs;
+};
 
 // What is still to be tested: nodes for which run, or triangle blocks (absolute) for which ray.
-typedef struct {
+STRUCT(Visits) {
     uint who[GROUP_VISITS], at[GROUP_VISITS];
     uint count;
-} Visits;
+};
 
 // Leaves that a run's box reaches: lanes of nodes.
-typedef struct {
+STRUCT(NearLeaves) {
     uint run[GROUP_VISITS], node[GROUP_VISITS], lane[GROUP_VISITS], block[GROUP_VISITS];
     uint meets[GROUP_VISITS]; // rays of the run, a bit each
     uint count;
-} NearLeaves;
+};
 
 DEVICE void begin_run(Runs* runs, const Group* group, uint r) {
     float* box = runs->box[runs->count];
@@ -69,7 +68,7 @@ DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
 }
 
 // Down the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
-DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, GLOBAL const Node* RESTRICT nodes) {
+DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) nodes) {
     Visits levels[2];
     uint near[GROUP_VISITS];
     uint full = 0u, level = 0u;
@@ -117,7 +116,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, GLOBAL const 
 
 // A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
 // children_in() let through only: the box of an empty one would come out the right way round.
-DEVICE uint rays_that_meet(const Group* group, GLOBAL const Node* RESTRICT node, uint lane) {
+DEVICE uint rays_that_meet(const Group* group, READS(Node) node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
     int meets[NODE_LANES] = {0}; // lanes without a ray
@@ -133,4 +132,3 @@ DEVICE uint rays_that_meet(const Group* group, GLOBAL const Node* RESTRICT node,
     }
     return pack_sixteen(meets);
 }
-// NOLINTEND(modernize-use-using)

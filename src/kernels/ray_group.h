@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that wait until there are enough of them for a group, to be framed and cast together. A lane each; on a GPU a
 // group is one ray.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
 
 // A ray in each lane; of its frame, what RayFrame holds.
-typedef struct {
+STRUCT(Group) {
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
     float origin[3][RAYS_IN_GROUP], shear[3][RAYS_IN_GROUP], inverse[3][RAYS_IN_GROUP];
     uint axis[3][RAYS_IN_GROUP];
@@ -16,7 +15,7 @@ typedef struct {
     uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
     uint at[RAYS_IN_GROUP]; // whose ray it is
     uint count;
-} Group;
+};
 
 // Lanes without a ray are framed with the others.
 DEVICE void clear_group(Group* group) {
@@ -27,9 +26,9 @@ DEVICE void clear_group(Group* group) {
 
 // at: whose ray it is. The group seeks no farther than a short ray.
 DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
-                    GLOBAL const ShapeHeader* RESTRICT shapes) {
+                    READS(ShapeHeader) shapes) {
     const uint r = group->count;
-    GLOBAL const ShapeHeader* RESTRICT shape = shapes + target;
+    READS(ShapeHeader) shape = shapes + target;
     const float probe = PROBE_TOLERANCES * shape->tolerance;
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
@@ -101,4 +100,3 @@ DEVICE RayFrame frame_of(const Group* group, uint r) {
     }
     return frame;
 }
-// NOLINTEND(modernize-use-using)

@@ -2,20 +2,18 @@
 // Short rays, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
 // before it knows the next one. Here each stage is done for all rays before the next stage begins, so that hardly any
 // branch depends on an unfinished test.
-//
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define GROUP_TRIANGLES (4 * RAYS_IN_GROUP) // one or two for a ray
 
 // Triangles that passed the block test, each to be tested by hit_lane()'s operations against its ray.
-typedef struct {
+STRUCT(TriangleTests) {
     uint visit[GROUP_TRIANGLES], lane[GROUP_TRIANGLES];
     uint count;
-} TriangleTests;
+};
 
 // hit_lane() for all of them, sixteen at a time.
 DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* leaves, const TriangleTests* tests,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+                           READS(TriangleBlock) blocks) {
     for (uint first = 0u; first < tests->count; first += TRIANGLE_LANES) {
         const uint left = tests->count - first, few = left < TRIANGLE_LANES ? left : TRIANGLE_LANES;
         float corner[9][TRIANGLE_LANES], origin[3][TRIANGLE_LANES], shear[3][TRIANGLE_LANES], t[TRIANGLE_LANES];
@@ -23,7 +21,7 @@ DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* l
         for (uint k = 0u; k < TRIANGLE_LANES; ++k) {
             const uint i = first + (k < few ? k : 0u), visit = tests->visit[i], r = leaves->who[visit];
             const uint lane = tests->lane[i];
-            GLOBAL const TriangleBlock* RESTRICT block = blocks + leaves->at[visit];
+            READS(TriangleBlock) block = blocks + leaves->at[visit];
             for (uint j = 0u; j < 3u; ++j) {
                 const uint axis = group->axis[j][r];
                 for (uint c = 0u; c < 3u; ++c) corner[3u * c + j][k] = block->corner[3u * c + axis][lane];
@@ -53,8 +51,7 @@ DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* l
 
 // The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that must be cast
 // by itself, because there was no room for its leaves or triangles.
-DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const Node* RESTRICT nodes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE uint traverse_group(Closest* closest, const Group* group, READS(Node) nodes, READS(TriangleBlock) blocks) {
     Runs runs;
     NearLeaves near;
     Visits leaves;
@@ -110,4 +107,3 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const No
     test_triangles(closest, group, &leaves, &tests, blocks);
     return full;
 }
-// NOLINTEND(modernize-use-using)

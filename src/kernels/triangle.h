@@ -3,22 +3,21 @@
 // functions. Two facts make it exact in float32, given the sheared coordinates, which neighbours share:
 // rounding is monotone, so fl(a) - fl(b) has the sign of a - b unless it is 0; and product_error() gives what the
 // rounding of a product lost, which decides the rest.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
+STRUCT(RayFrame) {
     float origin[3]; // permuted: x, y, z with z the largest component of the direction
     float shear[3];  // x / z, y / z, 1 / z
     uint axis[3];
     float raw_origin[3];
     float inverse[3]; // 1 / direction, huge instead of infinite
-} RayFrame;
+};
 
 // Closest hits so far. `limit` bounds what can still change the outcome.
-typedef struct {
+STRUCT(Closest) {
     float back, front; // distances of the closest face met from inside, from outside
     uint back_triangle;
     float limit;
-} Closest;
+};
 
 // Huge instead of infinite, with the sign of d.
 DEVICE float safe_inverse(float d) {
@@ -28,9 +27,9 @@ DEVICE float safe_inverse(float d) {
 
 // Axes of a frame: z where the direction is largest, the winding kept. Found without a branch: where a ray points is as
 // good as random, and a wrong guess costs more than it all.
-typedef struct {
+STRUCT(Axes) {
     uint x, y, z;
-} Axes;
+};
 
 DEVICE uint largest_axis(float x, float y, float z) {
     const float ax = magnitude_of(x), ay = magnitude_of(y), az = magnitude_of(z);
@@ -98,9 +97,9 @@ DEVICE float cross_accurate(float a, float b, float c, float d) {
 }
 
 // Edge functions of a triangle as the ray sees it: of no two signs where the ray's line passes through it.
-typedef struct {
+STRUCT(Edges) {
     float u, v, w;
-} Edges;
+};
 
 DEVICE Edges edges_of_sheared(float x0, float y0, float x1, float y1, float x2, float y2) {
     Edges edges;
@@ -133,8 +132,8 @@ DEVICE void accept_hit(Closest* closest, float t, bool back, uint triangle, floa
 }
 
 // One lane again, closely.
-DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
-                     float tolerance, const bool by_distance) {
+DEVICE void hit_lane(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lane, float tolerance,
+                     const bool by_distance) {
     float x[3], y[3], z[3];
     for (int c = 0; c < 3; ++c) z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
     if (!by_distance) {
@@ -157,17 +156,17 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
 // by_distance: also leaves out lanes whose corners are all behind the ray, or all too far, by more than rounding could
 // hide (a hit is a mean of its corners). That pays where the block is near; where every block is tried, few lanes get
 // so far.
-DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
-                      float tolerance, const bool by_distance) {
-    GLOBAL const float* RESTRICT ax = (block->corner + ray->axis[0])[0];
-    GLOBAL const float* RESTRICT ay = (block->corner + ray->axis[1])[0];
-    GLOBAL const float* RESTRICT az = (block->corner + ray->axis[2])[0];
-    GLOBAL const float* RESTRICT bx = (block->corner + ray->axis[0])[3];
-    GLOBAL const float* RESTRICT by = (block->corner + ray->axis[1])[3];
-    GLOBAL const float* RESTRICT bz = (block->corner + ray->axis[2])[3];
-    GLOBAL const float* RESTRICT cx = (block->corner + ray->axis[0])[6];
-    GLOBAL const float* RESTRICT cy = (block->corner + ray->axis[1])[6];
-    GLOBAL const float* RESTRICT cz = (block->corner + ray->axis[2])[6];
+DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, float tolerance,
+                      const bool by_distance) {
+    READS(float) ax = (block->corner + ray->axis[0])[0];
+    READS(float) ay = (block->corner + ray->axis[1])[0];
+    READS(float) az = (block->corner + ray->axis[2])[0];
+    READS(float) bx = (block->corner + ray->axis[0])[3];
+    READS(float) by = (block->corner + ray->axis[1])[3];
+    READS(float) bz = (block->corner + ray->axis[2])[3];
+    READS(float) cx = (block->corner + ray->axis[0])[6];
+    READS(float) cy = (block->corner + ray->axis[1])[6];
+    READS(float) cz = (block->corner + ray->axis[2])[6];
     const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
     const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
     int hit[TRIANGLE_LANES];
@@ -192,4 +191,3 @@ DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const 
     }
     return pack_sixteen(hit);
 }
-// NOLINTEND(modernize-use-using)

@@ -6,14 +6,12 @@
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
-KERNEL void begin_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                          GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
-                          GLOBAL const uint* RESTRICT clearances, GLOBAL const float* RESTRICT margins,
-                          GLOBAL const PairBlock* RESTRICT near_blocks, GLOBAL const uint* RESTRICT firsts,
-                          GLOBAL const uint* RESTRICT places, GLOBAL Watch* RESTRICT watches) {
+KERNEL void begin_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
+                          READS(uint) clearances, READS(float) margins, READS(PairBlock) near_blocks,
+                          READS(uint) firsts, READS(uint) places, WRITES(Watch) watches) {
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
-        GLOBAL const OrderedPair* pair = pairs + found.pair;
+        READS(OrderedPair) pair = pairs + found.pair;
         const float safe =
             safe_block(pair, shapes + pair->source, boxes, found.vertex_block, shapes + pair->target, clearances)
             - margins[found.pair];
@@ -26,14 +24,13 @@ KERNEL void begin_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs
 }
 
 // looks: of this step. The rays begin at place `begin`.
-KERNEL void write_watch_rays(COUNT(count), uint begin, GLOBAL const Segment* RESTRICT segments,
-                             GLOBAL const Watch* RESTRICT watches, GLOBAL const Look* RESTRICT looks,
-                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
+KERNEL void write_watch_rays(COUNT(count), uint begin, READS(Segment) segments, READS(Watch) watches, READS(Look) looks,
+                             READS(uint) firsts, WRITES(Ray) rays) {
     FOR_EACH(s, count) {
         const uint pair = segments[s].pair, first = segments[s].first;
         uint at = begin + firsts[s];
         for (uint casting = looks[s].casting; casting != 0u; casting &= casting - 1u) {
-            GLOBAL const Watch* RESTRICT watch = watches + first + lowest_bit(casting);
+            READS(Watch) watch = watches + first + lowest_bit(casting);
             for (uint lanes = watch->lanes; lanes != 0u; lanes &= lanes - 1u) {
                 rays[at].pair = pair;
                 rays[at].slot = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);
