@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which blocks of sixteen vertices may reach into the target's bounds? Down a tree of boxes, sixteen children wide.
-// NOLINTBEGIN(modernize-use-nullptr): this text is C as well
 
 // The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
 STRUCT(PairBounds) {
@@ -69,12 +68,25 @@ DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
     return pack_sixteen(hit);
 }
 
+// Whose blocks are sought, in its source's tree of clusters, and what the boxes are compared with.
+STRUCT(Search) {
+    uint p;
+    READS(OrderedPair) pair;
+    READS(ShapeHeader) source;
+    READS(ShapeHeader) target;
+    READS(ClusterBlock) clusters;
+    READS(uint) clearances;
+    float horizon;
+    float least_safe; // of the boxes left out
+};
+
 // Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
-// the bounds cannot be in contact before it reaches them. least_safe: lowered to the safe distance of the other boxes.
-DEVICE uint near_lanes(READS(OrderedPair) pair, READS(ClusterBlock) block, READS(ShapeHeader) target,
-                       READS(uint) clearances, float horizon, float* least_safe) {
+// the bounds cannot be in contact before it reaches them.
+DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
+    READS(OrderedPair) pair = search->pair;
+    READS(ShapeHeader) target = search->target;
     const Clearance grid = clearance_of(target);
-    READS(uint) balls = clearances + target->clearance_first;
+    READS(uint) balls = search->clearances + target->clearance_first;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
@@ -89,48 +101,49 @@ DEVICE uint near_lanes(READS(OrderedPair) pair, READS(ClusterBlock) block, READS
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
         const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-        const uint reached = (uint)(safe <= horizon);
+        const uint reached = (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
-        const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
+        const uint passed_over = (uint)(safe > search->horizon); // not NaN, of empty lanes
         beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
-    *least_safe = least < *least_safe ? least : *least_safe;
+    search->least_safe = least < search->least_safe ? least : search->least_safe;
     return pack_sixteen(within);
 }
 
-// by_horizon: near_lanes(), the boxes that `horizon` and the target's clearance grid leave; else overlapping_lanes().
-DEVICE uint reached_lanes(const PairBounds* bounds, READS(ClusterBlock) block, const bool by_horizon,
-                          READS(OrderedPair) pair, READS(ShapeHeader) target, READS(uint) clearances, float horizon,
-                          float* least_safe) {
-    return by_horizon ? near_lanes(pair, block, target, clearances, horizon, least_safe)
-                      : overlapping_lanes(bounds, block);
+// No horizons: below 0.
+DEVICE Search search_of(uint p, READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                        READS(ClusterBlock) clusters, READS(uint) clearances) {
+    READS(OrderedPair) pair = pairs + p;
+    const Search search = {p,        pair,       shapes + pair->source,          shapes + pair->target,
+                           clusters, clearances, horizons ? horizons[p] : -1.0f, UNBOUNDED};
+    return search;
+}
+
+// by_horizon: near_lanes(), the boxes that the horizon and the target's clearance grid leave; else overlapping_lanes().
+DEVICE uint reached_lanes(Search* search, const PairBounds* bounds, const bool by_horizon, uint level, uint at) {
+    READS(ClusterBlock) block = search->clusters + search->source->cluster_first[level] + at;
+    return by_horizon ? near_lanes(search, block) : overlapping_lanes(bounds, block);
 }
 
 // For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
 #define BLOCKS_IN_MASK 64u
 
-DEVICE PairBlock pair_block(uint pair, uint vertex_block) {
-    PairBlock cluster;
-    cluster.pair = pair;
-    cluster.vertex_block = vertex_block;
-    cluster.lanes = 0u;
-    return cluster;
+DEVICE PairBlock pair_block(const Search* search, uint block) {
+    const PairBlock found = {search->p, search->source->vertex_block_first + block, 0u};
+    return found;
 }
 
-// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
-// from `first` on when asked to.
-DEVICE uint reach_clusters(uint p, READS(OrderedPair) pair, READS(ShapeHeader) shape, READS(ClusterBlock) clusters,
-                           const bool by_horizon, READS(ShapeHeader) target, READS(uint) clearances, float horizon,
-                           float* least_safe, const bool write, uint first, WRITES(PairBlock) found) {
-    const PairBounds bounds = bounds_of(pair);
+// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them when
+// asked to.
+DEVICE uint reach_clusters(Search* search, const PairBounds* bounds, const bool by_horizon, const bool write,
+                           WRITES(PairBlock) found) {
     uint count = 0u;
-    const uint top = shape->cluster_levels - 1u;
-    for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
+    const uint top = search->source->cluster_levels - 1u;
+    for (uint root = 0u; root < search->source->cluster_count[top]; ++root) {
         uint level = top, at = root;
         ulong trail = 0u;
-        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
-                                   clearances, horizon, least_safe);
+        uint lanes = reached_lanes(search, bounds, by_horizon, level, at);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -143,64 +156,43 @@ DEVICE uint reach_clusters(uint p, READS(OrderedPair) pair, READS(ShapeHeader) s
             const uint child = VERTEX_LANES * at + lowest_bit(lanes);
             lanes &= lanes - 1u;
             if (level == 0u) {
-                if (write) found[first + count] = pair_block(p, shape->vertex_block_first + child);
+                if (write) found[count] = pair_block(search, child);
                 ++count;
             } else {
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
                 --level;
                 at = child;
-                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
-                                      clearances, horizon, least_safe);
+                lanes = reached_lanes(search, bounds, by_horizon, level, at);
             }
         }
     }
     return count;
 }
 
-// block_masks: for a source of few blocks the blocks found, a bit each. least_safe: if no block was found, how far the
-// pair can at least move before a contact; only with `by_horizon`.
-DEVICE uint count_reached(uint p, READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) clusters,
-                          const bool by_horizon, READS(uint) clearances, float horizon, float* least_safe,
-                          WRITES(ulong) block_masks) {
-    READS(ShapeHeader) shape = shapes + pairs[p].source;
-    READS(ShapeHeader) target = shapes + pairs[p].target;
-    *least_safe = UNBOUNDED;
-    if (shape->vertex_block_count > BLOCKS_IN_MASK)
-        return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
-                              0u, (GLOBAL PairBlock*)0);
-    const PairBounds bounds = bounds_of(pairs + p);
+// block_mask: of a source of few blocks the blocks found, a bit each.
+DEVICE uint count_reached(Search* search, const bool by_horizon, WRITES(ulong) block_mask) {
+    const PairBounds bounds = bounds_of(search->pair);
+    if (search->source->vertex_block_count > BLOCKS_IN_MASK)
+        // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+        return reach_clusters(search, &bounds, by_horizon, false, (GLOBAL PairBlock*)0);
     ulong blocks = 0u;
-    uint number = 0u;
-    for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, by_horizon, pairs + p, target,
-                                         clearances, horizon, least_safe);
-        blocks |= (ulong)lanes << (VERTEX_LANES * i);
-        number += bit_count(lanes);
-    }
-    block_masks[p] = blocks;
-    return number;
+    for (uint i = 0u; i < search->source->cluster_count[0]; ++i)
+        blocks |= (ulong)reached_lanes(search, &bounds, by_horizon, 0u, i) << (VERTEX_LANES * i);
+    *block_mask = blocks;
+    return bit_count_of_long(blocks);
 }
 
-DEVICE void write_reached(uint p, READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) clusters,
-                          const bool by_horizon, READS(uint) clearances, float horizon, ulong block_mask, uint first,
-                          WRITES(PairBlock) found) {
-    READS(ShapeHeader) shape = shapes + pairs[p].source;
-    READS(ShapeHeader) target = shapes + pairs[p].target;
-    if (shape->vertex_block_count > BLOCKS_IN_MASK) {
-        float least_safe = UNBOUNDED;
-        reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, &least_safe, true, first,
-                       found);
+DEVICE void write_reached(Search* search, ulong block_mask, WRITES(PairBlock) found) {
+    if (search->source->vertex_block_count <= BLOCKS_IN_MASK) {
+        for (uint i = 0u; block_mask != 0u; ++i, block_mask &= block_mask - 1u)
+            found[i] = pair_block(search, lowest_bit_of_long(block_mask));
         return;
     }
-    uint at = first;
-    for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        uint lanes = (uint)(block_mask >> (VERTEX_LANES * i)) & 0xffffu;
-        while (lanes != 0u) {
-            found[at] = pair_block(p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
-            ++at;
-            lanes &= lanes - 1u;
-        }
-    }
+    const PairBounds bounds = bounds_of(search->pair);
+    if (search->horizon < 0.0f)
+        reach_clusters(search, &bounds, false, true, found);
+    else
+        reach_clusters(search, &bounds, true, true, found);
 }
 
 // Counts the vertex blocks of each pair that may reach into the bounds. horizons[p] >= 0, metres: without the blocks
@@ -211,15 +203,14 @@ KERNEL void count_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) 
                            READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
-        counts[p] = 0u;
-        if (pairs[p].source == NONE) continue;
-        float least_safe;
-        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
-        counts[p] =
-            horizon < 0.0f
-                ? count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &least_safe, block_masks)
-                : count_reached(p, pairs, shapes, clusters, true, clearances, horizon, &least_safe, block_masks);
-        if (horizons != 0) safe_distances[p] = least_safe;
+        if (pairs[p].source == NONE) {
+            counts[p] = 0u;
+            continue;
+        }
+        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
+        counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + p)
+                                          : count_reached(&search, true, block_masks + p);
+        if (horizons) safe_distances[p] = search.least_safe;
     }
 }
 
@@ -228,11 +219,7 @@ KERNEL void write_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) 
                            READS(uint) firsts, WRITES(PairBlock) found) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
-        const float horizon = horizons != 0 ? horizons[p] : -1.0f;
-        if (horizon < 0.0f)
-            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, block_masks[p], firsts[p], found);
-        else
-            write_reached(p, pairs, shapes, clusters, true, clearances, horizon, block_masks[p], firsts[p], found);
+        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
+        write_reached(&search, block_masks[p], found + firsts[p]);
     }
 }
-// NOLINTEND(modernize-use-nullptr)

@@ -2,20 +2,14 @@
 // The two casters (paper section 5.1). Both give the same hit: the boxes hold every one that counts.
 
 DEVICE Closest nothing_hit(float reach, float tolerance) {
-    Closest closest;
-    closest.back = UNBOUNDED;
-    closest.front = UNBOUNDED;
-    closest.back_triangle = NONE;
-    closest.limit = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED;
+    const Closest closest = {UNBOUNDED, UNBOUNDED, NONE, reach < UNBOUNDED ? reach + tolerance : UNBOUNDED};
     return closest;
 }
 
 DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lanes, float tolerance,
                       const bool by_distance) {
-    while (lanes != 0u) {
+    for (; lanes != 0u; lanes &= lanes - 1u)
         hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
-        lanes &= lanes - 1u;
-    }
 }
 
 // Blocks tested, for one ray after another, before any lane is looked at closely: a bit each, and few enough that they
@@ -115,14 +109,6 @@ STRUCT(Descent) {
     uint at, children; // a node, and those of its children still to visit, a bit each
 };
 
-DEVICE Descent begin_descent(uint children) {
-    Descent way;
-    way.trail = 0u;
-    way.at = 0u;
-    way.children = children;
-    return way;
-}
-
 // The next child, a node or a leaf, taken from those to visit.
 DEVICE uint next_child(Descent* way, READS(Node) tree) {
     const uint child = tree[way->at].child[lowest_bit(way->children)];
@@ -146,7 +132,7 @@ DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, READS(ShapeHe
                                  READS(TriangleBlock) blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
     READS(Node) tree = nodes + shape->node_first;
-    Descent way = begin_descent(hit_children(ray, tree, closest.limit, shape->tolerance));
+    Descent way = {0u, 0u, hit_children(ray, tree, closest.limit, shape->tolerance)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);

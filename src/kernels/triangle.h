@@ -41,53 +41,28 @@ DEVICE uint largest_axis(float x, float y, float z) {
 DEVICE Axes axes_of(uint z, float along, const bool mirrored) {
     const uint next = (z + 1u) & (0u - (uint)(z != 2u)), last = 3u - z - next;
     const uint swap = (next ^ last) & (0u - ((uint)(along < 0.0f) ^ (uint)mirrored));
-    Axes axes;
-    axes.x = next ^ swap;
-    axes.y = last ^ swap;
-    axes.z = z;
+    const Axes axes = {next ^ swap, last ^ swap, z};
     return axes;
 }
 
-// mirrored: as if seen in a mirror, so that faces keep the side that they show to the opposite ray.
-DEVICE RayFrame frame_line(const float* p, const float* d, const bool mirrored) {
+// opposite: the frame of the opposite ray, as if seen in a mirror, so that faces keep the side that they show.
+DEVICE RayFrame frame_ray(const float* p, const float* d, const bool opposite) {
     RayFrame ray;
-    const uint z = largest_axis(d[0], d[1], d[2]);
-    const Axes axes = axes_of(z, d[z], mirrored);
+    const float sign = opposite ? -1.0f : 1.0f, v[3] = {sign * d[0], sign * d[1], sign * d[2]};
+    const uint z = largest_axis(v[0], v[1], v[2]);
+    const Axes axes = axes_of(z, v[z], opposite);
     ray.axis[0] = axes.x;
     ray.axis[1] = axes.y;
     ray.axis[2] = axes.z;
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
-        ray.inverse[i] = safe_inverse(d[i]);
+        ray.inverse[i] = safe_inverse(v[i]);
     }
     ray.shear[2] = ray.inverse[axes.z];
-    ray.shear[0] = d[axes.x] * ray.inverse[axes.z];
-    ray.shear[1] = d[axes.y] * ray.inverse[axes.z];
+    ray.shear[0] = v[axes.x] * ray.inverse[axes.z];
+    ray.shear[1] = v[axes.y] * ray.inverse[axes.z];
     return ray;
-}
-
-DEVICE RayFrame frame_ray(const float* p, const float* d) {
-    return frame_line(p, d, false);
-}
-
-// Of the opposite ray.
-DEVICE RayFrame frame_opposite(const float* p, const float* d) {
-    const float opposite[3] = {-d[0], -d[1], -d[2]};
-    return frame_line(p, opposite, true);
-}
-
-DEVICE void consider(Closest* closest, float t, bool back, uint triangle, float tolerance) {
-    if (back) {
-        if (t < closest->back || (t == closest->back && triangle < closest->back_triangle)) {
-            closest->back = t;
-            closest->back_triangle = triangle;
-        }
-    } else if (t < closest->front) {
-        closest->front = t;
-    }
-    const float nearer = closest->back < closest->front ? closest->back : closest->front;
-    if (nearer + tolerance < closest->limit) closest->limit = nearer + tolerance;
 }
 
 // a * b - c * d, relative error of a few units in the last place, sign exact.
@@ -101,19 +76,11 @@ STRUCT(Edges) {
     float u, v, w;
 };
 
-DEVICE Edges edges_of_sheared(float x0, float y0, float x1, float y1, float x2, float y2) {
-    Edges edges;
-    edges.u = cross_accurate(x2, y1, y2, x1);
-    edges.v = cross_accurate(x0, y2, y0, x2);
-    edges.w = cross_accurate(x1, y0, y1, x0);
+// Of sheared corners.
+DEVICE Edges edges_of(float x0, float y0, float x1, float y1, float x2, float y2) {
+    const Edges edges = {cross_accurate(x2, y1, y2, x1), cross_accurate(x0, y2, y0, x2),
+                         cross_accurate(x1, y0, y1, x0)};
     return edges;
-}
-
-// Corners relative to the ray's origin, axes as in its frame.
-DEVICE Edges edges_of(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz,
-                      float shear_x, float shear_y) {
-    return edges_of_sheared(ax - shear_x * az, ay - shear_y * az, bx - shear_x * bz, by - shear_y * bz,
-                            cx - shear_x * cz, cy - shear_y * cz);
 }
 
 DEVICE float area_of(const Edges edges) {
@@ -128,24 +95,44 @@ DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float 
 // A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does not.
 DEVICE void accept_hit(Closest* closest, float t, bool back, uint triangle, float tolerance) {
     if (t < (back ? 0.0f : -tolerance) || t > closest->limit) return;
-    consider(closest, t, back, triangle, tolerance);
+    if (back) {
+        if (t < closest->back || (t == closest->back && triangle < closest->back_triangle)) {
+            closest->back = t;
+            closest->back_triangle = triangle;
+        }
+    } else if (t < closest->front) {
+        closest->front = t;
+    }
+    const float nearer = closest->back < closest->front ? closest->back : closest->front;
+    if (nearer + tolerance < closest->limit) closest->limit = nearer + tolerance;
+}
+
+// Corners of a triangle in a ray's frame, sheared.
+STRUCT(Corners) {
+    float x[3], y[3], z[3];
+};
+
+DEVICE Corners corners_of(const RayFrame* ray, READS(TriangleBlock) block, uint lane) {
+    Corners at;
+    for (int c = 0; c < 3; ++c) {
+        at.z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+        at.x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * at.z[c];
+        at.y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * at.z[c];
+    }
+    return at;
 }
 
 // One lane again, closely.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lane, float tolerance,
                      const bool by_distance) {
-    float x[3], y[3], z[3];
-    for (int c = 0; c < 3; ++c) z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+    const Corners at = corners_of(ray, block, lane);
+    const float* z = at.z;
     if (!by_distance) {
         const float t0 = z[0] * ray->shear[2], t1 = z[1] * ray->shear[2], t2 = z[2] * ray->shear[2];
         const float beyond = closest->limit + tolerance, behind = -2.0f * tolerance;
         if ((t0 > beyond && t1 > beyond && t2 > beyond) || (t0 < behind && t1 < behind && t2 < behind)) return;
     }
-    for (int c = 0; c < 3; ++c) {
-        x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
-        y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
-    }
-    const Edges e = edges_of(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2], ray->shear[0], ray->shear[1]);
+    const Edges e = edges_of(at.x[0], at.y[0], at.x[1], at.y[1], at.x[2], at.y[2]);
     const bool front = e.u >= 0.0f && e.v >= 0.0f && e.w >= 0.0f, back = e.u <= 0.0f && e.v <= 0.0f && e.w <= 0.0f;
     if (!(front || back) || area_of(e) == 0.0f) return; // edge-on: the neighbours take the hit
     accept_hit(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);

@@ -116,7 +116,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, R
     found.least = found.second = tube->radius;
     found.slot = NONE;
     READS(Node) tree = nodes + shape->node_first;
-    Descent way = begin_descent(children_in(tube->box, tree));
+    Descent way = {0u, 0u, children_in(tube->box, tree)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);

@@ -19,8 +19,7 @@ struct Range {
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
-#define DEVICE_RARE [[maybe_unused, gnu::noinline]] static  // what is seldom asked should not crowd the registers
-#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks
+#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks, or seldom
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
@@ -29,7 +28,6 @@ struct Range {
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4
 #define RAYS_IN_GROUP 16
-#define LOOKS_TOGETHER 4
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
          i < i##_end && (few = i##_end - i < (most) ? i##_end - i : (most)) != 0; i += few)
