@@ -2,7 +2,7 @@
 // Rays that wait until there are enough of them for a group, to be framed and cast together. A lane each; on a GPU a
 // group is one ray.
 
-#define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
+#define ENDLESS_TOLERANCES 65536.0f // how far a group follows a ray without end: a sixteenth of the box diagonal
 
 // A ray in each lane; of its frame, what RayFrame holds.
 STRUCT(Group) {
@@ -24,18 +24,17 @@ DEVICE void clear_group(Group* group) {
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
-// at: whose ray it is. The group seeks no farther than a short ray.
+// at: whose ray it is.
 DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
                     READS(ShapeHeader) shapes) {
     const uint r = group->count;
     READS(ShapeHeader) shape = shapes + target;
-    const float probe = PROBE_TOLERANCES * shape->tolerance;
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
         group->direction[i][r] = ray->direction[i];
     }
     group->reach[r] = reach;
-    group->length[r] = probe < reach ? probe : reach;
+    group->length[r] = reach < UNBOUNDED ? reach : ENDLESS_TOLERANCES * shape->tolerance;
     group->tolerance[r] = shape->tolerance;
     group->pair[r] = pair;
     group->target[r] = target;

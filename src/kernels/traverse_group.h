@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short rays, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
+// Rays that end, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
 // before it knows the next one. Here each stage is done for all rays before the next stage begins, so that hardly any
 // branch depends on an unfinished test. The rays of a pair begin side by side, and short ones end there: what of the
 // tree reaches into the box around them is sought once for all, and each ray is tested against those leaves alone.
