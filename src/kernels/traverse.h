@@ -8,8 +8,7 @@ DEVICE Closest nothing_hit(float reach, float tolerance) {
 
 DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lanes, float tolerance,
                       const bool by_distance) {
-    for (; lanes != 0u; lanes &= lanes - 1u)
-        hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
+    for (; lanes != 0u; lanes &= lanes - 1u) hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
 }
 
 // Blocks tested, for one ray after another, before any lane is looked at closely: a bit each, and few enough that they
