@@ -67,7 +67,7 @@ public:
 
     Found detect(const WorkStep&) override {
         const FloatEnvironment environment;
-        cast_in_full(update(), batch_, false);
+        cast_in_full(update(), batch_);
         return found();
     }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Caps (docs/certified.md): of each triangle of a closed, outward mesh, the balls around its centre in which all
 // normals are within an angle of its own. A ray from there along them can only leave the mesh, and once at most,
-// however many triangles there are. NOLINTBEGIN(modernize-use-using): this text is C as well
+// however many triangles there are. Held rays that no tube decides are asked of their triangles' caps together, and
+// from triangle to triangle.
 
 #define CAP_UNIT_TOLERANCES 2.0f // a step of the stored radii
 // The two angles: 30 and 55 degrees.
@@ -11,6 +12,9 @@
 #define CAP_WIDE_SINE 0.8191520f
 #define CAP_LEAST_FACING 0.125f  // cosine of ray and normal, below which nothing is said
 #define CAP_LOST_OF_FACING 0.01f // by rounding of the triangle's normal and of the ray's direction
+#define OUTSIDE_TOLERANCES 4.0f
+#define MOST_STEPS 16u   // before a ray is cast instead
+#define PLACES_NEARBY 4u // to either side
 
 // No more than the least cosine of a ray's direction and a normal in the triangle's cap; -1: the ray does not begin
 // there. far2: squared distance of its origin from the triangle's centre; along: cosine of direction and the triangle's
@@ -28,9 +32,9 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
 }
 
 // Whether its cap will know a ray by the triangle that it met, while it meets it.
-DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL const ShapeHeader* RESTRICT shape,
-                      GLOBAL const TriangleBlock* RESTRICT blocks, uint slot) {
-    GLOBAL const TriangleBlock* block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape,
+                      READS(TriangleBlock) blocks, uint slot) {
+    READS(TriangleBlock) block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
     const uint lane = slot % TRIANGLE_LANES;
     float far2 = 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -40,4 +44,77 @@ DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, GLOBAL c
     }
     return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
-// NOLINTEND(modernize-use-using)
+
+// After ask_held(). A ray that begins in the triangle's cap and passes well inside of its edges leaves the mesh there,
+// and there alone; one that begins beyond it is outside, if by more than rounding.
+DEVICE void ask_caps(HeldGroup* group) {
+    Group* rays = &group->rays;
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const float px = rays->position[0][r], py = rays->position[1][r], pz = rays->position[2][r];
+        const float ax = group->corner[0][r] - px, ay = group->corner[1][r] - py, az = group->corner[2][r] - pz;
+        const float bx = group->corner[3][r] - px, by = group->corner[4][r] - py, bz = group->corner[5][r] - pz;
+        const float cx = group->corner[6][r] - px, cy = group->corner[7][r] - py, cz = group->corner[8][r] - pz;
+        const float third = 1.0f / 3.0f;
+        const float middle_x = ((ax + bx) + cx) * third, middle_y = ((ay + by) + cy) * third;
+        const float middle_z = ((az + bz) + cz) * third;
+        const float far2 = (middle_x * middle_x + middle_y * middle_y) + middle_z * middle_z;
+        const float abx = bx - ax, aby = by - ay, abz = bz - az, acx = cx - ax, acy = cy - ay, acz = cz - az;
+        const float nx = aby * acz - abz * acy, ny = abz * acx - abx * acz, nz = abx * acy - aby * acx;
+        const float n2 = (nx * nx + ny * ny) + nz * nz;
+        const float dx = rays->direction[0][r], dy = rays->direction[1][r], dz = rays->direction[2][r];
+        const float along = n2 > 1.0e-30f ? ((nx * dx + ny * dy) + nz * dz) / root_of(n2) : 0.0f;
+        const float tolerance = rays->tolerance[r], t = group->distance[r];
+        const float facing = facing_in_cap(group->cap[r], tolerance, group->margin[r], far2, along);
+        const uint faces_alike = (uint)(facing >= CAP_LEAST_FACING);
+        const uint outside = (uint)(t * facing <= -OUTSIDE_TOLERANCES * tolerance);
+        const uint known = faces_alike & group->is_inside_edges[r] & ((uint)(t >= 0.0f) | outside);
+
+        const float u = group->edge[0][r], v = group->edge[1][r], w = group->edge[2][r];
+        const uint by_u = (uint)(u >= v) & (uint)(u >= w), by_v = (by_u ^ 1u) & (uint)(v >= w);
+        const uint edge = 3u - 2u * by_u - by_v;
+        const uint exceeds = (uint)(u > 0.0f) | (uint)(v > 0.0f) | (uint)(w > 0.0f);
+        const uint in_tube = group->is_known[r];
+        group->beyond[r] = edge & (0u - (faces_alike & exceeds & ((known | in_tube) ^ 1u)));
+        group->is_known[r] = known | in_tube;
+        group->is_hit[r] = (known & group->is_exit[r]) | ((known ^ 1u) & group->is_hit[r]);
+    }
+}
+
+// Rays that passed their triangle by go on to the one across that edge. Returns how many did.
+DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
+    uint stepped = 0u;
+    for (uint r = 0u; r < group->rays.count; ++r) {
+        if (group->beyond[r] == 0u) continue;
+        READS(Face) own = faces + arrays->shapes[group->rays.target[r]].face_first;
+        const uint next = own[group->triangle[r]].neighbour[group->beyond[r] - 1u];
+        const uint slot = next != NONE ? own[next].slot : NONE;
+        if (slot == NONE) continue;
+        group->triangle_slot[r] = slot;
+        group->safe[r] = 0.0f; // its tube was of the other triangle
+        fetch_triangle(arrays, group, r);
+        ++stepped;
+    }
+    return stepped;
+}
+
+// What held rays' tubes say, else their caps.
+DEVICE void ask_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
+    ask_held(group);
+    uint asks = 0u;
+    for (uint r = 0u; r < group->rays.count; ++r) asks |= group->asks_cap[r] & (group->is_known[r] ^ 1u);
+    if (asks == 0u) return;
+    ask_caps(group);
+    for (uint step = 0u; step < MOST_STEPS && step_over(arrays, faces, group) != 0u; ++step) {
+        ask_held(group);
+        ask_caps(group);
+    }
+}
+
+// A triangle that a ray beside that place was known by: from there a ray without one may find its own.
+DEVICE uint triangle_nearby(READS(Held) held, uint count, uint place) {
+    for (uint k = 0u; k < PLACES_NEARBY; ++k) {
+        if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;
+        if (k < place && held[place - 1u - k].triangle != NONE) return held[place - 1u - k].triangle;
+    }
+    return NONE;
+}

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far points can move before they could be in contact: a clearance grid keeps of each cell a ball without surface
 // (docs/certified.md).
-// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
-
-typedef struct {
-    float safe[VERTICES_AT_ONCE]; // metres a vertex can move before it could be in contact; may be negative
-} SafeLanes;
 
 // A clearance grid, without its balls.
-typedef struct {
-    float low_x, low_y, low_z, high_x, high_y, high_z; // a box around that of the shape
+STRUCT(Clearance) {
+    float low[3], high[3]; // a box around that of the shape
     float scale, cell, unit;
     uint size_x, size_y;
     uint outward;
-} Clearance;
+};
 
-DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
+DEVICE Clearance clearance_of(READS(ShapeHeader) shape) {
     Clearance grid;
-    grid.low_x = shape->clearance_low[0];
-    grid.low_y = shape->clearance_low[1];
-    grid.low_z = shape->clearance_low[2];
-    grid.high_x = shape->clearance_high[0];
-    grid.high_y = shape->clearance_high[1];
-    grid.high_z = shape->clearance_high[2];
+    for (int i = 0; i < 3; ++i) {
+        grid.low[i] = shape->clearance_low[i];
+        grid.high[i] = shape->clearance_high[i];
+    }
     grid.scale = shape->clearance_scale;
     grid.cell = shape->clearance_cell;
     grid.unit = shape->clearance_unit;
@@ -33,30 +26,29 @@ DEVICE Clearance clearance_of(GLOBAL const ShapeHeader* RESTRICT shape) {
 }
 
 // The nearest point of the grid's box, and its cell; NaN takes its lower corner.
-typedef struct {
+STRUCT(GridPlace) {
     float x, y, z;
     int cell_x, cell_y, cell_z;
     uint at; // of the grid's words
-} GridPlace;
+};
 
 DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
     GridPlace place;
-    const float up_x = x >= grid.low_x ? x : grid.low_x, up_y = y >= grid.low_y ? y : grid.low_y;
-    const float up_z = z >= grid.low_z ? z : grid.low_z;
-    place.x = up_x <= grid.high_x ? up_x : grid.high_x;
-    place.y = up_y <= grid.high_y ? up_y : grid.high_y;
-    place.z = up_z <= grid.high_z ? up_z : grid.high_z;
-    place.cell_x = (int)((place.x - grid.low_x) * grid.scale);
-    place.cell_y = (int)((place.y - grid.low_y) * grid.scale);
-    place.cell_z = (int)((place.z - grid.low_z) * grid.scale);
+    const float up_x = x >= grid.low[0] ? x : grid.low[0], up_y = y >= grid.low[1] ? y : grid.low[1];
+    const float up_z = z >= grid.low[2] ? z : grid.low[2];
+    place.x = up_x <= grid.high[0] ? up_x : grid.high[0];
+    place.y = up_y <= grid.high[1] ? up_y : grid.high[1];
+    place.z = up_z <= grid.high[2] ? up_z : grid.high[2];
+    place.cell_x = (int)((place.x - grid.low[0]) * grid.scale);
+    place.cell_y = (int)((place.y - grid.low[1]) * grid.scale);
+    place.cell_z = (int)((place.z - grid.low[2]) * grid.scale);
     place.at = ((uint)place.cell_z * grid.size_y + (uint)place.cell_y) * grid.size_x + (uint)place.cell_x;
     return place;
 }
 
 // No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
 // its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
-DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT balls, float x, float y, float z,
-                           float reach) {
+DEVICE float safe_distance(const Clearance grid, READS(uint) balls, float x, float y, float z, float reach) {
     const GridPlace p = place_in(grid, x, y, z);
     const uint word = balls[p.at];
     const float off_x = x - p.x, off_y = y - p.y, off_z = z - p.z;
@@ -64,9 +56,9 @@ DEVICE float safe_distance(const Clearance grid, GLOBAL const uint* RESTRICT bal
     const int bx = p.cell_x + (int)(word & 31u) - CLEARANCE_OFFSET;
     const int by = p.cell_y + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
     const int bz = p.cell_z + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = p.x - (grid.low_x + ((float)bx + 0.5f) * grid.cell);
-    const float ay = p.y - (grid.low_y + ((float)by + 0.5f) * grid.cell);
-    const float az = p.z - (grid.low_z + ((float)bz + 0.5f) * grid.cell);
+    const float ax = p.x - (grid.low[0] + ((float)bx + 0.5f) * grid.cell);
+    const float ay = p.y - (grid.low[1] + ((float)by + 0.5f) * grid.cell);
+    const float az = p.z - (grid.low[2] + ((float)bz + 0.5f) * grid.cell);
     const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
@@ -86,30 +78,28 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     return gap_xy > gap_z ? gap_xy : gap_z;
 }
 
-DEVICE SafeLanes safe_lanes(const InsideLanes* placed, GLOBAL const OrderedPair* RESTRICT pair,
-                            GLOBAL const VertexBlock* RESTRICT block, uint first,
-                            GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
-    SafeLanes found;
+// safe: metres each of the vertices from `first` on can move before it could be in contact; may be negative.
+DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(OrderedPair) pair, READS(VertexBlock) block,
+                       uint first, READS(ShapeHeader) target, READS(uint) clearances) {
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    READS(uint) balls = clearances + target->clearance_first;
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
         const float clear = safe_distance(grid, balls, x, y, z, block->exit[first + k]);
         const float gap = bounds_gap(b, x, y, z);
-        const float safe = clear > gap ? clear : gap;
-        found.safe[k] = block->vertex[first + k] != NONE ? safe : UNBOUNDED;
+        const float least = clear > gap ? clear : gap;
+        safe[k] = block->vertex[first + k] != NONE ? least : UNBOUNDED;
     }
-    return found;
 }
 
 // Sends for the words that safe_lanes() will ask.
-DEVICE void send_for_words(const InsideLanes* placed, GLOBAL const ShapeHeader* RESTRICT target,
-                           GLOBAL const uint* RESTRICT clearances) {
+DEVICE void send_for_words(const InsideLanes* placed, READS(ShapeHeader) target, READS(uint) clearances) {
     const Clearance grid = clearance_of(target);
     uint at[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
+    // NOLINTNEXTLINE(modernize-loop-convert): this text is C as well
     for (int k = 0; k < VERTICES_AT_ONCE; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }
 
@@ -122,12 +112,11 @@ DEVICE float least_of_sixteen(const float* values) {
 }
 
 // What the ball around a block's box says for all its vertices, without looking at them.
-DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT source,
-                        GLOBAL const ClusterBlock* RESTRICT clusters, uint vertex_block,
-                        GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances) {
+DEVICE float safe_block(READS(OrderedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
+                        uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
     const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
-    GLOBAL const ClusterBlock* RESTRICT box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
-    GLOBAL const float* r = pair->rotation;
+    READS(ClusterBlock) box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
+    READS(float) r = pair->rotation;
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
     const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
     const Clearance grid = clearance_of(target);
@@ -139,4 +128,3 @@ DEVICE float safe_block(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Sh
                          ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
            - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
 }
-// NOLINTEND(modernize-use-using,modernize-loop-convert)

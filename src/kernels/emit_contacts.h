@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hits that are contacts, as record_hit() counted them, in the order of the rays.
-KERNEL void write_contacts(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                           GLOBAL const Packed3* RESTRICT normals, GLOBAL const Ray* RESTRICT rays,
-                           GLOBAL const Hit* RESTRICT hits, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL LocalContact* RESTRICT contacts) {
+KERNEL void write_contacts(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                           READS(VertexBlock) vertices, READS(Packed3) normals, READS(Ray) rays, READS(Hit) hits,
+                           READS(uint) firsts, WRITES(LocalContact) contacts) {
     FOR_EACH(i, count) {
         const Hit hit = hits[i];
         if (is_contact(hit) != 0u) {

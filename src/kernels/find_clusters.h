@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which blocks of sixteen vertices may reach into the target's bounds? Down a tree of boxes, sixteen children wide.
-// NOLINTBEGIN(modernize-use-using,modernize-use-nullptr): this text is C as well
 
 // The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
-typedef struct {
+STRUCT(PairBounds) {
     float rotation[9], size[9]; // size: magnitudes of the rotation
     float offset[3];            // source origin relative to the middle of the bounds, target frame
     float half_size[3];
     float source_centre[3], source_half_size[3]; // the same box in the source's frame, axis-aligned there
-} PairBounds;
+};
 
-DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
+DEVICE PairBounds bounds_of(READS(OrderedPair) pair) {
     PairBounds b;
     for (int i = 0; i < 9; ++i) {
         b.rotation[i] = pair->rotation[i];
@@ -47,7 +46,7 @@ DEVICE PairBounds bounds_of(GLOBAL const OrderedPair* RESTRICT pair) {
 }
 
 // Child boxes that may reach into the bounds: no face of either box separates them.
-DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RESTRICT block) {
+DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
     int hit[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
         const float cx = block->centre[0][k], cy = block->centre[1][k], cz = block->centre[2][k];
@@ -69,13 +68,25 @@ DEVICE uint overlapping_lanes(const PairBounds* b, GLOBAL const ClusterBlock* RE
     return pack_sixteen(hit);
 }
 
+// Whose blocks are sought, in its source's tree of clusters, and what the boxes are compared with.
+STRUCT(Search) {
+    uint p;
+    READS(OrderedPair) pair;
+    READS(ShapeHeader) source;
+    READS(ShapeHeader) target;
+    READS(ClusterBlock) clusters;
+    READS(uint) clearances;
+    float horizon;
+    float least_safe; // of the boxes left out
+};
+
 // Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
-// the bounds cannot be in contact before it reaches them. least_safe: lowered to the safe distance of the other boxes.
-DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ClusterBlock* RESTRICT block,
-                       GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances, float horizon,
-                       float* least_safe) {
+// the bounds cannot be in contact before it reaches them.
+DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
+    READS(OrderedPair) pair = search->pair;
+    READS(ShapeHeader) target = search->target;
     const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    READS(uint) balls = search->clearances + target->clearance_first;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
@@ -90,56 +101,57 @@ DEVICE uint near_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const Clu
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
         const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-        const uint reached = (uint)(safe <= horizon);
+        const uint reached = (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
-        const uint passed_over = (uint)(safe > horizon); // not NaN, of empty lanes
+        const uint passed_over = (uint)(safe > search->horizon); // not NaN, of empty lanes
         beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
-    *least_safe = least < *least_safe ? least : *least_safe;
+    search->least_safe = least < search->least_safe ? least : search->least_safe;
     return pack_sixteen(within);
 }
 
-// by_horizon: near_lanes(), the boxes that `horizon` and the target's clearance grid leave; else overlapping_lanes().
-DEVICE uint reached_lanes(const PairBounds* bounds, GLOBAL const ClusterBlock* RESTRICT block, const bool by_horizon,
-                          GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe) {
-    return by_horizon ? near_lanes(pair, block, target, clearances, horizon, least_safe)
-                      : overlapping_lanes(bounds, block);
+// No horizons: below 0.
+DEVICE Search search_of(uint p, READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                        READS(ClusterBlock) clusters, READS(uint) clearances) {
+    READS(OrderedPair) pair = pairs + p;
+    const Search search = {p,        pair,       shapes + pair->source,          shapes + pair->target,
+                           clusters, clearances, horizons ? horizons[p] : -1.0f, UNBOUNDED};
+    return search;
+}
+
+// by_horizon: near_lanes(), the boxes that the horizon and the target's clearance grid leave; else overlapping_lanes().
+DEVICE uint reached_lanes(Search* search, const PairBounds* bounds, const bool by_horizon, uint level, uint at) {
+    READS(ClusterBlock) block = search->clusters + search->source->cluster_first[level] + at;
+    return by_horizon ? near_lanes(search, block) : overlapping_lanes(bounds, block);
 }
 
 // For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
 #define BLOCKS_IN_MASK 64u
 
-// Where the blocks go, and the two columns of ray counts that begin at 0 (count_rays()).
-typedef struct {
-    GLOBAL PairBlock* blocks;
-    GLOBAL uint* ray_counts;
+// Where the blocks of a pair go, and the two columns of ray counts that begin at 0 (count_rays()).
+STRUCT(FoundBlocks) {
+    WRITES(PairBlock) blocks;
+    WRITES(uint) ray_counts;
     uint stride;
-} FoundBlocks;
+};
 
-DEVICE void write_block(const FoundBlocks found, uint at, uint pair, uint vertex_block) {
-    found.blocks[at].pair = pair;
-    found.blocks[at].vertex_block = vertex_block;
-    found.blocks[at].lanes = 0u;
-    found.ray_counts[at] = 0u;
-    found.ray_counts[found.stride + at] = 0u;
+DEVICE void write_block(const FoundBlocks* found, uint at, const Search* search, uint block) {
+    const PairBlock own = {search->p, search->source->vertex_block_first + block, 0u};
+    found->blocks[at] = own;
+    found->ray_counts[at] = 0u;
+    found->ray_counts[found->stride + at] = 0u;
 }
 
-// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them
-// from `first` on when asked to.
-DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const ShapeHeader* RESTRICT shape,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                           GLOBAL const ShapeHeader* RESTRICT target, GLOBAL const uint* RESTRICT clearances,
-                           float horizon, float* least_safe, const bool write, uint first, const FoundBlocks found) {
-    const PairBounds bounds = bounds_of(pair);
+// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them if
+// `found` is not null.
+DEVICE uint reach_clusters(Search* search, const PairBounds* bounds, const bool by_horizon, const FoundBlocks* found) {
     uint count = 0u;
-    const uint top = shape->cluster_levels - 1u;
-    for (uint root = 0u; root < shape->cluster_count[top]; ++root) {
+    const uint top = search->source->cluster_levels - 1u;
+    for (uint root = 0u; root < search->source->cluster_count[top]; ++root) {
         uint level = top, at = root;
         ulong trail = 0u;
-        uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
-                                   clearances, horizon, least_safe);
+        uint lanes = reached_lanes(search, bounds, by_horizon, level, at);
         for (;;) {
             if (lanes == 0u) {
                 if (level == top) break;
@@ -152,102 +164,70 @@ DEVICE uint reach_clusters(uint p, GLOBAL const OrderedPair* RESTRICT pair, GLOB
             const uint child = VERTEX_LANES * at + lowest_bit(lanes);
             lanes &= lanes - 1u;
             if (level == 0u) {
-                if (write) write_block(found, first + count, p, shape->vertex_block_first + child);
+                if (found) write_block(found, count, search, child);
                 ++count;
             } else {
                 trail = (trail << VERTEX_LANES) | (ulong)lanes;
                 --level;
                 at = child;
-                lanes = reached_lanes(&bounds, clusters + shape->cluster_first[level] + at, by_horizon, pair, target,
-                                      clearances, horizon, least_safe);
+                lanes = reached_lanes(search, bounds, by_horizon, level, at);
             }
         }
     }
     return count;
 }
 
-// block_masks: for a source of few blocks the blocks found, a bit each. least_safe: if no block was found, how far the
-// pair can at least move before a contact; only with `by_horizon`.
-DEVICE uint count_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, float* least_safe,
-                          GLOBAL ulong* RESTRICT block_masks) {
-    GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-    GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
-    const FoundBlocks nowhere = {0, 0, 0u};
-    *least_safe = UNBOUNDED;
-    if (shape->vertex_block_count > BLOCKS_IN_MASK)
-        return reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, least_safe, false,
-                              0u, nowhere);
-    const PairBounds bounds = bounds_of(pairs + p);
+// block_mask: of a source of few blocks the blocks found, a bit each.
+DEVICE uint count_reached(Search* search, const bool by_horizon, WRITES(ulong) block_mask) {
+    const PairBounds bounds = bounds_of(search->pair);
+    if (search->source->vertex_block_count > BLOCKS_IN_MASK)
+        // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+        return reach_clusters(search, &bounds, by_horizon, (const FoundBlocks*)0);
     ulong blocks = 0u;
-    uint number = 0u;
-    for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        const uint lanes = reached_lanes(&bounds, clusters + shape->cluster_first[0] + i, by_horizon, pairs + p, target,
-                                         clearances, horizon, least_safe);
-        blocks |= (ulong)lanes << (VERTEX_LANES * i);
-        number += bit_count(lanes);
-    }
-    block_masks[p] = blocks;
-    return number;
+    for (uint i = 0u; i < search->source->cluster_count[0]; ++i)
+        blocks |= (ulong)reached_lanes(search, &bounds, by_horizon, 0u, i) << (VERTEX_LANES * i);
+    *block_mask = blocks;
+    return bit_count_of_long(blocks);
 }
 
-DEVICE void write_reached(uint p, GLOBAL const OrderedPair* RESTRICT pairs, GLOBAL const ShapeHeader* RESTRICT shapes,
-                          GLOBAL const ClusterBlock* RESTRICT clusters, const bool by_horizon,
-                          GLOBAL const uint* RESTRICT clearances, float horizon, ulong block_mask, uint first,
-                          const FoundBlocks found) {
-    GLOBAL const ShapeHeader* shape = shapes + pairs[p].source;
-    GLOBAL const ShapeHeader* target = shapes + pairs[p].target;
-    if (shape->vertex_block_count > BLOCKS_IN_MASK) {
-        float least_safe = UNBOUNDED;
-        reach_clusters(p, pairs + p, shape, clusters, by_horizon, target, clearances, horizon, &least_safe, true, first,
-                       found);
+DEVICE void write_reached(Search* search, ulong block_mask, const FoundBlocks* found) {
+    if (search->source->vertex_block_count <= BLOCKS_IN_MASK) {
+        for (uint i = 0u; block_mask != 0u; ++i, block_mask &= block_mask - 1u)
+            write_block(found, i, search, lowest_bit_of_long(block_mask));
         return;
     }
-    uint at = first;
-    for (uint i = 0u; i < shape->cluster_count[0]; ++i) {
-        uint lanes = (uint)(block_mask >> (VERTEX_LANES * i)) & 0xffffu;
-        while (lanes != 0u) {
-            write_block(found, at, p, shape->vertex_block_first + VERTEX_LANES * i + lowest_bit(lanes));
-            ++at;
-            lanes &= lanes - 1u;
-        }
-    }
+    const PairBounds bounds = bounds_of(search->pair);
+    if (search->horizon < 0.0f)
+        reach_clusters(search, &bounds, false, found);
+    else
+        reach_clusters(search, &bounds, true, found);
 }
 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair): without the
 // blocks that cannot be in contact before they have moved that far. safe_distances, where there are horizons: for a
 // pair without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
-KERNEL void count_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL uint* RESTRICT counts, GLOBAL float* RESTRICT safe_distances,
-                           GLOBAL ulong* RESTRICT block_masks) {
+KERNEL void count_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                           READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
+                           WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
-        float least_safe = UNBOUNDED;
-        if (pairs[p].source == NONE)
+        if (pairs[p].source == NONE) {
             counts[p] = 0u;
-        else if (horizons == 0)
-            counts[p] = count_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, &least_safe, block_masks);
-        else
-            counts[p] =
-                count_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], &least_safe, block_masks);
-        if (horizons != 0) safe_distances[p] = least_safe;
+            continue;
+        }
+        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
+        counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + p)
+                                          : count_reached(&search, true, block_masks + p);
+        if (horizons) safe_distances[p] = search.least_safe;
     }
 }
 
-KERNEL void write_clusters(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                           GLOBAL const float* RESTRICT horizons, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const ClusterBlock* RESTRICT clusters, GLOBAL const uint* RESTRICT clearances,
-                           GLOBAL const ulong* RESTRICT block_masks, GLOBAL const uint* RESTRICT firsts,
-                           GLOBAL PairBlock* RESTRICT blocks, uint stride, GLOBAL uint* RESTRICT ray_counts) {
-    const FoundBlocks found = {blocks, ray_counts, stride};
+KERNEL void write_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+                           READS(ClusterBlock) clusters, READS(uint) clearances, READS(ulong) block_masks,
+                           READS(uint) firsts, WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
-        if (horizons == 0)
-            write_reached(p, pairs, shapes, clusters, false, clearances, 0.0f, block_masks[p], firsts[p], found);
-        else
-            write_reached(p, pairs, shapes, clusters, true, clearances, horizons[p], block_masks[p], firsts[p], found);
+        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
+        const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride};
+        write_reached(&search, block_masks[p], &found);
     }
 }
-// NOLINTEND(modernize-use-using,modernize-use-nullptr)

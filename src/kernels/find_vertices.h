@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which vertices of the source lie inside the target's bounds? Blocks of sixteen of them become one dense queue of rays
 // (the paper's padded grid, Fig. 6, would waste lanes).
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 #define LEAST_DEPTH_IN_BALL 0.01f // of a cell: far more than rounding could hide
 
 // Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
 // outside.
-DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT outside_cells) {
+DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) outside_cells) {
     const float scale = target->grid_scale;
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
     const uint size_x = target->grid_size[0], size_y = target->grid_size[1];
-    GLOBAL const uint* RESTRICT words = outside_cells + target->grid_first;
+    READS(uint) words = outside_cells + target->grid_first;
     int outside[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const bool known = found->inside[k] != 0;
@@ -29,8 +27,8 @@ DEVICE uint outside_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
 }
 
 // Whether a vertex casts, exactly as inside_lanes() has it. p: of its source_ray(), which has the same bits.
-DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
-    GLOBAL const float* b = pair->bounds;
+DEVICE bool in_bounds(READS(OrderedPair) pair, const float* p) {
+    READS(float) b = pair->bounds;
     return ((uint)(p[0] >= b[0]) & (uint)(p[0] <= b[3]) & (uint)(p[1] >= b[1]) & (uint)(p[1] <= b[4])
             & (uint)(p[2] >= b[2]) & (uint)(p[2] <= b[5]))
            != 0u;
@@ -38,10 +36,9 @@ DEVICE bool in_bounds(GLOBAL const OrderedPair* RESTRICT pair, const float* p) {
 
 // Vertices in a ball of the clearance grid that is outside. The outside grid knows whole cells only: about half of the
 // vertices that it leaves are outside all the same, and their rays are the longest.
-DEVICE uint in_ball_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RESTRICT target,
-                          GLOBAL const uint* RESTRICT clearances) {
+DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) clearances) {
     const Clearance grid = clearance_of(target);
-    GLOBAL const uint* RESTRICT balls = clearances + target->clearance_first;
+    READS(uint) balls = clearances + target->clearance_first;
     int in_ball[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float safe = safe_distance(grid, balls, found->x[k], found->y[k], found->z[k], UNBOUNDED);
@@ -52,14 +49,13 @@ DEVICE uint in_ball_lanes(const InsideLanes* found, GLOBAL const ShapeHeader* RE
 
 // Adds to column 0 of counts the vertices whose ray must be cast to know, to column 1 those in the bounds, one ray of
 // the rule each.
-KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, GLOBAL const OrderedPair* RESTRICT pairs,
-                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const VertexBlock* RESTRICT vertices,
-                       GLOBAL const uint* RESTRICT outside_cells, GLOBAL const uint* RESTRICT clearances,
-                       GLOBAL PairBlock* RESTRICT found_blocks, GLOBAL uint* RESTRICT counts) {
+KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                       READS(VertexBlock) vertices, READS(uint) outside_cells, READS(uint) clearances,
+                       WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
-        GLOBAL const OrderedPair* pair = pairs + found_blocks[i].pair;
+        READS(OrderedPair) pair = pairs + found_blocks[i].pair;
         const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block, first);
-        GLOBAL const ShapeHeader* target = shapes + pair->target;
+        READS(ShapeHeader) target = shapes + pair->target;
         const uint inside_mask = pack_vertices(found.inside);
         if (inside_mask == 0u) continue;
         uint lanes = inside_mask;
@@ -77,8 +73,7 @@ DEVICE uint own_lanes(uint lanes, uint first) {
 }
 
 // The rays begin at place `begin`.
-KERNEL void write_rays(COUNT(count), uint begin, GLOBAL const PairBlock* RESTRICT found_blocks,
-                       GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
+KERNEL void write_rays(COUNT(count), uint begin, READS(PairBlock) found_blocks, READS(uint) firsts, WRITES(Ray) rays) {
     FOR_EACH_VERTICES(i, first, count) {
         const PairBlock block = found_blocks[i];
         uint at = begin + firsts[i] + bit_count(block.lanes & ((1u << first) - 1u));
@@ -91,4 +86,3 @@ KERNEL void write_rays(COUNT(count), uint begin, GLOBAL const PairBlock* RESTRIC
         }
     }
 }
-// NOLINTEND(modernize-use-using)

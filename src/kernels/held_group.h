@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what is known of a ray still decides it (docs/certified.md), asked of a group of rays together, a lane each:
 // nearly every ray at rest is decided so. On a GPU a group is one ray.
-// NOLINTBEGIN(modernize-use-using,modernize-loop-convert): this text is C as well
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
 
-// Rays, and what was held of each.
-typedef struct {
+// Rays, and what was held of each. All zero at first: lanes without a ray, or without a triangle, are asked with the
+// others.
+STRUCT(HeldGroup) {
     Group rays;
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
@@ -25,31 +25,18 @@ typedef struct {
     float edge[3][RAYS_IN_GROUP];
     uint is_inside_edges[RAYS_IN_GROUP], is_exit[RAYS_IN_GROUP];
     uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the cap of the neighbour is tested next; 0: none
-} HeldGroup;
-
-// Lanes without a ray, or without a triangle, are asked with the others.
-DEVICE void clear_held(HeldGroup* group) {
-    clear_group(&group->rays);
-    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
-    for (int k = 0; k < 9; ++k) FOR_LANES(r, RAYS_IN_GROUP) group->corner[k][r] = 0.0f;
-    FOR_LANES(r, RAYS_IN_GROUP) {
-        group->rays.reach[r] = group->safe[r] = group->limit[r] = group->margin[r] = 0.0f;
-        group->triangle_slot[r] = group->triangle[r] = NONE;
-        group->cap[r] = group->asks_cap[r] = 0u;
-    }
-}
+};
 
 // Each of its words lies in another line.
-DEVICE void send_for_triangle(GLOBAL const TriangleBlock* RESTRICT block, uint lane) {
+DEVICE void send_for_triangle(READS(TriangleBlock) block, uint lane) {
     PREFETCH(block->triangle, lane);
-    for (int k = 0; k < 9; ++k) PREFETCH(block->corner[k], lane);
+    for (int k = 0; k < 9; ++k) PREFETCH(block->corner[0], TRIANGLE_LANES * k + lane);
 }
 
-DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
-                     GLOBAL const HeldRange* RESTRICT held_range, uint pair, uint target,
-                     GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE void add_held(const Arrays* arrays, HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
+                     READS(HeldRange) held_range, uint pair, uint target) {
     const uint r = group->rays.count;
-    add_ray(&group->rays, at, ray, ray->reach, pair, target, shapes);
+    add_ray(&group->rays, at, ray, ray->reach, pair, target, arrays->shapes);
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = held->position[i];
         group->direction[i][r] = held->direction[i];
@@ -61,26 +48,24 @@ DEVICE void add_held(HeldGroup* group, uint at, const SourceRay* ray, const Held
     group->triangle_slot[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
-    GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
+    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
     if (held_range->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
-DEVICE void fetch_triangle(HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+DEVICE void fetch_triangle(const Arrays* arrays, HeldGroup* group, uint r) {
     const uint slot = group->triangle_slot[r], lane = slot % TRIANGLE_LANES;
-    GLOBAL const TriangleBlock* block = blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
+    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
     group->cap[r] = group->asks_cap[r] != 0u ? block->cap[lane] : 0u;
-    PREFETCH(normals, shapes[group->rays.target[r]].normal_first + group->triangle[r]);
+    PREFETCH(arrays->normals, arrays->shapes[group->rays.target[r]].normal_first + group->triangle[r]);
 }
 
 // What add_held() has sent for.
-DEVICE void fetch_triangles(HeldGroup* group, GLOBAL const ShapeHeader* RESTRICT shapes,
-                            GLOBAL const TriangleBlock* RESTRICT blocks, GLOBAL const Packed3* RESTRICT normals) {
+DEVICE void fetch_triangles(const Arrays* arrays, HeldGroup* group) {
     for (uint r = 0u; r < group->rays.count; ++r)
-        if (group->triangle_slot[r] != NONE) fetch_triangle(group, r, shapes, blocks, normals);
+        if (group->triangle_slot[r] != NONE) fetch_triangle(arrays, group, r);
 }
 
 // First whether any part of the ray has left its tube: none of its points has moved farther than one of its ends. Then
@@ -112,7 +97,7 @@ DEVICE void ask_held(HeldGroup* group) {
         const float y1 = component(to_y, bx, by, bz) - shear_y * z1;
         const float x2 = component(to_x, cx, cy, cz) - shear_x * z2;
         const float y2 = component(to_y, cx, cy, cz) - shear_y * z2;
-        const Edges e = edges_of_sheared(x0, y0, x1, y1, x2, y2);
+        const Edges e = edges_of(x0, y0, x1, y1, x2, y2);
         const float t = distance_of(e, z0, z1, z2, shear_z);
 
         const float tolerance = rays->tolerance[r], reach = rays->reach[r];
@@ -146,16 +131,9 @@ DEVICE void ask_held(HeldGroup* group) {
 }
 
 // As decide() would have it: of one triangle there is nothing to tell apart, so no other direction is asked.
-DEVICE Hit held_hit(const HeldGroup* group, uint r, GLOBAL const ShapeHeader* RESTRICT shapes,
-                    GLOBAL const Packed3* RESTRICT normals) {
-    Hit hit = no_contact();
-    if (group->is_hit[r] != 0u) {
-        const Packed3 n = normals[shapes[group->rays.target[r]].normal_first + group->triangle[r]];
-        hit.triangle = group->triangle[r];
-        hit.distance = group->distance[r];
-        const SourceRay ray = ray_of(&group->rays, r);
-        hit.facing = (ray.direction[0] * n.x + ray.direction[1] * n.y) + ray.direction[2] * n.z;
-    }
-    return hit;
+DEVICE Hit held_hit(const Arrays* arrays, const HeldGroup* group, uint r) {
+    const SourceRay ray = ray_of(&group->rays, r);
+    return group->is_hit[r] != 0u ? hit_of(arrays, &ray, arrays->shapes + group->rays.target[r], group->triangle[r],
+                                           group->distance[r], 0u)
+                                  : no_contact(0u);
 }
-// NOLINTEND(modernize-use-using,modernize-loop-convert)

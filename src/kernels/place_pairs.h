@@ -3,9 +3,8 @@
 // only then, so that nothing is lost far from the origin. The only kernels that use double.
 
 // Bodies that moved, then pairs that came or went.
-KERNEL void apply_changes(COUNT(count), uint moved_count, GLOBAL const BodyPlace* RESTRICT moved,
-                          GLOBAL const PairChange* RESTRICT changed, GLOBAL BodyPlace* RESTRICT bodies,
-                          GLOBAL PairBodies* RESTRICT pairs) {
+KERNEL void apply_changes(COUNT(count), uint moved_count, READS(BodyPlace) moved, READS(PairChange) changed,
+                          WRITES(BodyPlace) bodies, WRITES(PairBodies) pairs) {
     FOR_EACH(i, count) {
         if (i < moved_count)
             bodies[moved[i].slot] = moved[i];
@@ -16,10 +15,10 @@ KERNEL void apply_changes(COUNT(count), uint moved_count, GLOBAL const BodyPlace
 
 // The operations of relative_pose(target, source), in their order. An open mesh has no inside that its box could bound:
 // vertices beyond the box may still reach it.
-DEVICE void place_pair(GLOBAL const BodyPlace* RESTRICT source, GLOBAL const BodyPlace* RESTRICT target,
-                       GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL OrderedPair* RESTRICT ordered) {
-    GLOBAL const double* o = target->rotation;
-    GLOBAL const double* s = source->rotation;
+DEVICE void place_pair(READS(BodyPlace) source, READS(BodyPlace) target, READS(ShapeHeader) shapes,
+                       WRITES(OrderedPair) ordered) {
+    READS(double) o = target->rotation;
+    READS(double) s = source->rotation;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
             ordered->rotation[3 * row + column] =
@@ -29,7 +28,7 @@ DEVICE void place_pair(GLOBAL const BodyPlace* RESTRICT source, GLOBAL const Bod
     const double z = source->translation[2] - target->translation[2];
     for (int row = 0; row < 3; ++row)
         ordered->translation[row] = (float)((o[row] * x + o[3 + row] * y) + o[6 + row] * z);
-    GLOBAL const ShapeHeader* shape = shapes + target->shape;
+    READS(ShapeHeader) shape = shapes + target->shape;
     const float grow = shape->closed != 0u ? 0.0f : shapes[source->shape].ray_reach;
     for (int k = 0; k < 3; ++k) {
         ordered->bounds[k] = shape->low[k] - grow;
@@ -40,8 +39,8 @@ DEVICE void place_pair(GLOBAL const BodyPlace* RESTRICT source, GLOBAL const Bod
 }
 
 // Slot p becomes ordered pairs 2 p (first into second) and 2 p + 1.
-KERNEL void place_pairs(COUNT(count), GLOBAL const PairBodies* RESTRICT pairs, GLOBAL const BodyPlace* RESTRICT bodies,
-                        GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL OrderedPair* RESTRICT ordered) {
+KERNEL void place_pairs(COUNT(count), READS(PairBodies) pairs, READS(BodyPlace) bodies, READS(ShapeHeader) shapes,
+                        WRITES(OrderedPair) ordered) {
     FOR_EACH(p, count) {
         const PairBodies pair = pairs[p];
         if (pair.first == NONE) {

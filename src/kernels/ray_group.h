@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that wait until there are enough of them for a group, to be framed and cast together. A lane each; on a GPU a
 // group is one ray.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-#define PROBE_TOLERANCES 65536.0f // length of a short ray: a sixteenth of the box diagonal
+#define ENDLESS_TOLERANCES 65536.0f // how far a group follows a ray without end: a sixteenth of the box diagonal
 
 // A ray in each lane; of its frame, what RayFrame holds.
-typedef struct {
+STRUCT(Group) {
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
     float origin[3][RAYS_IN_GROUP], shear[3][RAYS_IN_GROUP], inverse[3][RAYS_IN_GROUP];
     uint axis[3][RAYS_IN_GROUP];
@@ -16,7 +15,7 @@ typedef struct {
     uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
     uint at[RAYS_IN_GROUP]; // whose ray it is
     uint count;
-} Group;
+};
 
 // Lanes without a ray are framed with the others.
 DEVICE void clear_group(Group* group) {
@@ -25,22 +24,17 @@ DEVICE void clear_group(Group* group) {
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
-DEVICE float probe_of(GLOBAL const ShapeHeader* RESTRICT shape) {
-    return PROBE_TOLERANCES * shape->tolerance;
-}
-
-// at: whose ray it is. The group seeks no farther than a short ray.
+// at: whose ray it is.
 DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
-                    GLOBAL const ShapeHeader* RESTRICT shapes) {
+                    READS(ShapeHeader) shapes) {
     const uint r = group->count;
-    GLOBAL const ShapeHeader* RESTRICT shape = shapes + target;
-    const float probe = probe_of(shape);
+    READS(ShapeHeader) shape = shapes + target;
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
         group->direction[i][r] = ray->direction[i];
     }
     group->reach[r] = reach;
-    group->length[r] = probe < reach ? probe : reach;
+    group->length[r] = reach < UNBOUNDED ? reach : ENDLESS_TOLERANCES * shape->tolerance;
     group->tolerance[r] = shape->tolerance;
     group->pair[r] = pair;
     group->target[r] = target;
@@ -105,4 +99,3 @@ DEVICE RayFrame frame_of(const Group* group, uint r) {
     }
     return frame;
 }
-// NOLINTEND(modernize-use-using)

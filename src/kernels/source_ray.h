@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ray of a vertex, as the target sees it.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
+STRUCT(SourceRay) {
     float position[3]; // target frame
     float direction[3];
     float reach;
-} SourceRay;
+};
 
 // slot: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
-DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT vertices,
-                            uint slot) {
+DEVICE SourceRay source_ray(READS(OrderedPair) pair, READS(VertexBlock) vertices, uint slot) {
     SourceRay ray;
-    GLOBAL const VertexBlock* RESTRICT block = vertices + slot / VERTEX_LANES;
+    READS(VertexBlock) block = vertices + slot / VERTEX_LANES;
     const uint lane = slot % VERTEX_LANES;
-    GLOBAL const float* r = pair->rotation;
+    READS(float) r = pair->rotation;
     const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
     const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];
     for (int i = 0; i < 3; ++i) {
@@ -24,4 +22,3 @@ DEVICE SourceRay source_ray(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL cons
     ray.reach = block->exit[lane];
     return ray;
 }
-// NOLINTEND(modernize-use-using)

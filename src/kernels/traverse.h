@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two casters (paper section 5.1). Both give the same hit: the boxes hold every one that counts.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
 DEVICE Closest nothing_hit(float reach, float tolerance) {
-    Closest closest;
-    closest.back = UNBOUNDED;
-    closest.front = UNBOUNDED;
-    closest.back_triangle = NONE;
-    closest.limit = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED;
+    const Closest closest = {UNBOUNDED, UNBOUNDED, NONE, reach < UNBOUNDED ? reach + tolerance : UNBOUNDED};
     return closest;
 }
 
-DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lanes,
-                      float tolerance, const bool by_distance) {
-    while (lanes != 0u) {
-        hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
-        lanes &= lanes - 1u;
-    }
+DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lanes, float tolerance,
+                      const bool by_distance) {
+    for (; lanes != 0u; lanes &= lanes - 1u) hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
 }
 
 // Blocks tested, for one ray after another, before any lane is looked at closely: a bit each, and few enough that they
@@ -25,10 +17,10 @@ DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, GLOBAL const Triang
 
 // All rays against the same shape. Lanes let through are set aside without a branch, since a wrong guess would throw
 // away the tests already begun behind it; each ray still takes them in their order.
-DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count,
-                                GLOBAL const ShapeHeader* RESTRICT shape, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count, READS(ShapeHeader) shape,
+                                READS(TriangleBlock) blocks) {
     for (uint first = 0u; first < shape->triangle_block_count; first += BLOCKS_AHEAD) {
-        GLOBAL const TriangleBlock* RESTRICT ahead = blocks + shape->triangle_block_first + first;
+        READS(TriangleBlock) ahead = blocks + shape->triangle_block_first + first;
         const uint left = shape->triangle_block_count - first;
         const uint block_count = left < BLOCKS_AHEAD ? left : BLOCKS_AHEAD;
         uint waiting[RAYS_AT_ONCE];
@@ -54,10 +46,9 @@ DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray
 // A ray and its opposite in one pass (paper section 5.3): the sixteen tests ask where the line passes, whichever way it
 // runs, so the second ray costs no more than its close looks.
 DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
-                                     GLOBAL const ShapeHeader* RESTRICT shape,
-                                     GLOBAL const TriangleBlock* RESTRICT blocks) {
+                                     READS(ShapeHeader) shape, READS(TriangleBlock) blocks) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
-        GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + b;
+        READS(TriangleBlock) block = blocks + shape->triangle_block_first + b;
         const uint lanes = hit_block(closest, ray, block, shape->tolerance, false);
         if (lanes != 0u) {
             hit_lanes(closest, ray, block, lanes, shape->tolerance, false);
@@ -77,16 +68,16 @@ DEVICE uint meets_box(float nx, float ny, float nz, float fx, float fy, float fz
 }
 
 // A bit for each child box that the ray meets no farther than the limit.
-DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, float limit, float tolerance) {
+DEVICE uint hit_children(const RayFrame* ray, READS(Node) node, float limit, float tolerance) {
     // Rows of Node.bounds that the ray meets first.
     const uint x = ray->inverse[0] < 0.0f ? 3u : 0u, y = ray->inverse[1] < 0.0f ? 4u : 1u;
     const uint z = ray->inverse[2] < 0.0f ? 5u : 2u;
-    GLOBAL const float* RESTRICT near_x = node->bounds[x];
-    GLOBAL const float* RESTRICT near_y = node->bounds[y];
-    GLOBAL const float* RESTRICT near_z = node->bounds[z];
-    GLOBAL const float* RESTRICT far_x = node->bounds[3u - x];
-    GLOBAL const float* RESTRICT far_y = node->bounds[5u - y];
-    GLOBAL const float* RESTRICT far_z = node->bounds[7u - z];
+    READS(float) near_x = node->bounds[x];
+    READS(float) near_y = node->bounds[y];
+    READS(float) near_z = node->bounds[z];
+    READS(float) far_x = node->bounds[3u - x];
+    READS(float) far_y = node->bounds[5u - y];
+    READS(float) far_z = node->bounds[7u - z];
     const float px = ray->raw_origin[0], py = ray->raw_origin[1], pz = ray->raw_origin[2];
     const float ix = ray->inverse[0], iy = ray->inverse[1], iz = ray->inverse[2];
     int hit[NODE_LANES];
@@ -99,7 +90,7 @@ DEVICE uint hit_children(const RayFrame* ray, GLOBAL const Node* RESTRICT node, 
 }
 
 // Child boxes that reach into a box: lower x y z, upper x y z.
-DEVICE uint children_in(const float* box, GLOBAL const Node* RESTRICT node) {
+DEVICE uint children_in(const float* box, READS(Node) node) {
     int within[NODE_LANES];
     FOR_LANES(k, NODE_LANES) {
         const uint x = (node->bounds[0][k] <= box[3]) & (node->bounds[3][k] >= box[0]);
@@ -112,21 +103,13 @@ DEVICE uint children_in(const float* box, GLOBAL const Node* RESTRICT node) {
 
 // Stackless: sixteen bits a level remember the children still to visit, parents are linked (after Barringer and
 // Akenine-Moeller 2013). Going up tests nothing again.
-typedef struct {
+STRUCT(Descent) {
     ulong trail;
     uint at, children; // a node, and those of its children still to visit, a bit each
-} Descent;
-
-DEVICE Descent begin_descent(uint children) {
-    Descent way;
-    way.trail = 0u;
-    way.at = 0u;
-    way.children = children;
-    return way;
-}
+};
 
 // The next child, a node or a leaf, taken from those to visit.
-DEVICE uint next_child(Descent* way, GLOBAL const Node* RESTRICT tree) {
+DEVICE uint next_child(Descent* way, READS(Node) tree) {
     const uint child = tree[way->at].child[lowest_bit(way->children)];
     way->children &= way->children - 1u;
     return child;
@@ -138,22 +121,22 @@ DEVICE void go_down(Descent* way, uint child, uint children) {
     way->children = children;
 }
 
-DEVICE void go_up(Descent* way, GLOBAL const Node* RESTRICT tree) {
+DEVICE void go_up(Descent* way, READS(Node) tree) {
     way->at = tree[way->at].parent;
     way->children = (uint)(way->trail & 0xffffu);
     way->trail >>= NODE_LANES;
 }
 
-DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const ShapeHeader* RESTRICT shape,
-                                 GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, READS(ShapeHeader) shape, READS(Node) nodes,
+                                 READS(TriangleBlock) blocks) {
     Closest closest = nothing_hit(reach, shape->tolerance);
-    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
-    Descent way = begin_descent(hit_children(ray, tree, closest.limit, shape->tolerance));
+    READS(Node) tree = nodes + shape->node_first;
+    Descent way = {0u, 0u, hit_children(ray, tree, closest.limit, shape->tolerance)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
-                GLOBAL const TriangleBlock* RESTRICT block = blocks + shape->triangle_block_first + (child & ~LEAF);
+                READS(TriangleBlock) block = blocks + shape->triangle_block_first + (child & ~LEAF);
                 const uint lanes = hit_block(&closest, ray, block, shape->tolerance, true);
                 hit_lanes(&closest, ray, block, lanes, shape->tolerance, true);
             } else {
@@ -164,4 +147,3 @@ DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, GLOBAL const 
         go_up(&way, tree);
     }
 }
-// NOLINTEND(modernize-use-using)

@@ -1,65 +1,141 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short rays, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
+// Rays that end, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
 // before it knows the next one. Here each stage is done for all rays before the next stage begins, so that hardly any
-// branch depends on an unfinished test.
-//
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+// branch depends on an unfinished test. The rays of a pair begin side by side, and short ones end there: what of the
+// tree reaches into the box around them is sought once for all, and each ray is tested against those leaves alone.
 
-#define GROUP_TRIANGLES (4 * RAYS_IN_GROUP) // one or two for a ray
+#define GROUP_VISITS (8 * RAYS_IN_GROUP) // a ray alone has two or three leaves
 
-// Triangles that passed the block test, each to be tested by hit_lane()'s operations against its ray.
-typedef struct {
-    uint visit[GROUP_TRIANGLES], lane[GROUP_TRIANGLES];
+// Rays of a group that belong to one pair lie side by side, short ones in a small box.
+STRUCT(Runs) {
+    float box[RAYS_IN_GROUP][6]; // lower x y z, upper x y z
+    uint rays[RAYS_IN_GROUP];    // a bit each
+    uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
     uint count;
-} TriangleTests;
+};
 
-// hit_lane() for all of them, sixteen at a time.
-DEVICE void test_triangles(Closest* closest, const Group* group, const Visits* leaves, const TriangleTests* tests,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
-    for (uint first = 0u; first < tests->count; first += TRIANGLE_LANES) {
-        const uint left = tests->count - first, few = left < TRIANGLE_LANES ? left : TRIANGLE_LANES;
-        float corner[9][TRIANGLE_LANES], origin[3][TRIANGLE_LANES], shear[3][TRIANGLE_LANES], t[TRIANGLE_LANES];
-        int met[TRIANGLE_LANES], back[TRIANGLE_LANES];
-        for (uint k = 0u; k < TRIANGLE_LANES; ++k) {
-            const uint i = first + (k < few ? k : 0u), visit = tests->visit[i], r = leaves->who[visit];
-            const uint lane = tests->lane[i];
-            GLOBAL const TriangleBlock* RESTRICT block = blocks + leaves->at[visit];
-            for (uint j = 0u; j < 3u; ++j) {
-                const uint axis = group->axis[j][r];
-                for (uint c = 0u; c < 3u; ++c) corner[3u * c + j][k] = block->corner[3u * c + axis][lane];
-                origin[j][k] = group->origin[j][r];
-                shear[j][k] = group->shear[j][r];
-            }
-        }
-        FOR_LANES(k, TRIANGLE_LANES) {
-            const float ox = origin[0][k], oy = origin[1][k], oz = origin[2][k];
-            const float az = corner[2][k] - oz, bz = corner[5][k] - oz, cz = corner[8][k] - oz;
-            const Edges e = edges_of(corner[0][k] - ox, corner[1][k] - oy, az, corner[3][k] - ox, corner[4][k] - oy, bz,
-                                     corner[6][k] - ox, corner[7][k] - oy, cz, shear[0][k], shear[1][k]);
-            const float area = area_of(e);
-            const int front = (e.u >= 0.0f) & (e.v >= 0.0f) & (e.w >= 0.0f);
-            back[k] = (e.u <= 0.0f) & (e.v <= 0.0f) & (e.w <= 0.0f);
-            met[k] = (front | back[k]) & (int)(area != 0.0f);
-            t[k] = distance_of(e, az, bz, cz, shear[2][k]);
-        }
-        for (uint k = 0u; k < few; ++k) {
-            const uint i = first + k, visit = tests->visit[i], r = leaves->who[visit];
-            if (met[k] != 0)
-                accept_hit(closest + r, t[k], back[k] != 0, blocks[leaves->at[visit]].triangle[tests->lane[i]],
-                           group->tolerance[r]);
+// Nodes to be visited, and for which run.
+STRUCT(Visits) {
+    uint who[GROUP_VISITS], at[GROUP_VISITS];
+    uint count;
+};
+
+// Leaves that a run's box reaches: lanes of nodes.
+STRUCT(NearLeaves) {
+    uint run[GROUP_VISITS], node[GROUP_VISITS], lane[GROUP_VISITS], block[GROUP_VISITS];
+    uint meets[GROUP_VISITS]; // rays of the run, a bit each
+    uint count;
+};
+
+// The box of a run holds its rays up to their lengths, and as far beyond either end as they are tested.
+DEVICE void find_runs(Runs* runs, const Group* group) {
+    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];
+    for (int i = 0; i < 3; ++i) {
+        FOR_LANES(r, RAYS_IN_GROUP) {
+            const float beyond = 3.0f * group->tolerance[r];
+            const float start = group->position[i][r], end = start + group->length[r] * group->direction[i][r];
+            low[i][r] = (start < end ? start : end) - beyond;
+            high[i][r] = (start < end ? end : start) + beyond;
         }
     }
+    uint run = NONE;
+    for (uint r = 0u; r < group->count; ++r) {
+        const bool begins = r == 0u || group->pair[r] != group->pair[r - 1u];
+        if (begins) {
+            ++run;
+            runs->rays[run] = 0u;
+            runs->node_first[run] = group->node_first[r];
+            runs->block_first[run] = group->block_first[r];
+        }
+        float* box = runs->box[run];
+        for (int i = 0; i < 3; ++i) {
+            const float lower = begins ? UNBOUNDED : box[i], upper = begins ? -UNBOUNDED : box[3 + i];
+            box[i] = low[i][r] < lower ? low[i][r] : lower;
+            box[3 + i] = high[i][r] > upper ? high[i][r] : upper;
+        }
+        runs->rays[run] |= 1u << r;
+    }
+    runs->count = run + 1u;
+}
+
+// Masks of sixteen bits, four at a time: a loop over the bits of each would end where nobody can guess.
+DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
+    ulong bits = 0u;
+    for (uint i = 0u; i < 4u; ++i) bits |= (ulong)(first + i < count ? masks[first + i] : 0u) << (16u * i);
+    return bits;
+}
+
+// Down the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
+DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) nodes) {
+    Visits levels[2];
+    uint near[GROUP_VISITS];
+    uint full = 0u, level = 0u;
+    leaves->count = 0u;
+    levels[0].count = runs->count;
+    for (uint i = 0u; i < runs->count; ++i) {
+        levels[0].who[i] = i;
+        levels[0].at[i] = runs->node_first[i];
+    }
+    while (levels[level].count != 0u) {
+        const Visits* visits = levels + level;
+        Visits* below = levels + (1u - level);
+        level = 1u - level;
+        below->count = 0u;
+        for (uint i = 0u; i < visits->count; ++i)
+            near[i] = ((full >> visits->who[i]) & 1u) != 0u
+                          ? 0u // in vain, and in the way of others
+                          : children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
+        for (uint i = 0u; i < visits->count; i += 4u) {
+            ulong left = four_sixteens(near, i, visits->count);
+            const uint most = bit_count_of_long(left);
+            if (below->count + most > GROUP_VISITS || leaves->count + most > GROUP_VISITS) {
+                for (uint j = i; j < i + 4u && j < visits->count; ++j)
+                    full |= near[j] != 0u ? 1u << visits->who[j] : 0u;
+                continue;
+            }
+            // Written to both, and kept in one: which it is, is hard to guess.
+            for (; left != 0u; left &= left - 1u) {
+                const uint bit = lowest_bit_of_long(left), j = i + bit / 16u, lane = bit % 16u;
+                const uint run = visits->who[j], node = visits->at[j];
+                const uint child = nodes[node].child[lane], leaf = (uint)((child & LEAF) != 0u);
+                leaves->run[leaves->count] = run;
+                leaves->node[leaves->count] = node;
+                leaves->lane[leaves->count] = lane;
+                leaves->block[leaves->count] = runs->block_first[run] + (child & ~LEAF);
+                leaves->count += leaf;
+                below->who[below->count] = run;
+                below->at[below->count] = runs->node_first[run] + child;
+                below->count += 1u - leaf;
+            }
+        }
+    }
+    return full;
+}
+
+// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
+// children_in() let through only: the box of an empty one would come out the right way round.
+DEVICE uint rays_that_meet(const Group* group, READS(Node) node, uint lane) {
+    const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
+    const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
+    int meets[NODE_LANES] = {0}; // lanes without a ray
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
+        const float ix = group->inverse[0][r], iy = group->inverse[1][r], iz = group->inverse[2][r];
+        const float ax = (low_x - px) * ix, ay = (low_y - py) * iy, az = (low_z - pz) * iz;
+        const float bx = (high_x - px) * ix, by = (high_y - py) * iy, bz = (high_z - pz) * iz;
+        const float nx = ax < bx ? ax : bx, ny = ay < by ? ay : by, nz = az < bz ? az : bz;
+        const float fx = ax < bx ? bx : ax, fy = ay < by ? by : ay, fz = az < bz ? bz : az;
+        const float tolerance = group->tolerance[r];
+        meets[r] = -(int)meets_box(nx, ny, nz, fx, fy, fz, group->length[r] + tolerance, tolerance);
+    }
+    return pack_sixteen(meets);
 }
 
 // The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that must be cast
-// by itself, because there was no room for its leaves or triangles.
-DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const Node* RESTRICT nodes,
-                           GLOBAL const TriangleBlock* RESTRICT blocks) {
+// by itself, because there was no room for its leaves.
+DEVICE uint traverse_group(Closest* closest, const Group* group, READS(Node) nodes, READS(TriangleBlock) blocks) {
     Runs runs;
     NearLeaves near;
-    Visits leaves;
-    TriangleTests tests;
-    uint hit[GROUP_VISITS];
     uint full = 0u;
     for (uint r = 0u; r < group->count; ++r) closest[r] = nothing_hit(group->length[r], group->tolerance[r]);
     find_runs(&runs, group);
@@ -74,40 +150,14 @@ DEVICE uint traverse_group(Closest* closest, const Group* group, GLOBAL const No
         if (near.meets[i] == 0u) continue;
         for (uint j = 0u; j < 9u; ++j) PREFETCH((GLOBAL const float*)(blocks + near.block[i]), TRIANGLE_LANES * j);
     }
-    leaves.count = 0u;
     for (uint i = 0u; i < near.count; i += 4u) {
-        ulong left = four_sixteens(near.meets, i, near.count);
-        if (leaves.count + bit_count_of_long(left) > GROUP_VISITS) {
-            for (uint j = i; j < i + 4u && j < near.count; ++j) full |= near.meets[j];
-            continue;
-        }
-        for (; left != 0u; left &= left - 1u) {
-            const uint bit = lowest_bit_of_long(left), j = i + bit / 16u;
-            leaves.who[leaves.count] = bit % 16u;
-            leaves.at[leaves.count] = near.block[j];
-            leaves.count += 1u;
+        for (ulong left = four_sixteens(near.meets, i, near.count); left != 0u; left &= left - 1u) {
+            const uint bit = lowest_bit_of_long(left), r = bit % 16u;
+            READS(TriangleBlock) block = blocks + near.block[i + bit / 16u];
+            const RayFrame frame = frame_of(group, r);
+            const uint lanes = hit_block(closest + r, &frame, block, group->tolerance[r], true);
+            hit_lanes(closest + r, &frame, block, lanes, group->tolerance[r], true);
         }
     }
-    for (uint i = 0u; i < leaves.count; ++i) {
-        const uint r = leaves.who[i];
-        const RayFrame frame = frame_of(group, r);
-        hit[i] = hit_block(closest + r, &frame, blocks + leaves.at[i], group->tolerance[r], true);
-    }
-    tests.count = 0u;
-    for (uint i = 0u; i < leaves.count; i += 4u) {
-        ulong left = four_sixteens(hit, i, leaves.count);
-        for (; left != 0u; left &= left - 1u) {
-            const uint bit = lowest_bit_of_long(left), j = i + bit / 16u;
-            if (tests.count == GROUP_TRIANGLES) {
-                full |= 1u << leaves.who[j];
-                continue;
-            }
-            tests.visit[tests.count] = j;
-            tests.lane[tests.count] = bit % 16u;
-            tests.count += 1u;
-        }
-    }
-    test_triangles(closest, group, &leaves, &tests, blocks);
     return full;
 }
-// NOLINTEND(modernize-use-using)

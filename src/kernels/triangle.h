@@ -3,22 +3,21 @@
 // functions. Two facts make it exact in float32, given the sheared coordinates, which neighbours share:
 // rounding is monotone, so fl(a) - fl(b) has the sign of a - b unless it is 0; and product_error() gives what the
 // rounding of a product lost, which decides the rest.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
+STRUCT(RayFrame) {
     float origin[3]; // permuted: x, y, z with z the largest component of the direction
     float shear[3];  // x / z, y / z, 1 / z
     uint axis[3];
     float raw_origin[3];
     float inverse[3]; // 1 / direction, huge instead of infinite
-} RayFrame;
+};
 
 // Closest hits so far. `limit` bounds what can still change the outcome.
-typedef struct {
+STRUCT(Closest) {
     float back, front; // distances of the closest face met from inside, from outside
     uint back_triangle;
     float limit;
-} Closest;
+};
 
 // Huge instead of infinite, with the sign of d.
 DEVICE float safe_inverse(float d) {
@@ -28,9 +27,9 @@ DEVICE float safe_inverse(float d) {
 
 // Axes of a frame: z where the direction is largest, the winding kept. Found without a branch: where a ray points is as
 // good as random, and a wrong guess costs more than it all.
-typedef struct {
+STRUCT(Axes) {
     uint x, y, z;
-} Axes;
+};
 
 DEVICE uint largest_axis(float x, float y, float z) {
     const float ax = magnitude_of(x), ay = magnitude_of(y), az = magnitude_of(z);
@@ -42,53 +41,28 @@ DEVICE uint largest_axis(float x, float y, float z) {
 DEVICE Axes axes_of(uint z, float along, const bool mirrored) {
     const uint next = (z + 1u) & (0u - (uint)(z != 2u)), last = 3u - z - next;
     const uint swap = (next ^ last) & (0u - ((uint)(along < 0.0f) ^ (uint)mirrored));
-    Axes axes;
-    axes.x = next ^ swap;
-    axes.y = last ^ swap;
-    axes.z = z;
+    const Axes axes = {next ^ swap, last ^ swap, z};
     return axes;
 }
 
-// mirrored: as if seen in a mirror, so that faces keep the side that they show to the opposite ray.
-DEVICE RayFrame frame_line(const float* p, const float* d, const bool mirrored) {
+// opposite: the frame of the opposite ray, as if seen in a mirror, so that faces keep the side that they show.
+DEVICE RayFrame frame_ray(const float* p, const float* d, const bool opposite) {
     RayFrame ray;
-    const uint z = largest_axis(d[0], d[1], d[2]);
-    const Axes axes = axes_of(z, d[z], mirrored);
+    const float sign = opposite ? -1.0f : 1.0f, v[3] = {sign * d[0], sign * d[1], sign * d[2]};
+    const uint z = largest_axis(v[0], v[1], v[2]);
+    const Axes axes = axes_of(z, v[z], opposite);
     ray.axis[0] = axes.x;
     ray.axis[1] = axes.y;
     ray.axis[2] = axes.z;
     for (int i = 0; i < 3; ++i) {
         ray.origin[i] = p[ray.axis[i]];
         ray.raw_origin[i] = p[i];
-        ray.inverse[i] = safe_inverse(d[i]);
+        ray.inverse[i] = safe_inverse(v[i]);
     }
     ray.shear[2] = ray.inverse[axes.z];
-    ray.shear[0] = d[axes.x] * ray.inverse[axes.z];
-    ray.shear[1] = d[axes.y] * ray.inverse[axes.z];
+    ray.shear[0] = v[axes.x] * ray.inverse[axes.z];
+    ray.shear[1] = v[axes.y] * ray.inverse[axes.z];
     return ray;
-}
-
-DEVICE RayFrame frame_ray(const float* p, const float* d) {
-    return frame_line(p, d, false);
-}
-
-// Of the opposite ray.
-DEVICE RayFrame frame_opposite(const float* p, const float* d) {
-    const float opposite[3] = {-d[0], -d[1], -d[2]};
-    return frame_line(p, opposite, true);
-}
-
-DEVICE void consider(Closest* closest, float t, bool back, uint triangle, float tolerance) {
-    if (back) {
-        if (t < closest->back || (t == closest->back && triangle < closest->back_triangle)) {
-            closest->back = t;
-            closest->back_triangle = triangle;
-        }
-    } else if (t < closest->front) {
-        closest->front = t;
-    }
-    const float nearer = closest->back < closest->front ? closest->back : closest->front;
-    if (nearer + tolerance < closest->limit) closest->limit = nearer + tolerance;
 }
 
 // a * b - c * d, relative error of a few units in the last place, sign exact.
@@ -98,23 +72,15 @@ DEVICE float cross_accurate(float a, float b, float c, float d) {
 }
 
 // Edge functions of a triangle as the ray sees it: of no two signs where the ray's line passes through it.
-typedef struct {
+STRUCT(Edges) {
     float u, v, w;
-} Edges;
+};
 
-DEVICE Edges edges_of_sheared(float x0, float y0, float x1, float y1, float x2, float y2) {
-    Edges edges;
-    edges.u = cross_accurate(x2, y1, y2, x1);
-    edges.v = cross_accurate(x0, y2, y0, x2);
-    edges.w = cross_accurate(x1, y0, y1, x0);
+// Of sheared corners.
+DEVICE Edges edges_of(float x0, float y0, float x1, float y1, float x2, float y2) {
+    const Edges edges = {cross_accurate(x2, y1, y2, x1), cross_accurate(x0, y2, y0, x2),
+                         cross_accurate(x1, y0, y1, x0)};
     return edges;
-}
-
-// Corners relative to the ray's origin, axes as in its frame.
-DEVICE Edges edges_of(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz,
-                      float shear_x, float shear_y) {
-    return edges_of_sheared(ax - shear_x * az, ay - shear_y * az, bx - shear_x * bz, by - shear_y * bz,
-                            cx - shear_x * cz, cy - shear_y * cz);
 }
 
 DEVICE float area_of(const Edges edges) {
@@ -129,24 +95,44 @@ DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float 
 // A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does not.
 DEVICE void accept_hit(Closest* closest, float t, bool back, uint triangle, float tolerance) {
     if (t < (back ? 0.0f : -tolerance) || t > closest->limit) return;
-    consider(closest, t, back, triangle, tolerance);
+    if (back) {
+        if (t < closest->back || (t == closest->back && triangle < closest->back_triangle)) {
+            closest->back = t;
+            closest->back_triangle = triangle;
+        }
+    } else if (t < closest->front) {
+        closest->front = t;
+    }
+    const float nearer = closest->back < closest->front ? closest->back : closest->front;
+    if (nearer + tolerance < closest->limit) closest->limit = nearer + tolerance;
+}
+
+// Corners of a triangle in a ray's frame, sheared.
+STRUCT(Corners) {
+    float x[3], y[3], z[3];
+};
+
+DEVICE Corners corners_of(const RayFrame* ray, READS(TriangleBlock) block, uint lane) {
+    Corners at;
+    for (int c = 0; c < 3; ++c) {
+        at.z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+        at.x[c] = (block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0]) - ray->shear[0] * at.z[c];
+        at.y[c] = (block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1]) - ray->shear[1] * at.z[c];
+    }
+    return at;
 }
 
 // One lane again, closely.
-DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block, uint lane,
-                     float tolerance, const bool by_distance) {
-    float x[3], y[3], z[3];
-    for (int c = 0; c < 3; ++c) z[c] = block->corner[3 * c + ray->axis[2]][lane] - ray->origin[2];
+DEVICE void hit_lane(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lane, float tolerance,
+                     const bool by_distance) {
+    const Corners at = corners_of(ray, block, lane);
+    const float* z = at.z;
     if (!by_distance) {
         const float t0 = z[0] * ray->shear[2], t1 = z[1] * ray->shear[2], t2 = z[2] * ray->shear[2];
         const float beyond = closest->limit + tolerance, behind = -2.0f * tolerance;
         if ((t0 > beyond && t1 > beyond && t2 > beyond) || (t0 < behind && t1 < behind && t2 < behind)) return;
     }
-    for (int c = 0; c < 3; ++c) {
-        x[c] = block->corner[3 * c + ray->axis[0]][lane] - ray->origin[0];
-        y[c] = block->corner[3 * c + ray->axis[1]][lane] - ray->origin[1];
-    }
-    const Edges e = edges_of(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2], ray->shear[0], ray->shear[1]);
+    const Edges e = edges_of(at.x[0], at.y[0], at.x[1], at.y[1], at.x[2], at.y[2]);
     const bool front = e.u >= 0.0f && e.v >= 0.0f && e.w >= 0.0f, back = e.u <= 0.0f && e.v <= 0.0f && e.w <= 0.0f;
     if (!(front || back) || area_of(e) == 0.0f) return; // edge-on: the neighbours take the hit
     accept_hit(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
@@ -157,17 +143,17 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, GLOBAL const Triangl
 // by_distance: also leaves out lanes whose corners are all behind the ray, or all too far, by more than rounding could
 // hide (a hit is a mean of its corners). That pays where the block is near; where every block is tried, few lanes get
 // so far.
-DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const TriangleBlock* RESTRICT block,
-                      float tolerance, const bool by_distance) {
-    GLOBAL const float* RESTRICT ax = (block->corner + ray->axis[0])[0];
-    GLOBAL const float* RESTRICT ay = (block->corner + ray->axis[1])[0];
-    GLOBAL const float* RESTRICT az = (block->corner + ray->axis[2])[0];
-    GLOBAL const float* RESTRICT bx = (block->corner + ray->axis[0])[3];
-    GLOBAL const float* RESTRICT by = (block->corner + ray->axis[1])[3];
-    GLOBAL const float* RESTRICT bz = (block->corner + ray->axis[2])[3];
-    GLOBAL const float* RESTRICT cx = (block->corner + ray->axis[0])[6];
-    GLOBAL const float* RESTRICT cy = (block->corner + ray->axis[1])[6];
-    GLOBAL const float* RESTRICT cz = (block->corner + ray->axis[2])[6];
+DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, float tolerance,
+                      const bool by_distance) {
+    READS(float) ax = (block->corner + ray->axis[0])[0];
+    READS(float) ay = (block->corner + ray->axis[1])[0];
+    READS(float) az = (block->corner + ray->axis[2])[0];
+    READS(float) bx = (block->corner + ray->axis[0])[3];
+    READS(float) by = (block->corner + ray->axis[1])[3];
+    READS(float) bz = (block->corner + ray->axis[2])[3];
+    READS(float) cx = (block->corner + ray->axis[0])[6];
+    READS(float) cy = (block->corner + ray->axis[1])[6];
+    READS(float) cz = (block->corner + ray->axis[2])[6];
     const float ox = ray->origin[0], oy = ray->origin[1], oz = ray->origin[2];
     const float sx = ray->shear[0], sy = ray->shear[1], sz = ray->shear[2];
     int hit[TRIANGLE_LANES];
@@ -192,4 +178,3 @@ DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, GLOBAL const 
     }
     return pack_sixteen(hit);
 }
-// NOLINTEND(modernize-use-using)

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The neighbourhood of a ray, up to a little behind what it met: which triangle is nearest, and how far all others are.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
+STRUCT(Tube) {
     float origin[3];
     float along[3], u[3], v[3]; // unit vectors, square to each other
     float length;
     float radius;
     float box[6]; // around the tube: lower x y z, upper x y z
-} Tube;
+};
 
 // The triangle nearest to the ray, and how far the ray is from every other. slot: TRIANGLE_LANES * block + lane.
-typedef struct {
+STRUCT(Neighbours) {
     float least, second;
     uint slot;
-} Neighbours;
+};
 
 // To `end`, in lengths of the ray's direction.
 DEVICE Tube tube_of(const SourceRay* ray, float end, float radius) {
@@ -56,7 +55,7 @@ DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv
 
 // No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
 // seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
-DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const TriangleBlock* RESTRICT block, uint index) {
+DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlock) block, uint index) {
     float apart[TRIANGLE_LANES];
     int nearer[TRIANGLE_LANES];
     const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
@@ -111,13 +110,13 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, GLOBAL const Tria
 }
 
 // Of all triangles in the tube.
-DEVICE_CALL Neighbours search_tube(const Tube* tube, GLOBAL const ShapeHeader* RESTRICT shape,
-                                   GLOBAL const Node* RESTRICT nodes, GLOBAL const TriangleBlock* RESTRICT blocks) {
+DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(Node) nodes,
+                                   READS(TriangleBlock) blocks) {
     Neighbours found;
     found.least = found.second = tube->radius;
     found.slot = NONE;
-    GLOBAL const Node* RESTRICT tree = nodes + shape->node_first;
-    Descent way = begin_descent(children_in(tube->box, tree));
+    READS(Node) tree = nodes + shape->node_first;
+    Descent way = {0u, 0u, children_in(tube->box, tree)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
@@ -132,4 +131,3 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, GLOBAL const ShapeHeader* R
         go_up(&way, tree);
     }
 }
-// NOLINTEND(modernize-use-using)

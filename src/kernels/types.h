@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
+
+// Pointers into buffers where nothing else points: to what is read, and to what is written (and may be read).
+#define READS(type) GLOBAL const type* RESTRICT
+#define WRITES(type) GLOBAL type* RESTRICT
+
+#define STRUCT(name)                                                                                                   \
+    typedef struct name name;                                                                                          \
+    struct name
+
 #define TRIANGLE_LANES 16
 #define NODE_LANES 16
 #define VERTEX_LANES 16
@@ -24,41 +32,41 @@
 
 // Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which no test passes.
 // cap: radii of the two balls in which all triangles face alike (cap.h), the narrow angle's in the lower half; 0: none.
-typedef struct {
+STRUCT(TriangleBlock) {
     float corner[9][TRIANGLE_LANES];
     uint triangle[TRIANGLE_LANES];
     uint cap[TRIANGLE_LANES];
-} TriangleBlock;
+};
 WIRE_SIZE(TriangleBlock, 704);
 
 // Sixteen child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
 // lower, bounds[3 + axis] the upper planes. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
-typedef struct {
+STRUCT(Node) {
     float bounds[6][NODE_LANES];
     uint child[NODE_LANES];
     uint parent;
     uint unused[15];
-} Node;
+};
 WIRE_SIZE(Node, 512);
 
 // Sixteen vertices that cast rays. direction is the inward normal; exit the distance at which it leaves its own mesh.
-typedef struct {
+STRUCT(VertexBlock) {
     float position[3][VERTEX_LANES];
     float direction[3][VERTEX_LANES];
     float exit[VERTEX_LANES];
     uint vertex[VERTEX_LANES];
-} VertexBlock;
+};
 WIRE_SIZE(VertexBlock, 512);
 
 // Boxes of sixteen blocks of the level below: centre and half size. Empty lanes hold NaN.
-typedef struct {
+STRUCT(ClusterBlock) {
     float centre[3][VERTEX_LANES];
     float half_size[3][VERTEX_LANES];
-} ClusterBlock;
+};
 WIRE_SIZE(ClusterBlock, 384);
 
 // Where a shape's arrays begin in the device's buffers, and the rounding it allows for.
-typedef struct {
+STRUCT(ShapeHeader) {
     uint node_first;
     uint triangle_block_first;
     uint triangle_block_count;
@@ -85,160 +93,159 @@ typedef struct {
     uint caps_pay;                             // most triangles have caps: it pays to ask them
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
-} ShapeHeader;
+};
 WIRE_SIZE(ShapeHeader, 192);
 
 #include "kernels/body_place.h"
 
 // The bodies of a pair; NONE: the slot has no pair.
-typedef struct {
+STRUCT(PairBodies) {
     uint first, second;
-} PairBodies;
+};
 WIRE_SIZE(PairBodies, 8);
 
-typedef struct {
+STRUCT(PairChange) {
     uint slot;
     PairBodies bodies;
-} PairChange;
+};
 WIRE_SIZE(PairChange, 12);
 
 // A directed pair: the pose of the source in the target's frame, and the box in that frame in which vertices cast rays
 // (inclusive). source NONE: the slot has no pair.
-typedef struct {
+STRUCT(OrderedPair) {
     float rotation[9];
     float translation[3];
     float bounds[6]; // lower x y z, upper x y z
     uint source;     // shapes
     uint target;
-} OrderedPair;
+};
 WIRE_SIZE(OrderedPair, 80);
 
 // A vertex block that may reach into its pair's target.
-typedef struct {
+STRUCT(PairBlock) {
     uint pair;
     uint vertex_block; // absolute
     uint lanes;        // a bit for each vertex that casts a ray
-} PairBlock;
+};
 WIRE_SIZE(PairBlock, 12);
 
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).
-typedef struct {
+STRUCT(Face) {
     uint slot;
     uint neighbour[3];
-} Face;
+};
 WIRE_SIZE(Face, 16);
 
 // A ray that is followed from step to step: its vertex, and the triangle it met last.
-typedef struct {
+STRUCT(Candidate) {
     uint slot; // absolute: VERTEX_LANES * vertex block + lane
     uint triangle;
-} Candidate;
+};
 WIRE_SIZE(Candidate, 8);
 
 // How a pair's rays ended: candidates kept for the next step, of them without contact; walks, of them lost, of those
 // cast in full.
-typedef struct {
+STRUCT(Followed) {
     uint kept;
     uint predictions;
     uint walks;
     uint lost;
     uint cast;
-} Followed;
+};
 WIRE_SIZE(Followed, 20);
 
 // A vertex block that its pair watches. lanes: vertices that could be in contact, whose rays are decided in each step;
 // the others cannot before the pair's clock exceeds `wake`.
-typedef struct {
+STRUCT(Watch) {
     uint vertex_block; // absolute
     float wake;        // metres
     uint lanes;
-} Watch;
+};
 WIRE_SIZE(Watch, 12);
 
 // Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. margin:
 // metres of rounding that a certificate must exceed.
-typedef struct {
+STRUCT(Segment) {
     uint pair;
     uint first, count;
     float now;
     float margin;
-} Segment;
+};
 WIRE_SIZE(Segment, 20);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
 // casting: a bit for each watch that has any.
-typedef struct {
+STRUCT(Look) {
     uint casting;
     float wake;
     uint blocks;
     uint rays;
-} Look;
+};
 WIRE_SIZE(Look, 16);
 
 // What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without
 // a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its
 // direction.
-typedef struct {
+STRUCT(Held) {
     uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
     float safe;        // metres; 0: it has no tube
     float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
     float position[3]; // when the tube was sought
     float direction[3];
-} Held;
+};
 WIRE_SIZE(Held, 40);
 
 // The held rays of a directed pair: first, count: those of the last step, in the array of Held; now_first: where those
 // of this step begin. margin: metres of rounding. radius: of tubes to seek, metres; 0: none, the pair is too fast.
 // asks_caps: 1: rays test the caps of the target.
-typedef struct {
+STRUCT(HeldRange) {
     uint first, count; // Held
     uint now_first;
     float margin;
     float radius;
     uint asks_caps;
-} HeldRange;
+};
 WIRE_SIZE(HeldRange, 24);
 
-typedef struct {
+STRUCT(Ray) {
     uint pair;
     uint slot; // absolute: VERTEX_LANES * vertex block + lane
-} Ray;
+};
 WIRE_SIZE(Ray, 8);
 
 // triangle: of the target shape, NONE without contact. facing: ray direction . face normal, so that the re-projected
 // depth is distance * facing (paper section 3.2). sides: extra directions cast to tell inside from outside.
-typedef struct {
+STRUCT(Hit) {
     uint triangle;
     float distance;
     float facing;
     uint sides;
-} Hit;
+};
 WIRE_SIZE(Hit, 16);
 
 // What a scan leaves. items: the number of items whose results are to be written; 0 if there are no results or no room.
 // results: the number of results; 0 if there is no room. sums: of the columns, whether or not there is room; NONE if 32
 // bits cannot hold one.
-typedef struct {
+STRUCT(Totals) {
     uint items;
     uint results;
     uint sums[MOST_COLUMNS];
-} Totals;
+};
 WIRE_SIZE(Totals, 24);
 
-typedef struct {
+STRUCT(Packed3) {
     float x, y, z;
-} Packed3;
+};
 WIRE_SIZE(Packed3, 12);
 
-typedef struct {
+STRUCT(LocalContact) {
     uint pair;
     uint vertex;   // of the source shape
     uint triangle; // of the target shape
     float distance;
     float facing;
     Packed3 normal; // of the face, target frame
-} LocalContact;
+};
 WIRE_SIZE(LocalContact, 32);
-// NOLINTEND(modernize-use-using)

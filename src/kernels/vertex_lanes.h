@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vertices of a block as the target sees them: VERTICES_AT_ONCE of them, from one on.
-// NOLINTBEGIN(modernize-use-using): this text is C as well
 
-typedef struct {
+STRUCT(InsideLanes) {
     float x[VERTICES_AT_ONCE], y[VERTICES_AT_ONCE], z[VERTICES_AT_ONCE]; // target frame
     int inside[VERTICES_AT_ONCE];                                        // -1 or 0
-} InsideLanes;
+};
 
 // Vertices inside the bounds, exactly as the ray will see them.
-DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL const VertexBlock* RESTRICT block,
-                                uint first) {
+DEVICE InsideLanes inside_lanes(READS(OrderedPair) pair, READS(VertexBlock) block, uint first) {
     InsideLanes found;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
@@ -29,4 +27,3 @@ DEVICE InsideLanes inside_lanes(GLOBAL const OrderedPair* RESTRICT pair, GLOBAL 
     }
     return found;
 }
-// NOLINTEND(modernize-use-using)

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
-// once the pair has moved as far as its nearest vertex was from touching (look.h).
+// once the pair has moved as far as its nearest vertex was from touching: its vertices are asked of the target's balls,
+// which of them could be in contact, and until when the others may sleep. The bounds are asked of each ray (hold.h).
 
-#define AWAKE (-1.0f) // of Watch.wake: to be looked at in the next step
+#define AWAKE (-1.0f)              // of Watch.wake: to be looked at in the next step
+#define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
+#define LOOKS_TOGETHER 4
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
-KERNEL void begin_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs,
-                          GLOBAL const ShapeHeader* RESTRICT shapes, GLOBAL const ClusterBlock* RESTRICT boxes,
-                          GLOBAL const uint* RESTRICT clearances, GLOBAL const float* RESTRICT margins,
-                          GLOBAL const PairBlock* RESTRICT near_blocks, GLOBAL const uint* RESTRICT firsts,
-                          GLOBAL const uint* RESTRICT places, GLOBAL Watch* RESTRICT watches) {
+KERNEL void begin_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
+                          READS(uint) clearances, READS(float) margins, READS(PairBlock) near_blocks,
+                          READS(uint) firsts, READS(uint) places, WRITES(Watch) watches) {
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
-        GLOBAL const OrderedPair* pair = pairs + found.pair;
+        READS(OrderedPair) pair = pairs + found.pair;
         const float safe =
             safe_block(pair, shapes + pair->source, boxes, found.vertex_block, shapes + pair->target, clearances)
             - margins[found.pair];
@@ -25,15 +26,119 @@ KERNEL void begin_watches(COUNT(count), GLOBAL const OrderedPair* RESTRICT pairs
     }
 }
 
+// What looks at watches read and write.
+STRUCT(Looking) {
+    READS(OrderedPair) pairs;
+    READS(ShapeHeader) shapes;
+    READS(VertexBlock) vertices;
+    READS(uint) clearances;
+    READS(Segment) segments;
+    WRITES(Watch) watches;
+    WRITES(Look) looks;
+    WRITES(uint) rays; // of each look
+};
+
+// What a block has to say: in a segment it is number `bit`.
+DEVICE Look look_of(uint lanes, float wake, uint bit, uint blocks) {
+    const Look found = {(uint)(lanes != 0u) << bit, wake, blocks, bit_count(lanes)};
+    return found;
+}
+
+// What several looks found together.
+DEVICE Look add_looks(Look sum, const Look more) {
+    sum.wake = more.wake < sum.wake ? more.wake : sum.wake;
+    sum.blocks += more.blocks;
+    sum.rays += more.rays;
+    sum.casting |= more.casting;
+    return sum;
+}
+
+DEVICE void add_to_segment(const Looking* in, uint s, const Look found) {
+    in->looks[s] = add_looks(in->looks[s], found);
+    in->rays[s] = in->looks[s].rays;
+}
+
+// A block that is due. The words of its cells are not near: a grid is large, or the caches went to others since the
+// last step. So looks wait for each other: what one reads is under way while others are done.
+STRUCT(WaitingLook) {
+    uint segment, watch;
+    InsideLanes placed;
+};
+
+DEVICE Look look_at_block(const Looking* in, const WaitingLook* look) {
+    WRITES(Watch) watch = in->watches + look->watch;
+    const Segment segment = in->segments[look->segment];
+    READS(OrderedPair) pair = in->pairs + segment.pair;
+    READS(ShapeHeader) target = in->shapes + pair->target;
+    float free[VERTEX_LANES];
+    safe_lanes(free, &look->placed, pair, in->vertices + watch->vertex_block, 0u, target, in->clearances);
+    int unsafe[VERTEX_LANES];
+    float others[VERTEX_LANES];
+    FOR_LANES(k, VERTEX_LANES) {
+        const uint safe = (uint)(free[k] > segment.margin);
+        unsafe[k] = (int)safe - 1;
+        others[k] = safe != 0u ? free[k] : UNBOUNDED;
+    }
+    const uint lanes = pack_sixteen(unsafe);
+    float least = least_of_sixteen(others) - segment.margin;
+    // Vertices that cast are asked again after a while whether they still must.
+    const float again = REFRESH_TOLERANCES * target->tolerance;
+    if (lanes != 0u && least > again) least = again;
+    watch->lanes = lanes;
+    // Never asleep, whichever way the clock was rounded.
+    watch->wake = least > 0.0f ? segment.now + least : AWAKE;
+    return look_of(lanes, watch->wake, look->watch - segment.first, 1u);
+}
+
+DEVICE_BATCH void look_together(const Looking* in, WaitingLook* waiting, uint count) {
+    for (uint k = 0u; k < count; ++k) {
+        WaitingLook* look = waiting + k;
+        READS(OrderedPair) pair = in->pairs + in->segments[look->segment].pair;
+        look->placed = inside_lanes(pair, in->vertices + in->watches[look->watch].vertex_block, 0u);
+        send_for_words(&look->placed, in->shapes + pair->target, in->clearances);
+    }
+    for (uint k = 0u; k < count; ++k) add_to_segment(in, waiting[k].segment, look_at_block(in, waiting + k));
+}
+
+KERNEL void look_at_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+                            READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
+                            WRITES(Watch) watches, WRITES(Look) looks, WRITES(uint) rays) {
+    const Looking in = {pairs, shapes, vertices, clearances, segments, watches, looks, rays};
+    WaitingLook waiting[LOOKS_TOGETHER];
+    uint waits = 0u;
+    FOR_EACH(s, count) {
+        const Segment segment = segments[s];
+        for (uint line = 0u; line < 3u && s + 4u < count; ++line) PREFETCH(watches, segments[s + 4u].first + 5u * line);
+        Look found = look_of(0u, UNBOUNDED, 0u, 0u);
+        looks[s] = found;
+        for (uint i = segment.first; i < segment.first + segment.count; ++i) {
+            if (watches[i].wake > segment.now) {
+                found = add_looks(found, look_of(watches[i].lanes, watches[i].wake, i - segment.first, 0u));
+                continue;
+            }
+            // All of the block: what a look leaves its rays will read.
+            READS(VertexBlock) block = vertices + watches[i].vertex_block;
+            for (uint line = 0u; line < 8u; ++line) PREFETCH(block->position[0], VERTEX_LANES * line);
+            waiting[waits].segment = s;
+            waiting[waits].watch = i;
+            ++waits;
+            if (waits < LOOKS_TOGETHER) continue;
+            look_together(&in, waiting, waits);
+            waits = 0u;
+        }
+        add_to_segment(&in, s, found);
+    }
+    look_together(&in, waiting, waits);
+}
+
 // looks: of this step. The rays begin at place `begin`.
-KERNEL void write_watch_rays(COUNT(count), uint begin, GLOBAL const Segment* RESTRICT segments,
-                             GLOBAL const Watch* RESTRICT watches, GLOBAL const Look* RESTRICT looks,
-                             GLOBAL const uint* RESTRICT firsts, GLOBAL Ray* RESTRICT rays) {
+KERNEL void write_watch_rays(COUNT(count), uint begin, READS(Segment) segments, READS(Watch) watches, READS(Look) looks,
+                             READS(uint) firsts, WRITES(Ray) rays) {
     FOR_EACH(s, count) {
         const uint pair = segments[s].pair, first = segments[s].first;
         uint at = begin + firsts[s];
         for (uint casting = looks[s].casting; casting != 0u; casting &= casting - 1u) {
-            GLOBAL const Watch* RESTRICT watch = watches + first + lowest_bit(casting);
+            READS(Watch) watch = watches + first + lowest_bit(casting);
             for (uint lanes = watch->lanes; lanes != 0u; lanes &= lanes - 1u) {
                 rays[at].pair = pair;
                 rays[at].slot = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);

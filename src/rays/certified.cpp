@@ -199,7 +199,7 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     if (casts_all(update)) {
         held_.resize(device, 0);
-        return cast_in_full(update, batch, true);
+        return cast_in_full(update, batch);
     }
     const ShapeStore::Arrays& arrays = update.arrays();
     std::swap(held_, last_held_);

@@ -5,17 +5,17 @@
 
 namespace raycontact {
 
-void cast_in_full(const Update& update, RayBatch& batch, bool short_first) {
+void cast_in_full(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    const kernels::uint stride = batch.outcomes.stride();
+    const auto run = [&]<KernelId kernel>() {
+        launch<kernel>(update.device, batch.count, batch.outcomes.stride(), *batch.pairs, arrays.headers,
+                       arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.face_normals, batch.rays,
+                       batch.hits, batch.outcomes.values());
+    };
     if (update.settings.caster == Caster::basic)
-        launch<KernelId::cast_rays_basic>(update.device, batch.count, stride, *batch.pairs, arrays.headers,
-                                          arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks,
-                                          arrays.face_normals, batch.rays, batch.hits, batch.outcomes.values());
+        run.operator()<KernelId::cast_rays_basic>();
     else
-        launch<KernelId::cast_rays_bvh>(update.device, batch.count, short_first ? 1u : 0u, stride, *batch.pairs,
-                                        arrays.headers, arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks,
-                                        arrays.face_normals, batch.rays, batch.hits, batch.outcomes.values());
+        run.operator()<KernelId::cast_rays_bvh>();
 }
 
 } // namespace raycontact

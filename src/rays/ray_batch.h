@@ -33,8 +33,7 @@ struct RayBatch {
     std::array<kernels::Totals, sum_count> sums{}; ///< totals, as the host has read them
 };
 
-/// Casts every ray in full (paper section 2.1). short_first: tries a short ray first, for rays that a grid left over,
-/// most of which end close by; it changes the time only.
-void cast_in_full(const Update& update, RayBatch& batch, bool short_first);
+/// Casts every ray in full (paper section 2.1).
+void cast_in_full(const Update& update, RayBatch& batch);
 
 } // namespace raycontact

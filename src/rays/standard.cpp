@@ -26,7 +26,7 @@ void StandardRays::cast(const Update& update, RayBatch& batch) {
     search_.count_rays(update, pairs, use_grid, batch.totals, RayBatch::ray_sum, batch.rays.size());
     search_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
     batch.count = results_of(batch.totals, RayBatch::ray_sum, batch.rays.size());
-    cast_in_full(update, batch, use_grid);
+    cast_in_full(update, batch);
 }
 
 bool StandardRays::had_room(Device& device, RayBatch& batch) {

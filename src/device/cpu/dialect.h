@@ -19,8 +19,7 @@ struct Range {
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
 #define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
-#define DEVICE_RARE [[maybe_unused, gnu::noinline]] static  // what is seldom asked should not crowd the registers
-#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks
+#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks, or seldom
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
@@ -29,7 +28,6 @@ struct Range {
 #define FOR_EACH(i, n) for (uint i = range.begin, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define RAYS_AT_ONCE 4
 #define RAYS_IN_GROUP 16
-#define LOOKS_TOGETHER 4
 #define VERTICES_AT_ONCE 16
 #define FOR_EACH_VERTICES(i, first, n)                                                                                 \
     for (uint i = range.begin, first = 0, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)

@@ -6,7 +6,6 @@ typedef unsigned long long ulong;
 #define KERNEL extern "C" __global__
 #define DEVICE static inline __device__
 #define DEVICE_CALL static __noinline__ __device__
-#define DEVICE_RARE DEVICE_CALL
 #define DEVICE_BATCH DEVICE
 #define GLOBAL
 #define RESTRICT __restrict__
@@ -23,7 +22,6 @@ typedef unsigned long long ulong;
 #define ADD_TO(place, number) ((void)atomicAdd(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
-#define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = blockIdx.x * blockDim.x + threadIdx.x, few = 1u, i##_end = ALL(n); i < i##_end;                      \
          i += gridDim.x * blockDim.x)

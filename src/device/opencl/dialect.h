@@ -5,7 +5,6 @@
 #define KERNEL __kernel
 #define DEVICE static inline
 #define DEVICE_CALL DEVICE
-#define DEVICE_RARE DEVICE_CALL
 #define DEVICE_BATCH DEVICE
 #define GLOBAL __global
 #define RESTRICT restrict
@@ -22,7 +21,6 @@
 #define ADD_TO(place, number) ((void)atomic_add(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
-#define LOOKS_TOGETHER 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = (uint)get_global_id(0), few = 1u, i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)

@@ -49,45 +49,53 @@ struct Said {
     std::uint32_t slot = 0;
 };
 
+/// What kernels read of a shape alone.
+inline kernels::prototype::Arrays arrays_of(const ShapeData& shape) {
+    kernels::prototype::Arrays arrays{};
+    arrays.shapes = &shape.header;
+    arrays.nodes = shape.nodes.data();
+    arrays.blocks = shape.triangle_blocks.data();
+    arrays.normals = shape.face_normals.data();
+    return arrays;
+}
+
 /// Of the ray in that lane of a group that has been asked; nothing, where the ray is not known.
-inline std::optional<Said> said_of(const kernels::prototype::HeldGroup& group, std::uint32_t lane,
-                                   const kernels::ShapeHeader* shapes, const kernels::Packed3* normals) {
+inline std::optional<Said> said_of(const kernels::prototype::Arrays& arrays, const kernels::prototype::HeldGroup& group,
+                                   std::uint32_t lane) {
     if (group.is_known[lane] == 0) return std::nullopt;
-    return Said{kernels::prototype::held_hit(&group, lane, shapes, normals), group.triangle_slot[lane]};
+    return Said{kernels::prototype::held_hit(&arrays, &group, lane), group.triangle_slot[lane]};
 }
 
 /// Asked alone: all lanes up to this one hold the same ray.
 inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
                                const ShapeData& target, const kernels::HeldRange& held_range, std::uint32_t lane) {
     using namespace kernels::prototype;
-    HeldGroup group;
-    clear_held(&group);
-    for (std::uint32_t i = 0; i <= lane; ++i)
-        add_held(&group, 0, &moved, &held, &held_range, 0, 0, &target.header, target.triangle_blocks.data());
-    fetch_triangles(&group, &target.header, target.triangle_blocks.data(), target.face_normals.data());
-    ask_tubes_and_caps(&group, &target.header, target.triangle_blocks.data(), target.faces.data(),
-                       target.face_normals.data());
-    return said_of(group, lane, &target.header, target.face_normals.data());
+    const Arrays arrays = arrays_of(target);
+    HeldGroup group{};
+    for (std::uint32_t i = 0; i <= lane; ++i) add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, 0);
+    fetch_triangles(&arrays, &group);
+    ask_tubes_and_caps(&arrays, target.faces.data(), &group);
+    return said_of(arrays, group, lane);
 }
 
 inline kernels::prototype::Closest closest(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
-    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction);
-    return kernels::prototype::find_closest(0, &frame, ray.reach, &target.header, target.nodes.data(),
+    const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction, false);
+    return kernels::prototype::traverse_bvh(&frame, ray.reach, &target.header, target.nodes.data(),
                                             target.triangle_blocks.data());
 }
 
 inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
     const kernels::prototype::Closest met = closest(ray, target);
-    return kernels::prototype::decide(CASTER_BVH, &ray, &met, &target.header, target.nodes.data(),
-                                      target.triangle_blocks.data(), target.face_normals.data());
+    const kernels::prototype::Arrays arrays = arrays_of(target);
+    return kernels::prototype::decide(&arrays, CASTER_BVH, &ray, &met, &target.header);
 }
 
 /// What is held of a ray that was cast, if a tube was wide enough.
 inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, const ShapeData& target,
                                      const kernels::HeldRange& held_range) {
     const kernels::prototype::Closest met = closest(ray, target);
-    return kernels::prototype::seek_tube(&ray, &met, &held_range, &target.header, target.nodes.data(),
-                                         target.triangle_blocks.data());
+    const kernels::prototype::Arrays arrays = arrays_of(target);
+    return kernels::prototype::seek_tube(&arrays, &ray, &met, &held_range, &target.header);
 }
 
 inline bool differ(const kernels::Hit& said, const kernels::Hit& truth) {

@@ -30,6 +30,14 @@ struct Ground {
         }
     }
 
+    kernels::prototype::Arrays arrays() const {
+        kernels::prototype::Arrays arrays{};
+        arrays.shapes = headers.data();
+        arrays.blocks = blocks.data();
+        arrays.normals = normals.data();
+        return arrays;
+    }
+
     std::vector<std::shared_ptr<const Shape>> shapes;
     std::vector<kernels::ShapeHeader> headers;
     std::vector<kernels::TriangleBlock> blocks;
@@ -72,23 +80,21 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
     std::vector<std::shared_ptr<const Shape>> shapes = crowd_shapes(Kind::concave, 1);
     for (const char* kind : {"sphere", "knot"}) shapes.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
     const Ground ground(shapes);
+    const kernels::prototype::Arrays arrays = ground.arrays();
     Random random(14);
-    kernels::prototype::HeldGroup group;
-    clear_held(&group);
+    kernels::prototype::HeldGroup group{};
     std::uint64_t rays = 0, by_tube = 0, by_cap = 0, stepped = 0, differing = 0;
     for (int round = 0; round < 10000; ++round) {
         const std::uint32_t count = 1 + random.below(RAYS_IN_GROUP);
         std::vector<Asked> all;
         for (std::uint32_t i = 0; i < count; ++i) {
             const Asked& asked = all.emplace_back(any_ray(ground, random));
-            add_held(&group, i, &asked.ray, &asked.held, &asked.held_range, 0, asked.target, ground.headers.data(),
-                     ground.blocks.data());
+            add_held(&arrays, &group, i, &asked.ray, &asked.held, &asked.held_range, 0, asked.target);
         }
-        fetch_triangles(&group, ground.headers.data(), ground.blocks.data(), ground.normals.data());
-        ask_tubes_and_caps(&group, ground.headers.data(), ground.blocks.data(), ground.faces.data(),
-                           ground.normals.data());
+        fetch_triangles(&arrays, &group);
+        ask_tubes_and_caps(&arrays, ground.faces.data(), &group);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const auto together = said_of(group, i, ground.headers.data(), ground.normals.data());
+            const auto together = said_of(arrays, group, i);
             const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].held_range, 0);
             ++rays;
             if (together.has_value() != alone.has_value()) {

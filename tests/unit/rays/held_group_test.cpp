@@ -21,6 +21,14 @@ using reference::Random;
 constexpr std::uint32_t blocks_of_shape = 3;
 
 struct Ground {
+    Arrays arrays() const {
+        Arrays arrays{};
+        arrays.shapes = shapes.data();
+        arrays.blocks = blocks.data();
+        arrays.normals = normals.data();
+        return arrays;
+    }
+
     std::vector<kernels::ShapeHeader> shapes;
     std::vector<kernels::TriangleBlock> blocks;
     std::vector<kernels::Packed3> normals;
@@ -112,7 +120,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     const kernels::ShapeHeader& shape = ground.shapes[asked.target];
     const kernels::Held& held = asked.held;
     Closest closest = nothing_hit(asked.ray.reach, shape.tolerance);
-    const RayFrame frame = frame_ray(asked.ray.position, asked.ray.direction);
+    const RayFrame frame = frame_ray(asked.ray.position, asked.ray.direction, false);
     if (held.triangle != NONE)
         hit_lane(&closest, &frame, &ground.blocks[shape.triangle_block_first + held.triangle / TRIANGLE_LANES],
                  held.triangle % TRIANGLE_LANES, shape.tolerance, false);
@@ -134,9 +142,9 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     if (!known) return;
     ++counts.known;
     // Of one triangle there is nothing to tell apart: decide() casts no other ray, and needs no tree.
-    const kernels::Hit truth =
-        decide(CASTER_BVH, &asked.ray, &closest, &shape, nullptr, ground.blocks.data(), ground.normals.data());
-    const kernels::Hit said = held_hit(&group, lane, ground.shapes.data(), ground.normals.data());
+    const Arrays arrays = ground.arrays();
+    const kernels::Hit truth = decide(&arrays, CASTER_BVH, &asked.ray, &closest, &shape);
+    const kernels::Hit said = held_hit(&arrays, &group, lane);
     counts.hits += truth.triangle != NONE;
     const auto same = [](float a, float b) {
         return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
@@ -150,19 +158,18 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
     const kernels::HeldRange no_caps{};
     for (const Floats kind : {Floats::ordinary, Floats::on_a_grid, Floats::odd}) {
         Counts counts;
-        HeldGroup group;
-        clear_held(&group);
+        HeldGroup group{};
         for (int round = 0; round < 12000; ++round) {
             const Ground ground = any_ground(kind, random);
+            const Arrays arrays = ground.arrays();
             for (int again = 0; again < 4; ++again) {
                 const std::uint32_t count = 1 + random.below(RAYS_IN_GROUP);
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&group, i, &asked.ray, &asked.held, &no_caps, 0, asked.target, ground.shapes.data(),
-                             ground.blocks.data());
+                    add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_caps, 0, asked.target);
                 }
-                fetch_triangles(&group, ground.shapes.data(), ground.blocks.data(), ground.normals.data());
+                fetch_triangles(&arrays, &group);
                 ask_held(&group);
                 for (std::uint32_t i = 0; i < count; ++i) compare(all[i], group, i, ground, counts);
                 group.rays.count = 0;

@@ -39,15 +39,16 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
     }
     Lookup found{};
     const auto seen = kernels::prototype::inside_lanes(&pair, &block, 0);
-    const auto safe = [&] {
-        return kernels::prototype::safe_lanes(&seen, &pair, &block, 0, &target.header, target.clearances.data());
+    const auto find_safe = [&](float* safe) {
+        kernels::prototype::safe_lanes(safe, &seen, &pair, &block, 0, &target.header, target.clearances.data());
     };
-    const auto near = safe();
-    std::copy(near.safe, near.safe + VERTEX_LANES, found.distance);
+    float near[VERTEX_LANES], endless[VERTEX_LANES];
+    find_safe(near);
+    std::copy(near, near + VERTEX_LANES, found.distance);
     // A vertex that is not certainly outside loses its ray's reach; one with an endless ray is never safe.
     std::fill(block.exit, block.exit + VERTEX_LANES, std::numeric_limits<float>::infinity());
-    const auto endless = safe();
-    for (std::size_t k = 0; k < VERTEX_LANES; ++k) found.outside[k] = endless.safe[k] >= 0;
+    find_safe(endless);
+    for (std::size_t k = 0; k < VERTEX_LANES; ++k) found.outside[k] = endless[k] >= 0;
     return found;
 }
 
