@@ -4,6 +4,8 @@
 #include "device/work.h"
 
 #include "device/cpu/kernel_table.h"
+#include "device/opencl/device.h"
+#include "device/opencl/program.h"
 
 #include <gtest/gtest.h>
 
@@ -61,6 +63,19 @@ TEST(opencl, every_exact_device_leaves_the_same_bytes) {
         EXPECT_TRUE(same_bits(expected().contacts, outcome.contacts)) << info.id << ": " << info.name;
     }
     EXPECT_GT(exact, 0u) << "no exact OpenCL device here; on Debian: apt-get install pocl-opencl-icd";
+}
+
+// A CPU's driver is given a block of vertices an item; a GPU's items are single vertices.
+TEST(opencl, a_vertex_an_item_leaves_the_same_bytes) {
+    const auto single = [](opencl::Source& source) {
+        const std::string_view many = "VERTICES_AT_ONCE=16";
+        const auto at = source.options.find(many);
+        ASSERT_NE(at, std::string::npos) << "not a CPU's driver: every other test has single vertices";
+        source.options.replace(at, many.size(), "VERTICES_AT_ONCE=1");
+    };
+    const Outcome outcome =
+        run_work({std::make_unique<Executor>(1), opencl::open("opencl:0", false, single)}, work(), every_way());
+    EXPECT_EQ(first_difference(expected().trace, outcome.trace), "");
 }
 
 // Blocks, rays and contacts, in this order, have no room in the first step; each time all is done again.

@@ -13,11 +13,14 @@
 #define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
 #define FOR_EACH(i, n)                                                                                                 \
     for (uint i = (uint)get_global_id(0), i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
+#ifndef VERTICES_AT_ONCE // a build option: 16 for a CPU
 #define VERTICES_AT_ONCE 1
+#endif
+#define BLOCK_ITEMS (VERTEX_LANES / VERTICES_AT_ONCE)
 #define FOR_EACH_VERTICES(i, first, n)                                                                                 \
-    for (uint v = (uint)get_global_id(0), v_end = VERTEX_LANES * ALL(n), i = v / VERTEX_LANES,                         \
-              first = v % VERTEX_LANES;                                                                                \
-         v < v_end; v += (uint)get_global_size(0), i = v / VERTEX_LANES, first = v % VERTEX_LANES)
+    for (uint v = (uint)get_global_id(0), v_end = BLOCK_ITEMS * ALL(n), i = v / BLOCK_ITEMS,                           \
+              first = v % BLOCK_ITEMS * VERTICES_AT_ONCE;                                                              \
+         v < v_end; v += (uint)get_global_size(0), i = v / BLOCK_ITEMS, first = v % BLOCK_ITEMS * VERTICES_AT_ONCE)
 #define ADD_TO(place, number) ((void)atomic_add(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
@@ -61,7 +64,9 @@ DEVICE uint pack_sixteen(const int* lanes) {
     return bits;
 }
 DEVICE uint pack_vertices(const int* lanes) {
-    return (uint)lanes[0] & 1u;
+    uint bits = 0u;
+    for (int k = 0; k < VERTICES_AT_ONCE; ++k) bits |= (uint)lanes[k] & (1u << k);
+    return bits;
 }
 
 // What rounding took from p = fl(a * b), exactly: fma() rounds once on every device, some only do it slowly.

@@ -37,5 +37,8 @@ T value_of(cl_device_id device, cl_device_info what) {
     T value{};
     return clGetDeviceInfo(device, what, sizeof value, &value, nullptr) == CL_SUCCESS ? value : T{};
 }
+inline bool is_cpu(cl_device_id device) {
+    return (value_of<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
+}
 
 } // namespace raycontact::opencl

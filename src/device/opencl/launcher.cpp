@@ -12,9 +12,8 @@ constexpr std::size_t items_in_group = 64;
 
 // Enough to keep every unit busy to the end; more only cost time where there are few items.
 std::size_t groups_for(cl_device_id device) {
-    const bool is_cpu = (value_of<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     const std::size_t units = std::max<cl_uint>(value_of<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS), 1);
-    return units * (is_cpu ? 16 : 64);
+    return units * (is_cpu(device) ? 16 : 64);
 }
 
 cl_ulong time_of(cl_event event, cl_profiling_info what) {
