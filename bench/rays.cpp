@@ -7,8 +7,8 @@
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "device/forwarding.h"
+#include "pairs/directed_pairs.h"
 #include "pairs/motion.h"
-#include "pairs/ordered_pairs.h"
 #include "rays/standard.h"
 #include "scenes/random.h"
 #include "shape/shape_data.h"
@@ -41,11 +41,12 @@ std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pai
 }
 
 // Contacts found; the transform of the vertex is part of the work, as it is of ours.
-std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::OrderedPair>& pairs,
+std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::DirectedPair>& pairs,
                  const std::vector<rk::VertexBlock>& blocks, const std::vector<rk::Ray>& rays) {
     std::size_t contacts = 0;
     for (const rk::Ray& ray : rays) {
-        const rk::prototype::SourceRay source = rk::prototype::source_ray(&pairs[ray.pair], blocks.data(), ray.slot);
+        const rk::prototype::SourceRay source =
+            rk::prototype::source_ray(&pairs[ray.pair], blocks.data(), ray.vertex_lane);
         RTCRayHit hit;
         if (scene.cast(source.position, source.direction, source.reach, hit)) ++contacts;
     }
@@ -115,7 +116,7 @@ public:
 
     const std::string& driver() const { return device_.info().driver; }
     std::vector<rk::Ray> rays() { return read(batch_.rays, batch_.sums[rc::RayBatch::ray_sum].results); }
-    std::vector<rk::OrderedPair> ordered() { return read(*batch_.pairs, batch_.pairs->size()); }
+    std::vector<rk::DirectedPair> ordered() { return read(*batch_.pairs, batch_.pairs->size()); }
 
     std::vector<double> queue_ms, bvh_ms, basic_ms; ///< of each run; queue: finding the rays
     std::uint64_t hash = 0, basic_hash = 0;         ///< of the last
@@ -169,7 +170,7 @@ int main(int argc, char** argv) try {
     for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables())
         contenders.push_back(std::make_unique<Contender>(executor, table->instruction_set, shape, bodies, pairs));
     const std::vector<rk::Ray> rays = contenders[0]->rays();
-    const std::vector<rk::OrderedPair> ordered = contenders[0]->ordered();
+    const std::vector<rk::DirectedPair> ordered = contenders[0]->ordered();
     const rc::bench::EmbreeDevice embree_device;
     const rc::bench::EmbreeScene embree(embree_device, *shape);
     std::vector<double> embree_ms;

@@ -55,7 +55,7 @@ void put_settings(Json& object, const Settings& settings) {
 std::string work_for_a_person(const Json& s) {
     const auto count = [&](const char* key) { return s.at(key).get<std::uint64_t>(); };
     std::string text =
-        fmt::format("work       {} rays cast in full; ordered pairs: {} times looked at in full, {} times asleep\n",
+        fmt::format("work       {} rays cast in full; directed pairs: {} times looked at in full, {} times asleep\n",
                     count("rays_cast"), count("pairs_full"), count("pairs_asleep"));
     if (count("walks") > 0 || count("predictions") > 0)
         text += fmt::format("walks      {}, of them {} ended nowhere, {} of those cast in full; {} predictions\n",

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "broadphase/sweep_and_prune.h"
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 
 #include <cstddef>
 #include <cstdint>

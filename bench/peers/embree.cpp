@@ -2,7 +2,7 @@
 #include <bench/peers/embree_scene.h>
 #include <bench/peers/peer.h>
 
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 #include "shape/shape_data.h"
 
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include "device/device.h"
 #include "executor/float_environment.h"
+#include "pairs/directed_pairs.h"
 #include "pairs/motion.h"
-#include "pairs/ordered_pairs.h"
 #include "rays/standard.h"
 
 namespace raycontact::bench {
@@ -127,7 +127,7 @@ public:
         for (const kernels::Ray& ray : rays_) {
             // The vertex's way into the target's frame is part of the work, as it is of ours.
             const kernels::prototype::SourceRay source =
-                kernels::prototype::source_ray(&ordered_[ray.pair], blocks_.data(), ray.slot);
+                kernels::prototype::source_ray(&ordered_[ray.pair], blocks_.data(), ray.vertex_lane);
             RTCRayHit hit;
             if (!scenes_[ordered_[ray.pair].target]->cast(source.position, source.direction, source.reach, hit))
                 continue;
@@ -144,7 +144,7 @@ private:
     std::vector<std::unique_ptr<EmbreeScene>> scenes_; ///< by index in the store
     std::vector<kernels::VertexBlock> blocks_;
     std::vector<kernels::Ray> rays_;
-    std::vector<kernels::OrderedPair> ordered_;
+    std::vector<kernels::DirectedPair> ordered_;
 };
 
 } // namespace

@@ -9,8 +9,8 @@
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
+#include "pairs/directed_pairs.h"
 #include "pairs/displacement.h"
-#include "pairs/ordered_pairs.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 namespace raycontact {
 
 /// The contacts of a step in the targets' frames, in the order of the pairs. They name their pair by its directed index
-/// (DirectedPair).
+/// (DirectedBodies).
 class LocalContacts {
 public:
     /// found: each names its pair by an index of `directed`, which has the directed indices of some of pair_count

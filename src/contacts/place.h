@@ -2,17 +2,13 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 
 #include <raycontact/scene.h>
 
 #include <vector>
 
 namespace raycontact {
-
-/// Sorts the contacts of one direction of a pair by vertex. keys: the vertex in the upper word, no two alike; the lower
-/// word moves along and does not affect the order.
-void sort_by_vertex(std::span<std::uint64_t> keys);
 
 /// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points
 /// are in double.

@@ -33,9 +33,9 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
 
 // Whether its cap will know a ray by the triangle that it met, while it meets it.
 DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape,
-                      READS(TriangleBlock) blocks, uint slot) {
-    READS(TriangleBlock) block = blocks + shape->triangle_block_first + slot / TRIANGLE_LANES;
-    const uint lane = slot % TRIANGLE_LANES;
+                      READS(TriangleBlock) blocks, uint triangle_lane) {
+    READS(TriangleBlock) block = blocks + shape->triangle_block_first + triangle_lane / TRIANGLE_LANES;
+    const uint lane = triangle_lane % TRIANGLE_LANES;
     float far2 = 0.0f;
     for (int i = 0; i < 3; ++i) {
         const float middle = (block->corner[i][lane] + block->corner[3 + i][lane]) + block->corner[6 + i][lane];
@@ -45,10 +45,10 @@ DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(Sh
     return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
 
-// After ask_held(). A ray that begins in the triangle's cap and passes well inside of its edges leaves the mesh there,
+// After test_held(). A ray that begins in the triangle's cap and passes well inside of its edges leaves the mesh there,
 // and there alone; one that begins beyond it is outside, if by more than rounding.
-DEVICE void ask_caps(HeldGroup* group) {
-    Group* rays = &group->rays;
+DEVICE void test_caps(HeldGroup* group) {
+    RayGroup* rays = &group->rays;
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = rays->position[0][r], py = rays->position[1][r], pz = rays->position[2][r];
         const float ax = group->corner[0][r] - px, ay = group->corner[1][r] - py, az = group->corner[2][r] - pz;
@@ -87,9 +87,9 @@ DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group)
         if (group->beyond[r] == 0u) continue;
         READS(Face) own = faces + arrays->shapes[group->rays.target[r]].face_first;
         const uint next = own[group->triangle[r]].neighbour[group->beyond[r] - 1u];
-        const uint slot = next != NONE ? own[next].slot : NONE;
-        if (slot == NONE) continue;
-        group->triangle_slot[r] = slot;
+        const uint triangle_lane = next != NONE ? own[next].triangle_lane : NONE;
+        if (triangle_lane == NONE) continue;
+        group->triangle_lane[r] = triangle_lane;
         group->safe[r] = 0.0f; // its tube was of the other triangle
         fetch_triangle(arrays, group, r);
         ++stepped;
@@ -98,15 +98,15 @@ DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group)
 }
 
 // What held rays' tubes say, else their caps.
-DEVICE void ask_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
-    ask_held(group);
+DEVICE void test_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
+    test_held(group);
     uint asks = 0u;
-    for (uint r = 0u; r < group->rays.count; ++r) asks |= group->asks_cap[r] & (group->is_known[r] ^ 1u);
+    for (uint r = 0u; r < group->rays.count; ++r) asks |= group->tests_cap[r] & (group->is_known[r] ^ 1u);
     if (asks == 0u) return;
-    ask_caps(group);
+    test_caps(group);
     for (uint step = 0u; step < MOST_STEPS && step_over(arrays, faces, group) != 0u; ++step) {
-        ask_held(group);
-        ask_caps(group);
+        test_held(group);
+        test_caps(group);
     }
 }
 

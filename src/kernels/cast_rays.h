@@ -35,7 +35,7 @@ DEVICE Closest traverse(const Arrays* arrays, const uint caster, const RayFrame*
 
 // What each ray of a group meets first, or its opposite, by the BVH. Where a group is more than one ray, they are cast
 // together as far as each one's `length`: what is met so near is the closest of all. The others are cast alone.
-DEVICE void find_group(const Arrays* arrays, Closest* own, Group* group, const bool opposite) {
+DEVICE void find_group(const Arrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
     frame_group(group, opposite);
     const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->nodes, arrays->blocks) : 1u;
     for (uint r = 0u; r < group->count; ++r) {
@@ -95,7 +95,7 @@ DEVICE Hit decide(const Arrays* arrays, const uint caster, const SourceRay* ray,
 }
 
 // What the rays of a group meet, and what that makes of each of them: hits by whose they are.
-DEVICE void cast_group(const Arrays* arrays, Closest* own, Group* group) {
+DEVICE void cast_group(const Arrays* arrays, Closest* own, RayGroup* group) {
     READS(ShapeHeader) shapes = arrays->shapes;
     find_group(arrays, own, group, false);
     for (uint r = 0u; r < group->count; ++r)
@@ -108,18 +108,18 @@ DEVICE void cast_group(const Arrays* arrays, Closest* own, Group* group) {
 }
 
 // Every vertex is in the bounds.
-KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                           READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                           READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
     const Arrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
-        Group group;
+        RayGroup group;
         Closest own[RAYS_IN_GROUP];
         clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             const uint target = pairs[ray.pair].target;
-            const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
+            const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.vertex_lane);
             add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
         }
         cast_group(&arrays, own, &group);
@@ -127,7 +127,7 @@ KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(OrderedPair) pairs, R
 }
 
 // A vertex that has left the bounds is no contact, whatever its ray meets.
-KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                             READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                             READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
     const Arrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
@@ -137,8 +137,8 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(OrderedPair) pairs,
         Closest own[RAYS_AT_ONCE];
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
-            READS(OrderedPair) pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices, ray.slot);
+            READS(DirectedPair) pair = pairs + ray.pair;
+            source[r] = source_ray(pair, vertices, ray.vertex_lane);
             frame[r] = frame_ray(source[r].position, source[r].direction, false);
             own[r] = nothing_hit(source[r].reach, shapes[pair->target].tolerance);
         }
@@ -148,7 +148,7 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(OrderedPair) pairs,
             traverse_basic(own + r, frame + r, same, shapes + target, blocks);
         }
         for (uint r = 0u; r < few; ++r) {
-            READS(OrderedPair) pair = pairs + rays[i + r].pair;
+            READS(DirectedPair) pair = pairs + rays[i + r].pair;
             READS(ShapeHeader) shape = shapes + pair->target;
             record_hit(&arrays, i + r,
                        in_bounds(pair, source[r].position) ? decide(&arrays, CASTER_BASIC, source + r, own + r, shape)

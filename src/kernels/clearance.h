@@ -79,7 +79,7 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
 }
 
 // safe: metres each of the vertices from `first` on can move before it could be in contact; may be negative.
-DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(OrderedPair) pair, READS(VertexBlock) block,
+DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(DirectedPair) pair, READS(VertexBlock) block,
                        uint first, READS(ShapeHeader) target, READS(uint) clearances) {
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
@@ -112,7 +112,7 @@ DEVICE float least_of_sixteen(const float* values) {
 }
 
 // What the ball around a block's box says for all its vertices, without looking at them.
-DEVICE float safe_block(READS(OrderedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
+DEVICE float safe_block(READS(DirectedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
                         uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
     const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
     READS(ClusterBlock) box = clusters + source->cluster_first[0] + own / VERTEX_LANES;

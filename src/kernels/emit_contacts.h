@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hits that are contacts, as record_hit() counted them, in the order of the rays.
-KERNEL void write_contacts(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+KERNEL void write_contacts(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                            READS(VertexBlock) vertices, READS(Packed3) normals, READS(Ray) rays, READS(Hit) hits,
                            READS(uint) firsts, WRITES(LocalContact) contacts) {
     FOR_EACH(i, count) {
@@ -9,7 +9,7 @@ KERNEL void write_contacts(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHe
             const Ray ray = rays[i];
             LocalContact contact;
             contact.pair = ray.pair;
-            contact.vertex = vertices[ray.slot / VERTEX_LANES].vertex[ray.slot % VERTEX_LANES];
+            contact.vertex = vertices[ray.vertex_lane / VERTEX_LANES].vertex[ray.vertex_lane % VERTEX_LANES];
             contact.triangle = hit.triangle;
             contact.distance = hit.distance;
             contact.facing = hit.facing;

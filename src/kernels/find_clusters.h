@@ -9,7 +9,7 @@ STRUCT(PairBounds) {
     float source_centre[3], source_half_size[3]; // the same box in the source's frame, axis-aligned there
 };
 
-DEVICE PairBounds bounds_of(READS(OrderedPair) pair) {
+DEVICE PairBounds bounds_of(READS(DirectedPair) pair) {
     PairBounds b;
     for (int i = 0; i < 9; ++i) {
         b.rotation[i] = pair->rotation[i];
@@ -71,7 +71,7 @@ DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
 // Whose blocks are sought, in its source's tree of clusters, and what the boxes are compared with.
 STRUCT(Search) {
     uint p;
-    READS(OrderedPair) pair;
+    READS(DirectedPair) pair;
     READS(ShapeHeader) source;
     READS(ShapeHeader) target;
     READS(ClusterBlock) clusters;
@@ -83,7 +83,7 @@ STRUCT(Search) {
 // Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
 // the bounds cannot be in contact before it reaches them.
 DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
-    READS(OrderedPair) pair = search->pair;
+    READS(DirectedPair) pair = search->pair;
     READS(ShapeHeader) target = search->target;
     const Clearance grid = clearance_of(target);
     READS(uint) balls = search->clearances + target->clearance_first;
@@ -112,9 +112,9 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
 }
 
 // No horizons: below 0.
-DEVICE Search search_of(uint p, READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+DEVICE Search search_of(uint p, READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                         READS(ClusterBlock) clusters, READS(uint) clearances) {
-    READS(OrderedPair) pair = pairs + p;
+    READS(DirectedPair) pair = pairs + p;
     const Search search = {p,        pair,       shapes + pair->source,          shapes + pair->target,
                            clusters, clearances, horizons ? horizons[p] : -1.0f, UNBOUNDED};
     return search;
@@ -206,7 +206,7 @@ DEVICE void write_reached(Search* search, ulong block_mask, const FoundBlocks* f
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair): without the
 // blocks that cannot be in contact before they have moved that far. safe_distances, where there are horizons: for a
 // pair without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
-KERNEL void count_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+KERNEL void count_clusters(COUNT(count), READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                            READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
@@ -221,7 +221,7 @@ KERNEL void count_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) 
     }
 }
 
-KERNEL void write_clusters(COUNT(count), READS(OrderedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+KERNEL void write_clusters(COUNT(count), READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                            READS(ClusterBlock) clusters, READS(uint) clearances, READS(ulong) block_masks,
                            READS(uint) firsts, WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {

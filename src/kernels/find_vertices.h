@@ -27,7 +27,7 @@ DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
 }
 
 // Whether a vertex casts, exactly as inside_lanes() has it. p: of its source_ray(), which has the same bits.
-DEVICE bool in_bounds(READS(OrderedPair) pair, const float* p) {
+DEVICE bool in_bounds(READS(DirectedPair) pair, const float* p) {
     READS(float) b = pair->bounds;
     return ((uint)(p[0] >= b[0]) & (uint)(p[0] <= b[3]) & (uint)(p[1] >= b[1]) & (uint)(p[1] <= b[4])
             & (uint)(p[2] >= b[2]) & (uint)(p[2] <= b[5]))
@@ -49,11 +49,11 @@ DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
 
 // Adds to column 0 of counts the vertices whose ray must be cast to know, to column 1 those in the bounds, one ray of
 // the rule each.
-KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                        READS(VertexBlock) vertices, READS(uint) outside_cells, READS(uint) clearances,
                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
-        READS(OrderedPair) pair = pairs + found_blocks[i].pair;
+        READS(DirectedPair) pair = pairs + found_blocks[i].pair;
         const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block, first);
         READS(ShapeHeader) target = shapes + pair->target;
         const uint inside_mask = pack_vertices(found.inside);
@@ -80,7 +80,7 @@ KERNEL void write_rays(COUNT(count), uint begin, READS(PairBlock) found_blocks, 
         for (uint lanes = own_lanes(block.lanes, first); lanes != 0u; lanes &= lanes - 1u) {
             Ray ray;
             ray.pair = block.pair;
-            ray.slot = VERTEX_LANES * block.vertex_block + lowest_bit(lanes);
+            ray.vertex_lane = VERTEX_LANES * block.vertex_block + lowest_bit(lanes);
             rays[at] = ray;
             ++at;
         }

@@ -21,7 +21,7 @@ STRUCT(Outcome) {
 STRUCT(Follow) {
     Arrays all;
     READS(Face) faces;
-    READS(OrderedPair) pairs;
+    READS(DirectedPair) pairs;
     READS(float) cullings; // by pair, metres; below 0: nothing is sought ahead
     READS(VertexBlock) vertices;
     READS(Ray) rays;
@@ -40,9 +40,9 @@ STRUCT(FollowedRay) {
 
 DEVICE FollowedRay followed_ray(const Follow* follow, uint i) {
     const Ray ray = follow->rays[i];
-    READS(OrderedPair) pair = follow->pairs + ray.pair;
+    READS(DirectedPair) pair = follow->pairs + ray.pair;
     FollowedRay followed;
-    followed.own = source_ray(pair, follow->vertices, ray.slot);
+    followed.own = source_ray(pair, follow->vertices, ray.vertex_lane);
     followed.pair = ray.pair;
     followed.target = pair->target;
     followed.start = follow->starts[i];
@@ -127,12 +127,12 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
     uint at = followed->start, came_from = NONE;
     for (uint i = 0u; i < follow->max_iterations; ++i) {
         const Face face = follow->faces[shape->face_first + at];
-        if (face.slot == NONE) return end;
+        if (face.triangle_lane == NONE) return end;
         uint came_by = NONE;
         for (uint e = 0u; e < 3u; ++e)
             if (came_from != NONE && face.neighbour[e] == came_from) came_by = e;
-        const Passage passage =
-            pass_triangle(&frame, blocks + face.slot / TRIANGLE_LANES, face.slot % TRIANGLE_LANES, came_by);
+        const Passage passage = pass_triangle(&frame, blocks + face.triangle_lane / TRIANGLE_LANES,
+                                              face.triangle_lane % TRIANGLE_LANES, came_by);
         if (passage.through != 0u) {
             end.how = WALKED;
             if (passage.t >= 0.0f && passage.t <= ray->reach && followed->inside != 0u) {
@@ -154,11 +154,11 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
 // the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The
 // upper half of PairBlock.lanes tells those whose own ray must be cast. counts: as of count_rays().
-KERNEL void count_near_rays(COUNT(count), uint stride, READS(OrderedPair) wide, READS(float) reach,
+KERNEL void count_near_rays(COUNT(count), uint stride, READS(DirectedPair) wide, READS(float) reach,
                             READS(float) margins, READS(ShapeHeader) shapes, READS(VertexBlock) vertices,
                             READS(uint) clearances, WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
-        READS(OrderedPair) pair = wide + near_blocks[i].pair;
+        READS(DirectedPair) pair = wide + near_blocks[i].pair;
         READS(ShapeHeader) target = shapes + pair->target;
         const float near = reach[near_blocks[i].pair], margin = margins[near_blocks[i].pair];
         READS(VertexBlock) block = vertices + near_blocks[i].vertex_block;
@@ -186,7 +186,7 @@ KERNEL void write_near_rays(COUNT(count), READS(PairBlock) near_blocks, READS(ui
         for (uint lanes = own_lanes(found.lanes & 0xffffu, first); lanes != 0u; lanes &= lanes - 1u) {
             const uint lane = lowest_bit(lanes);
             rays[at].pair = found.pair;
-            rays[at].slot = VERTEX_LANES * found.vertex_block + lane;
+            rays[at].vertex_lane = VERTEX_LANES * found.vertex_block + lane;
             starts[at] = ((found.lanes >> (VERTEX_LANES + lane)) & 1u) != 0u ? IN_FULL : AHEAD_ONLY;
             ++at;
         }
@@ -202,14 +202,14 @@ KERNEL void copy_candidates(COUNT(count), READS(Segment) segments, READS(uint) f
             const uint at = firsts[s] + i;
             const Candidate candidate = candidates[segment.first + i];
             rays[at].pair = segment.pair;
-            rays[at].slot = candidate.slot;
+            rays[at].vertex_lane = candidate.vertex_lane;
             starts[at] = candidate.triangle;
         }
     }
 }
 
 // Predictive rays of vertices that are not in contact.
-DEVICE_BATCH void cast_ahead(const Follow* follow, Group* ahead) {
+DEVICE_BATCH void cast_ahead(const Follow* follow, RayGroup* ahead) {
     Closest met[RAYS_IN_GROUP];
     find_group(&follow->all, met, ahead, true);
     for (uint r = 0u; r < ahead->count; ++r) follow->nexts[ahead->at[r]] = predicted(met + r, ahead->reach[r]);
@@ -217,7 +217,7 @@ DEVICE_BATCH void cast_ahead(const Follow* follow, Group* ahead) {
 }
 
 // Where such a ray is no contact, what lies ahead is cast next.
-DEVICE_BATCH void cast_casting(const Follow* follow, Group* casting, Group* ahead) {
+DEVICE_BATCH void cast_casting(const Follow* follow, RayGroup* casting, RayGroup* ahead) {
     Closest met[RAYS_IN_GROUP];
     cast_group(&follow->all, met, casting);
     for (uint r = 0u; r < casting->count; ++r) {
@@ -233,14 +233,14 @@ DEVICE_BATCH void cast_casting(const Follow* follow, Group* casting, Group* ahea
 }
 
 KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
-                            READS(OrderedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
+                            READS(DirectedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
                             READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                             READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
                             WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
     const Arrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     const Follow follow = {all,    faces, pairs, cullings,       vertices,   rays,
                            starts, nexts, hows,  max_iterations, predictive, cast_lost};
-    Group casting, ahead;
+    RayGroup casting, ahead;
     clear_group(&casting);
     clear_group(&ahead);
     FOR_EACH(i, count) {
@@ -263,7 +263,7 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
 }
 
 KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
-                              READS(OrderedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
+                              READS(DirectedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
                               READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                               READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
                               WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
@@ -314,7 +314,7 @@ KERNEL void write_candidates(COUNT(count), READS(uint) ranges, READS(Ray) rays, 
         uint at = firsts[p];
         for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
             if (nexts[i] != NONE) {
-                candidates[at].slot = rays[i].slot;
+                candidates[at].vertex_lane = rays[i].vertex_lane;
                 candidates[at].triangle = nexts[i];
                 ++at;
             }

@@ -8,13 +8,13 @@
 // Rays, and what was held of each. All zero at first: lanes without a ray, or without a triangle, are asked with the
 // others.
 STRUCT(HeldGroup) {
-    Group rays;
+    RayGroup rays;
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
-    uint triangle_slot[RAYS_IN_GROUP]; // NONE: it has no triangle
+    uint triangle_lane[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
     uint cap[RAYS_IN_GROUP];           // of the triangle
-    uint asks_cap[RAYS_IN_GROUP];
+    uint tests_cap[RAYS_IN_GROUP];
     float margin[RAYS_IN_GROUP];    // of rounding, metres
     float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
@@ -44,34 +44,34 @@ DEVICE void add_held(const Arrays* arrays, HeldGroup* group, uint at, const Sour
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
     group->margin[r] = held_range->margin;
-    group->asks_cap[r] = held_range->asks_caps;
-    group->triangle_slot[r] = held->triangle;
+    group->tests_cap[r] = held_range->tests_caps;
+    group->triangle_lane[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
     READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
     send_for_triangle(block, held->triangle % TRIANGLE_LANES);
-    if (held_range->asks_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
+    if (held_range->tests_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
 DEVICE void fetch_triangle(const Arrays* arrays, HeldGroup* group, uint r) {
-    const uint slot = group->triangle_slot[r], lane = slot % TRIANGLE_LANES;
-    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + slot / TRIANGLE_LANES;
+    const uint triangle_lane = group->triangle_lane[r], lane = triangle_lane % TRIANGLE_LANES;
+    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + triangle_lane / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
-    group->cap[r] = group->asks_cap[r] != 0u ? block->cap[lane] : 0u;
+    group->cap[r] = group->tests_cap[r] != 0u ? block->cap[lane] : 0u;
     PREFETCH(arrays->normals, arrays->shapes[group->rays.target[r]].normal_first + group->triangle[r]);
 }
 
 // What add_held() has sent for.
 DEVICE void fetch_triangles(const Arrays* arrays, HeldGroup* group) {
     for (uint r = 0u; r < group->rays.count; ++r)
-        if (group->triangle_slot[r] != NONE) fetch_triangle(arrays, group, r);
+        if (group->triangle_lane[r] != NONE) fetch_triangle(arrays, group, r);
 }
 
 // First whether any part of the ray has left its tube: none of its points has moved farther than one of its ends. Then
 // what the triangle says, as hit_lane() would have it, and whether that is all there is to say.
-DEVICE void ask_held(HeldGroup* group) {
-    Group* rays = &group->rays;
+DEVICE void test_held(HeldGroup* group) {
+    RayGroup* rays = &group->rays;
     frame_group(rays, false);
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = rays->position[0][r], py = rays->position[1][r], pz = rays->position[2][r];
@@ -110,7 +110,7 @@ DEVICE void ask_held(HeldGroup* group) {
         const uint front = (uint)(e.u >= 0.0f) & (uint)(e.v >= 0.0f) & (uint)(e.w >= 0.0f);
         const uint within = (uint)(t <= least) & (uint)(t < UNBOUNDED);
         const uint taken = within & ((back & (uint)(t >= 0.0f)) | (front & (back ^ 1u) & (uint)(t >= -tolerance)));
-        const uint met = taken & (away ^ 1u) & (uint)(area_of(e) != 0.0f) & (uint)(group->triangle_slot[r] != NONE);
+        const uint met = taken & (away ^ 1u) & (uint)(area_of(e) != 0.0f) & (uint)(group->triangle_lane[r] != NONE);
         const uint alone = (met & (uint)(t + LIMIT_TOLERANCES * tolerance <= limit)) | (uint)(limit >= reach);
 
         const float edge_margin = EDGE_TOLERANCES * tolerance;

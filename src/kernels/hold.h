@@ -6,14 +6,14 @@
 #define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the radius sought
 
-// The place of a ray among those that its pair held, which ascend by slot, or of the first one after it. likely: its
-// place among those of this step, mostly the same.
-DEVICE uint find_held(READS(Held) held, uint count, uint slot, uint likely) {
-    if (likely < count && held[likely].slot == slot) return likely;
+// The place of a ray among those that its pair held, which ascend by vertex_lane, or of the first one after it. likely:
+// its place among those of this step, mostly the same.
+DEVICE uint find_held(READS(Held) held, uint count, uint vertex_lane, uint likely) {
+    if (likely < count && held[likely].vertex_lane == vertex_lane) return likely;
     uint low = 0u, high = count;
     while (low < high) {
         const uint middle = (low + high) / 2u;
-        if (held[middle].slot < slot)
+        if (held[middle].vertex_lane < vertex_lane)
             low = middle + 1u;
         else
             high = middle;
@@ -21,14 +21,14 @@ DEVICE uint find_held(READS(Held) held, uint count, uint slot, uint likely) {
     return low;
 }
 
-DEVICE Held nothing_held(uint slot) {
-    const Held held = {slot, NONE, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+DEVICE Held nothing_held(uint vertex_lane) {
+    const Held held = {vertex_lane, NONE, 0.0f, 0.0f, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
     return held;
 }
 
 // Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
 DEVICE bool is_idle(READS(HeldRange) held_range) {
-    return held_range->count == 0u && held_range->radius <= 0.0f && held_range->asks_caps == 0u;
+    return held_range->count == 0u && held_range->radius <= 0.0f && held_range->tests_caps == 0u;
 }
 
 // What is known of a ray from now on, where it had to be cast.
@@ -48,7 +48,7 @@ DEVICE_BATCH Held seek_tube(const Arrays* arrays, const SourceRay* ray, const Cl
     if (safe > WORTH_HOLDING * held_range->radius) {
         held.safe = safe;
         held.limit = end;
-        held.triangle = found.slot;
+        held.triangle = found.triangle_lane;
     } else {
         held.limit = WAIT_STEPS;
     }
@@ -66,7 +66,7 @@ STRUCT(Holding) {
 
 // Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
 // from now on.
-DEVICE_BATCH void cast_waiting(const Holding* hold, Group* waiting) {
+DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
     Closest own[RAYS_IN_GROUP];
     cast_group(&hold->all, own, waiting);
     for (uint r = 0u; r < waiting->count; ++r) {
@@ -77,38 +77,38 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, Group* waiting) {
         const Hit hit = hold->all.hits[at];
         READS(ShapeHeader) shape = hold->all.shapes + waiting->target[r];
         Held held = hold->after[at];
-        const uint slot = held.slot;
+        const uint vertex_lane = held.vertex_lane;
         const bool had_tube = held.safe > 0.0f;
         const float waits = had_tube ? 0.0f : held.limit - 1.0f;
         held.limit = waits;
-        const bool met = hit.triangle != NONE && held_range->asks_caps != 0u;
-        const uint slot_met = met ? hold->faces[shape->face_first + hit.triangle].slot : NONE;
+        const bool met = hit.triangle != NONE && held_range->tests_caps != 0u;
+        const uint lane_met = met ? hold->faces[shape->face_first + hit.triangle].triangle_lane : NONE;
         // A cap that holds the ray, and was asked in vain: an edge is near, or the surface. Then a tube may do.
-        const bool in_vain = !had_tube && held.triangle == slot_met;
-        if (slot_met != NONE && !in_vain
-            && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.blocks, slot_met)) {
-            held = nothing_held(slot);
-            held.triangle = slot_met;
+        const bool in_vain = !had_tube && held.triangle == lane_met;
+        if (lane_met != NONE && !in_vain
+            && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.blocks, lane_met)) {
+            held = nothing_held(vertex_lane);
+            held.triangle = lane_met;
         } else if (!(waits > 0.0f)) {
             held = seek_tube(&hold->all, &source, own + r, held_range, shape);
         }
-        held.slot = slot;
+        held.vertex_lane = vertex_lane;
         hold->after[at] = held;
     }
     waiting->count = 0u;
 }
 
 // Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
-DEVICE void cast_later(const Holding* hold, Group* waiting, uint at, const SourceRay* ray, uint pair, uint target) {
+DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const SourceRay* ray, uint pair, uint target) {
     add_ray(waiting, at, ray, ray->reach, pair, target, hold->all.shapes);
     if (is_full(waiting)) cast_waiting(hold, waiting);
 }
 
 // The rays of a group that neither their tube nor a cap decides are cast.
-DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, Group* waiting) {
-    const Group* rays = &group->rays;
+DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* waiting) {
+    const RayGroup* rays = &group->rays;
     fetch_triangles(&hold->all, group);
-    ask_tubes_and_caps(&hold->all, hold->faces, group);
+    test_tubes_and_caps(&hold->all, hold->faces, group);
     for (uint r = 0u; r < rays->count; ++r) {
         const uint at = rays->at[r];
         if (group->is_known[r] == 0u) {
@@ -118,8 +118,8 @@ DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, Group* wait
         }
         record_hit(&hold->all, at, held_hit(&hold->all, group, r), 0u);
         WRITES(Held) held = hold->after + at;
-        if (held->triangle != group->triangle_slot[r]) {
-            held->triangle = group->triangle_slot[r];
+        if (held->triangle != group->triangle_lane[r]) {
+            held->triangle = group->triangle_lane[r];
             held->safe = held->limit = 0.0f;
         }
     }
@@ -132,10 +132,10 @@ DEVICE bool ask_first(const Holding* hold, HeldGroup* group, uint at, const Ray 
     READS(HeldRange) held_range = hold->held_ranges + ray.pair;
     if (is_idle(held_range)) return false;
     READS(Held) own = hold->before + held_range->first;
-    const uint place = find_held(own, held_range->count, ray.slot, at - held_range->now_first);
-    const bool capped = held_range->asks_caps != 0u;
-    Held known = nothing_held(ray.slot);
-    if (place < held_range->count && own[place].slot == ray.slot) known = own[place];
+    const uint place = find_held(own, held_range->count, ray.vertex_lane, at - held_range->now_first);
+    const bool capped = held_range->tests_caps != 0u;
+    Held known = nothing_held(ray.vertex_lane);
+    if (place < held_range->count && own[place].vertex_lane == ray.vertex_lane) known = own[place];
     hold->after[at] = known;
     if (capped && known.safe <= 0.0f && known.triangle == NONE)
         known.triangle = triangle_nearby(own, held_range->count, place);
@@ -145,12 +145,12 @@ DEVICE bool ask_first(const Holding* hold, HeldGroup* group, uint at, const Ray 
 }
 
 // The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds.
-KERNEL void hold_rays(COUNT(count), uint stride, READS(OrderedPair) pairs, READS(HeldRange) held_ranges,
+KERNEL void hold_rays(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(HeldRange) held_ranges,
                       READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(Node) nodes,
                       READS(TriangleBlock) blocks, READS(Face) faces, READS(Packed3) normals, READS(Ray) rays,
                       READS(Held) before, WRITES(Held) after, WRITES(Hit) hits, WRITES(uint) outcomes) {
     const Holding hold = {{shapes, nodes, blocks, normals, stride, hits, outcomes}, faces, held_ranges, before, after};
-    Group waiting;
+    RayGroup waiting;
     HeldGroup group{};
     clear_group(&waiting);
     FOR_EACH(i, count) {
@@ -160,7 +160,7 @@ KERNEL void hold_rays(COUNT(count), uint stride, READS(OrderedPair) pairs, READS
             PREFETCH(held_ranges, rays[i + 8u].pair);
         }
         const uint target = pairs[ray.pair].target;
-        const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.slot);
+        const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.vertex_lane);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
         if (ask_first(&hold, &group, i, ray, &source, target, inside)) {
             if (is_full(&group.rays)) decide_held(&hold, &group, &waiting);

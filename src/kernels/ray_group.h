@@ -5,7 +5,7 @@
 #define ENDLESS_TOLERANCES 65536.0f // how far a group follows a ray without end: a sixteenth of the box diagonal
 
 // A ray in each lane; of its frame, what RayFrame holds.
-STRUCT(Group) {
+STRUCT(RayGroup) {
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
     float origin[3][RAYS_IN_GROUP], shear[3][RAYS_IN_GROUP], inverse[3][RAYS_IN_GROUP];
     uint axis[3][RAYS_IN_GROUP];
@@ -18,14 +18,14 @@ STRUCT(Group) {
 };
 
 // Lanes without a ray are framed with the others.
-DEVICE void clear_group(Group* group) {
+DEVICE void clear_group(RayGroup* group) {
     group->count = 0u;
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
 // at: whose ray it is.
-DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
+DEVICE void add_ray(RayGroup* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
                     READS(ShapeHeader) shapes) {
     const uint r = group->count;
     READS(ShapeHeader) shape = shapes + target;
@@ -44,11 +44,11 @@ DEVICE void add_ray(Group* group, uint at, const SourceRay* ray, float reach, ui
     group->count = r + 1u;
 }
 
-DEVICE bool is_full(const Group* group) {
+DEVICE bool is_full(const RayGroup* group) {
     return group->count == RAYS_IN_GROUP;
 }
 
-DEVICE SourceRay ray_of(const Group* group, uint r) {
+DEVICE SourceRay ray_of(const RayGroup* group, uint r) {
     SourceRay ray;
     for (int i = 0; i < 3; ++i) {
         ray.position[i] = group->position[i][r];
@@ -60,7 +60,7 @@ DEVICE SourceRay ray_of(const Group* group, uint r) {
 
 // frame_ray() for every lane, where components are chosen instead of looked up. opposite: frame_opposite(); then the
 // rays themselves are turned, too.
-DEVICE void frame_group(Group* group, const bool opposite) {
+DEVICE void frame_group(RayGroup* group, const bool opposite) {
     const float sign = opposite ? -1.0f : 1.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {
         const float px = group->position[0][r], py = group->position[1][r], pz = group->position[2][r];
@@ -88,7 +88,7 @@ DEVICE void frame_group(Group* group, const bool opposite) {
     }
 }
 
-DEVICE RayFrame frame_of(const Group* group, uint r) {
+DEVICE RayFrame frame_of(const RayGroup* group, uint r) {
     RayFrame frame;
     for (int i = 0; i < 3; ++i) {
         frame.origin[i] = group->origin[i][r];

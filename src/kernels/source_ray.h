@@ -7,11 +7,11 @@ STRUCT(SourceRay) {
     float reach;
 };
 
-// slot: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
-DEVICE SourceRay source_ray(READS(OrderedPair) pair, READS(VertexBlock) vertices, uint slot) {
+// vertex_lane: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
+DEVICE SourceRay source_ray(READS(DirectedPair) pair, READS(VertexBlock) vertices, uint vertex_lane) {
     SourceRay ray;
-    READS(VertexBlock) block = vertices + slot / VERTEX_LANES;
-    const uint lane = slot % VERTEX_LANES;
+    READS(VertexBlock) block = vertices + vertex_lane / VERTEX_LANES;
+    const uint lane = vertex_lane % VERTEX_LANES;
     READS(float) r = pair->rotation;
     const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];
     const float dx = block->direction[0][lane], dy = block->direction[1][lane], dz = block->direction[2][lane];

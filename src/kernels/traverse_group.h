@@ -28,7 +28,7 @@ STRUCT(NearLeaves) {
 };
 
 // The box of a run holds its rays up to their lengths, and as far beyond either end as they are tested.
-DEVICE void find_runs(Runs* runs, const Group* group) {
+DEVICE void find_runs(Runs* runs, const RayGroup* group) {
     float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(r, RAYS_IN_GROUP) {
@@ -114,7 +114,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
 
 // A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
 // children_in() let through only: the box of an empty one would come out the right way round.
-DEVICE uint rays_that_meet(const Group* group, READS(Node) node, uint lane) {
+DEVICE uint rays_that_meet(const RayGroup* group, READS(Node) node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
     int meets[NODE_LANES] = {0}; // lanes without a ray
@@ -133,7 +133,7 @@ DEVICE uint rays_that_meet(const Group* group, READS(Node) node, uint lane) {
 
 // The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that must be cast
 // by itself, because there was no room for its leaves.
-DEVICE uint traverse_group(Closest* closest, const Group* group, READS(Node) nodes, READS(TriangleBlock) blocks) {
+DEVICE uint traverse_group(Closest* closest, const RayGroup* group, READS(Node) nodes, READS(TriangleBlock) blocks) {
     Runs runs;
     NearLeaves near;
     uint full = 0u;

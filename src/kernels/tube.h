@@ -9,10 +9,11 @@ STRUCT(Tube) {
     float box[6]; // around the tube: lower x y z, upper x y z
 };
 
-// The triangle nearest to the ray, and how far the ray is from every other. slot: TRIANGLE_LANES * block + lane.
+// The triangle nearest to the ray, and how far the ray is from every other. triangle_lane: TRIANGLE_LANES * block +
+// lane.
 STRUCT(Neighbours) {
     float least, second;
-    uint slot;
+    uint triangle_lane;
 };
 
 // To `end`, in lengths of the ray's direction.
@@ -102,7 +103,7 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlo
         if (apart[lane] < found->least) {
             found->second = found->least;
             found->least = apart[lane];
-            found->slot = TRIANGLE_LANES * index + lane;
+            found->triangle_lane = TRIANGLE_LANES * index + lane;
         } else if (apart[lane] < found->second) {
             found->second = apart[lane];
         }
@@ -114,7 +115,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, R
                                    READS(TriangleBlock) blocks) {
     Neighbours found;
     found.least = found.second = tube->radius;
-    found.slot = NONE;
+    found.triangle_lane = NONE;
     READS(Node) tree = nodes + shape->node_first;
     Descent way = {0u, 0u, children_in(tube->box, tree)};
     for (;;) {

@@ -112,14 +112,14 @@ WIRE_SIZE(PairChange, 12);
 
 // A directed pair: the pose of the source in the target's frame, and the box in that frame in which vertices cast rays
 // (inclusive). source NONE: the slot has no pair.
-STRUCT(OrderedPair) {
+STRUCT(DirectedPair) {
     float rotation[9];
     float translation[3];
     float bounds[6]; // lower x y z, upper x y z
     uint source;     // shapes
     uint target;
 };
-WIRE_SIZE(OrderedPair, 80);
+WIRE_SIZE(DirectedPair, 80);
 
 // A vertex block that may reach into its pair's target.
 STRUCT(PairBlock) {
@@ -132,14 +132,14 @@ WIRE_SIZE(PairBlock, 12);
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).
 STRUCT(Face) {
-    uint slot;
+    uint triangle_lane;
     uint neighbour[3];
 };
 WIRE_SIZE(Face, 16);
 
 // A ray that is followed from step to step: its vertex, and the triangle it met last.
 STRUCT(Candidate) {
-    uint slot; // absolute: VERTEX_LANES * vertex block + lane
+    uint vertex_lane; // VERTEX_LANES * vertex block + lane
     uint triangle;
 };
 WIRE_SIZE(Candidate, 8);
@@ -176,19 +176,19 @@ WIRE_SIZE(Segment, 20);
 
 // What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
 // casting: a bit for each watch that has any.
-STRUCT(Look) {
+STRUCT(LookResult) {
     uint casting;
     float wake;
     uint blocks;
     uint rays;
 };
-WIRE_SIZE(Look, 16);
+WIRE_SIZE(LookResult, 16);
 
 // What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without
 // a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its
 // direction.
 STRUCT(Held) {
-    uint slot;         // of the vertex, absolute: VERTEX_LANES * vertex block + lane
+    uint vertex_lane;  // VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
     float safe;        // metres; 0: it has no tube
     float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
@@ -199,19 +199,19 @@ WIRE_SIZE(Held, 40);
 
 // The held rays of a directed pair: first, count: those of the last step, in the array of Held; now_first: where those
 // of this step begin. margin: metres of rounding. radius: of tubes to seek, metres; 0: none, the pair is too fast.
-// asks_caps: 1: rays test the caps of the target.
+// tests_caps: 1: rays test the caps of the target.
 STRUCT(HeldRange) {
     uint first, count; // Held
     uint now_first;
     float margin;
     float radius;
-    uint asks_caps;
+    uint tests_caps;
 };
 WIRE_SIZE(HeldRange, 24);
 
 STRUCT(Ray) {
     uint pair;
-    uint slot; // absolute: VERTEX_LANES * vertex block + lane
+    uint vertex_lane; // VERTEX_LANES * vertex block + lane
 };
 WIRE_SIZE(Ray, 8);
 

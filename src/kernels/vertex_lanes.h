@@ -7,7 +7,7 @@ STRUCT(InsideLanes) {
 };
 
 // Vertices inside the bounds, exactly as the ray will see them.
-DEVICE InsideLanes inside_lanes(READS(OrderedPair) pair, READS(VertexBlock) block, uint first) {
+DEVICE InsideLanes inside_lanes(READS(DirectedPair) pair, READS(VertexBlock) block, uint first) {
     InsideLanes found;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];

@@ -9,12 +9,12 @@
 
 // A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
 // places, margins: by pair.
-KERNEL void begin_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
+KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
                           READS(uint) clearances, READS(float) margins, READS(PairBlock) near_blocks,
                           READS(uint) firsts, READS(uint) places, WRITES(Watch) watches) {
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
-        READS(OrderedPair) pair = pairs + found.pair;
+        READS(DirectedPair) pair = pairs + found.pair;
         const float safe =
             safe_block(pair, shapes + pair->source, boxes, found.vertex_block, shapes + pair->target, clearances)
             - margins[found.pair];
@@ -28,24 +28,24 @@ KERNEL void begin_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHea
 
 // What looks at watches read and write.
 STRUCT(Looking) {
-    READS(OrderedPair) pairs;
+    READS(DirectedPair) pairs;
     READS(ShapeHeader) shapes;
     READS(VertexBlock) vertices;
     READS(uint) clearances;
     READS(Segment) segments;
     WRITES(Watch) watches;
-    WRITES(Look) looks;
+    WRITES(LookResult) looks;
     WRITES(uint) rays; // of each look
 };
 
 // What a block has to say: in a segment it is number `bit`.
-DEVICE Look look_of(uint lanes, float wake, uint bit, uint blocks) {
-    const Look found = {(uint)(lanes != 0u) << bit, wake, blocks, bit_count(lanes)};
+DEVICE LookResult look_of(uint lanes, float wake, uint bit, uint blocks) {
+    const LookResult found = {(uint)(lanes != 0u) << bit, wake, blocks, bit_count(lanes)};
     return found;
 }
 
 // What several looks found together.
-DEVICE Look add_looks(Look sum, const Look more) {
+DEVICE LookResult add_looks(LookResult sum, const LookResult more) {
     sum.wake = more.wake < sum.wake ? more.wake : sum.wake;
     sum.blocks += more.blocks;
     sum.rays += more.rays;
@@ -53,22 +53,22 @@ DEVICE Look add_looks(Look sum, const Look more) {
     return sum;
 }
 
-DEVICE void add_to_segment(const Looking* in, uint s, const Look found) {
+DEVICE void add_to_segment(const Looking* in, uint s, const LookResult found) {
     in->looks[s] = add_looks(in->looks[s], found);
     in->rays[s] = in->looks[s].rays;
 }
 
 // A block that is due. The words of its cells are not near: a grid is large, or the caches went to others since the
 // last step. So looks wait for each other: what one reads is under way while others are done.
-STRUCT(WaitingLook) {
+STRUCT(DueBlock) {
     uint segment, watch;
     InsideLanes placed;
 };
 
-DEVICE Look look_at_block(const Looking* in, const WaitingLook* look) {
+DEVICE LookResult look_at_block(const Looking* in, const DueBlock* look) {
     WRITES(Watch) watch = in->watches + look->watch;
     const Segment segment = in->segments[look->segment];
-    READS(OrderedPair) pair = in->pairs + segment.pair;
+    READS(DirectedPair) pair = in->pairs + segment.pair;
     READS(ShapeHeader) target = in->shapes + pair->target;
     float free[VERTEX_LANES];
     safe_lanes(free, &look->placed, pair, in->vertices + watch->vertex_block, 0u, target, in->clearances);
@@ -90,26 +90,26 @@ DEVICE Look look_at_block(const Looking* in, const WaitingLook* look) {
     return look_of(lanes, watch->wake, look->watch - segment.first, 1u);
 }
 
-DEVICE_BATCH void look_together(const Looking* in, WaitingLook* waiting, uint count) {
+DEVICE_BATCH void look_together(const Looking* in, DueBlock* waiting, uint count) {
     for (uint k = 0u; k < count; ++k) {
-        WaitingLook* look = waiting + k;
-        READS(OrderedPair) pair = in->pairs + in->segments[look->segment].pair;
+        DueBlock* look = waiting + k;
+        READS(DirectedPair) pair = in->pairs + in->segments[look->segment].pair;
         look->placed = inside_lanes(pair, in->vertices + in->watches[look->watch].vertex_block, 0u);
         send_for_words(&look->placed, in->shapes + pair->target, in->clearances);
     }
     for (uint k = 0u; k < count; ++k) add_to_segment(in, waiting[k].segment, look_at_block(in, waiting + k));
 }
 
-KERNEL void look_at_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeHeader) shapes,
+KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                             READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
-                            WRITES(Watch) watches, WRITES(Look) looks, WRITES(uint) rays) {
+                            WRITES(Watch) watches, WRITES(LookResult) looks, WRITES(uint) rays) {
     const Looking in = {pairs, shapes, vertices, clearances, segments, watches, looks, rays};
-    WaitingLook waiting[LOOKS_TOGETHER];
+    DueBlock waiting[LOOKS_TOGETHER];
     uint waits = 0u;
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint line = 0u; line < 3u && s + 4u < count; ++line) PREFETCH(watches, segments[s + 4u].first + 5u * line);
-        Look found = look_of(0u, UNBOUNDED, 0u, 0u);
+        LookResult found = look_of(0u, UNBOUNDED, 0u, 0u);
         looks[s] = found;
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
             if (watches[i].wake > segment.now) {
@@ -132,8 +132,8 @@ KERNEL void look_at_watches(COUNT(count), READS(OrderedPair) pairs, READS(ShapeH
 }
 
 // looks: of this step. The rays begin at place `begin`.
-KERNEL void write_watch_rays(COUNT(count), uint begin, READS(Segment) segments, READS(Watch) watches, READS(Look) looks,
-                             READS(uint) firsts, WRITES(Ray) rays) {
+KERNEL void write_watch_rays(COUNT(count), uint begin, READS(Segment) segments, READS(Watch) watches,
+                             READS(LookResult) looks, READS(uint) firsts, WRITES(Ray) rays) {
     FOR_EACH(s, count) {
         const uint pair = segments[s].pair, first = segments[s].first;
         uint at = begin + firsts[s];
@@ -141,7 +141,7 @@ KERNEL void write_watch_rays(COUNT(count), uint begin, READS(Segment) segments, 
             READS(Watch) watch = watches + first + lowest_bit(casting);
             for (uint lanes = watch->lanes; lanes != 0u; lanes &= lanes - 1u) {
                 rays[at].pair = pair;
-                rays[at].slot = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);
+                rays[at].vertex_lane = VERTEX_LANES * watch->vertex_block + lowest_bit(lanes);
                 ++at;
             }
         }

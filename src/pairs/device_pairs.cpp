@@ -63,7 +63,7 @@ void DevicePairs::list_changes(const Update& update) {
 void DevicePairs::place(const Update& update) {
     if (update.pairs.size() >= NONE / 2) throw std::length_error("more than 2^31 pairs in one step; give fewer");
     list_changes(update);
-    ordered_.resize(update.device, 2 * pairs_.size());
+    placed_.resize(update.device, 2 * pairs_.size());
     if (!update.device.traits().has_double) return place_on_host(update);
     device_bodies_.extend(update.device, sent_.size());
     device_pairs_.extend(update.device, pairs_.size());
@@ -73,16 +73,16 @@ void DevicePairs::place(const Update& update) {
                                     static_cast<kernels::uint>(moved_.size()), device_moved_, device_changed_,
                                     device_bodies_, device_pairs_);
     launch<KernelId::place_pairs>(update.device, pairs_.size(), device_pairs_, device_bodies_, update.arrays().headers,
-                                  ordered_);
+                                  placed_);
 }
 
 void DevicePairs::place_on_host(const Update& update) {
-    host_ordered_.resize(2 * pairs_.size());
+    host_placed_.resize(2 * pairs_.size());
     update.executor.run(static_cast<kernels::uint>(pairs_.size()), 256, [&](kernels::uint begin, kernels::uint end) {
         kernels::prototype::place_pairs({begin, end}, static_cast<kernels::uint>(pairs_.size()), pairs_.data(),
-                                        sent_.data(), update.shapes.headers().data(), host_ordered_.data());
+                                        sent_.data(), update.shapes.headers().data(), host_placed_.data());
     });
-    ordered_.write(update.device, host_ordered_);
+    placed_.write(update.device, host_placed_);
 }
 
 } // namespace raycontact

@@ -14,7 +14,7 @@ public:
     void clear() { *this = {}; }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
-    const Array<kernels::OrderedPair>& ordered() const { return ordered_; }
+    const Array<kernels::DirectedPair>& placed() const { return placed_; }
     /// By the same index: the directed index among the step's pairs; anything where the slot has no pair.
     std::span<const std::uint32_t> directed() const { return directed_; }
 
@@ -27,12 +27,12 @@ private:
     std::vector<kernels::BodyPlace> sent_, moved_; ///< by body; of those that moved
     std::vector<kernels::PairBodies> pairs_;       ///< by slot
     std::vector<kernels::PairChange> changed_;
-    std::vector<kernels::OrderedPair> host_ordered_; ///< of a device without double
+    std::vector<kernels::DirectedPair> host_placed_; ///< of a device without double
 
     Array<kernels::BodyPlace> device_bodies_, device_moved_;
     Array<kernels::PairBodies> device_pairs_;
     Array<kernels::PairChange> device_changed_;
-    Array<kernels::OrderedPair> ordered_;
+    Array<kernels::DirectedPair> placed_;
 };
 
 } // namespace raycontact

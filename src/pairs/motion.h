@@ -2,7 +2,7 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 
 #include <span>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/vector.h"
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 #include "shape/shape_data.h"
 
 namespace raycontact {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "executor/executor.h"
+#include "pairs/directed_pairs.h"
 #include "pairs/motion.h"
-#include "pairs/ordered_pairs.h"
 #include "shape/shape_store.h"
 
 #include <raycontact/settings.h>

@@ -19,7 +19,7 @@ void BlockSearch::make_room(Device& device, std::size_t blocks) {
     ray_counts_.resize(device, 2, blocks);
 }
 
-void BlockSearch::count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+void BlockSearch::count(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
                         const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at,
                         std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
@@ -31,7 +31,7 @@ void BlockSearch::count(const Update& update, const Array<kernels::OrderedPair>&
     counts_.scan(update.device, pair_count, totals, at, room);
 }
 
-void BlockSearch::write(const Update& update, const Array<kernels::OrderedPair>& pairs, const Count& items,
+void BlockSearch::write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
                         const Array<float>& horizons) const {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::write_clusters>(update.device, items, pairs, horizons, arrays.headers, arrays.clusters,
@@ -39,7 +39,7 @@ void BlockSearch::write(const Update& update, const Array<kernels::OrderedPair>&
                                      ray_counts_.values());
 }
 
-void BlockSearch::find(const Update& update, const Array<kernels::OrderedPair>& pairs,
+void BlockSearch::find(const Update& update, const Array<kernels::DirectedPair>& pairs,
                        const Array<kernels::Totals>& totals, std::size_t at) {
     const Array<float> no_horizons;
     make_room(update.device, std::max(blocks_.size(), least_room));
@@ -48,7 +48,7 @@ void BlockSearch::find(const Update& update, const Array<kernels::OrderedPair>& 
     found_ = results_of(totals, at, blocks_.size());
 }
 
-void BlockSearch::find_now(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
                            const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at) {
     host_counts_.resize(pair_count);
     host_safe_distances_.resize(horizons.size());
@@ -71,7 +71,7 @@ bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {
     return fits;
 }
 
-void BlockSearch::count_rays(const Update& update, const Array<kernels::OrderedPair>& pairs, bool use_grid,
+void BlockSearch::count_rays(const Update& update, const Array<kernels::DirectedPair>& pairs, bool use_grid,
                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::count_rays>(update.device, found_, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,

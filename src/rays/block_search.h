@@ -12,19 +12,19 @@ class BlockSearch {
 public:
     /// The blocks of all pairs that reach into the bounds. Does not wait: totals[at] says on the device how many there
     /// are. If they have too little room, none is written (had_room()).
-    void find(const Update& update, const Array<kernels::OrderedPair>& pairs, const Array<kernels::Totals>& totals,
+    void find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<kernels::Totals>& totals,
               std::size_t at);
     /// The blocks of the first pair_count pairs that reach into the bounds and, if there are horizons, could be in
     /// contact before they have moved by horizons[p] (metres, rounding included). Uses totals[at]. Waits for the device
     /// once, and makes as much room as the blocks need.
-    void find_now(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+    void find_now(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
                   const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at);
     /// sum: of the last find(). False if its blocks had too little room: there is enough now.
     bool had_room(Device& device, const kernels::Totals& sum);
 
     /// Counts the vertices of the blocks that cast a ray: those inside the bounds but, if use_grid, those that a grid
     /// of the target knows to be outside. totals[at]: rays, of which `room` can be written; vertices inside the bounds.
-    void count_rays(const Update& update, const Array<kernels::OrderedPair>& pairs, bool use_grid,
+    void count_rays(const Update& update, const Array<kernels::DirectedPair>& pairs, bool use_grid,
                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Writes them, the first to rays[begin]. totals[at]: what count_rays() left there.
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
@@ -45,9 +45,9 @@ public:
 
 private:
     void make_room(Device& device, std::size_t blocks);
-    void count(const Update& update, const Array<kernels::OrderedPair>& pairs, std::size_t pair_count,
+    void count(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
                const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
-    void write(const Update& update, const Array<kernels::OrderedPair>& pairs, const Count& items,
+    void write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
                const Array<float>& horizons) const;
 
     Columns counts_, ray_counts_;

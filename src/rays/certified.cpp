@@ -12,7 +12,7 @@ namespace raycontact {
 
 namespace {
 
-static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::Look::casting), "a bit for each watch of a segment");
+static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::LookResult::casting), "a bit for each watch of a segment");
 
 std::size_t segments_of(std::uint32_t watches) {
     return (watches + SEGMENT_WATCHES - 1) / SEGMENT_WATCHES;
@@ -24,7 +24,7 @@ bool casts_all(const Update& update) {
 
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
-    return held_range.count == 0 && held_range.radius <= 0 && held_range.asks_caps == 0;
+    return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
 }
 
 } // namespace
@@ -69,7 +69,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
         const float horizon = static_cast<float>(due.own->expiry) + due.margin;
         margins_.in_place()[i] = due.margin;
         horizons_.in_place()[i] = horizon;
-        kernels::OrderedPair& wide = wide_pairs_.in_place()[i];
+        kernels::DirectedPair& wide = wide_pairs_.in_place()[i];
         wide = stale_[i].slice->places[stale_[i].at];
         widen(wide, horizon);
     }
@@ -110,8 +110,8 @@ void CertifiedRays::place(const Update& update) {
     segments_.resize(update.device, segment_count);
     update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
-            order_pair(source, target, pairs_.in_place()[i]);
+            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
+            place_source(source, target, pairs_.in_place()[i]);
             held_ranges_.in_place()[i] = {};
         }
     });
@@ -176,7 +176,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             const std::size_t end = segment + segments_of(own.count);
             kernels::HeldRange& held_range = held_ranges[i++];
             held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
-                          due.asks_caps};
+                          due.tests_caps};
             // For an idle pair nothing was known and nothing is sought, so nothing is known afterwards.
             own.rays = {ray, 0, holds && !is_idle(held_range)};
             own.wake = own.expiry;

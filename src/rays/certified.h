@@ -50,12 +50,12 @@ private:
     std::size_t open_pairs_ = 0;
     std::uint64_t packed_ = 0;
 
-    Array<kernels::OrderedPair> pairs_; ///< of directed_
+    Array<kernels::DirectedPair> pairs_; ///< of directed_
     Array<kernels::Segment> segments_;
-    Array<kernels::Look> looks_;
+    Array<kernels::LookResult> looks_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
     Columns look_rays_;
-    Array<kernels::OrderedPair> wide_pairs_; ///< by index of stale_, like the next three
+    Array<kernels::DirectedPair> wide_pairs_; ///< by index of stale_, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
     BlockSearch near_, fast_;

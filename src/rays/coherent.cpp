@@ -35,7 +35,7 @@ T take_bytes(std::span<const std::byte>& bytes) {
     return value;
 }
 
-// The slot of the body's first vertex in the shape store of a device.
+// The lane of the body's first vertex in the shape store of a device.
 kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
     return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertex_block_first;
 }
@@ -135,8 +135,8 @@ void CoherentRays::wake_up(const Update& update) {
     margins_.resize(full_count_);
     update.executor.run(static_cast<std::uint32_t>(directed_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_pair(update.bodies, update.pairs, directed_[i]);
-            order_pair(source, target, host_pairs_[i]);
+            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
+            place_source(source, target, host_pairs_[i]);
             cullings_[i] = static_cast<float>(table_.state(directed_[i] / 2).culling);
             if (i >= full_count_) continue;
             const float ahead = std::max(cullings_[i], 0.0F);
@@ -303,7 +303,7 @@ std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& 
             const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const Kept& own = moving.hot.kept[d];
             for (kernels::Candidate candidate : std::span(candidates).subspan(own.first, own.count)) {
-                candidate.slot -= first;
+                candidate.vertex_lane -= first;
                 put_bytes(bytes, candidate);
             }
         }
@@ -326,7 +326,7 @@ void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<co
             own.first = static_cast<std::uint32_t>(candidates_kept_ + candidates.size());
             for (std::uint32_t i = 0; i < own.count; ++i) {
                 candidates.push_back(take_bytes<kernels::Candidate>(bytes));
-                candidates.back().slot += first;
+                candidates.back().vertex_lane += first;
             }
         }
         table_.put_in({moving.first, moving.second}, moving.state, moving.hot);

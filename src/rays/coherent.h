@@ -72,7 +72,7 @@ private:
     std::vector<Turn> turns_;             ///< per pair
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: full looks, then what is followed
     std::size_t full_count_ = 0;          ///< of directed_
-    std::vector<kernels::OrderedPair> host_pairs_, wide_pairs_;
+    std::vector<kernels::DirectedPair> host_pairs_, wide_pairs_;
     std::vector<float> cullings_, reaches_, margins_; ///< of directed_, of the full ones, of the full ones
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
@@ -81,7 +81,7 @@ private:
     std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
     std::uint64_t packed_ = 0, step_ = 0;
 
-    Array<kernels::OrderedPair> device_pairs_, device_wide_;
+    Array<kernels::DirectedPair> device_pairs_, device_wide_;
     Array<float> device_cullings_, device_reaches_, device_margins_;
     Columns kept_counts_;
     Array<kernels::uint> segment_firsts_, ranges_, starts_, nexts_, hows_;

@@ -14,13 +14,13 @@ constexpr std::size_t least_room = 4096; // rays
 void StandardRays::begin(const Update& update, RayBatch& batch) {
     pairs_.place(update);
     batch.resize(update.device, std::max(batch.rays.size(), least_room));
-    batch.pairs = &pairs_.ordered();
+    batch.pairs = &pairs_.placed();
     batch.directed = pairs_.directed();
     cast(update, batch);
 }
 
 void StandardRays::cast(const Update& update, RayBatch& batch) {
-    const Array<kernels::OrderedPair>& pairs = pairs_.ordered();
+    const Array<kernels::DirectedPair>& pairs = pairs_.placed();
     const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
     search_.find(update, pairs, batch.totals, RayBatch::block_sum);
     search_.count_rays(update, pairs, use_grid, batch.totals, RayBatch::ray_sum, batch.rays.size());

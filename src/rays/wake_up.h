@@ -15,12 +15,12 @@ class WakeUp {
 public:
     struct Slice {
         std::vector<Due> due;
-        std::vector<kernels::OrderedPair> places; ///< of due
-        std::vector<std::uint32_t> stale;         ///< indices of due: those that need a new list
-        std::vector<std::uint32_t> fast;          ///< places of pairs that are too fast to be watched
-        std::size_t first = 0;                    ///< place of its first due among all
-        std::size_t segment_first = 0;            ///< place of its first segment among all
-        std::uint64_t blocks = 0;                 ///< vertex blocks tested
+        std::vector<kernels::DirectedPair> places; ///< of due
+        std::vector<std::uint32_t> stale;          ///< indices of due: those that need a new list
+        std::vector<std::uint32_t> fast;           ///< places of pairs that are too fast to be watched
+        std::size_t first = 0;                     ///< place of its first due among all
+        std::size_t segment_first = 0;             ///< place of its first segment among all
+        std::uint64_t blocks = 0;                  ///< vertex blocks tested
     };
 
     void run(const Update& update, WatchedPairs& table);

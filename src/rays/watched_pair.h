@@ -43,7 +43,7 @@ struct Due {
     std::uint32_t directed = 0;   ///< directed index of the pair
     float now = 0;                ///< the clock
     float margin = 0, radius = 0; ///< metres: of rounding; of tubes to seek, 0: none
-    kernels::uint asks_caps = 0;  ///< 1: its rays test caps
+    kernels::uint tests_caps = 0; ///< 1: its rays test caps
     double longest = 0;           ///< metres that a new list may last
 };
 

@@ -13,7 +13,7 @@ std::vector<Vec3> face_normals(const ShapeData& shape);
 /// Angle-weighted unit normal of each vertex (Thuermer and Wuethrich 1998); zero where the faces around it cancel out.
 std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals);
 
-/// Fills triangle_blocks, nodes and the slots of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
+/// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
 /// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.
 void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow);

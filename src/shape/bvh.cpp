@@ -150,7 +150,7 @@ private:
                 block.corner[3 * corner + 1][lane] = p.y;
                 block.corner[3 * corner + 2][lane] = p.z;
             }
-            if (!empty) shape_.faces[items[lane].triangle].slot = static_cast<uint>(block_size * id + lane);
+            if (!empty) shape_.faces[items[lane].triangle].triangle_lane = static_cast<uint>(block_size * id + lane);
         }
         return id;
     }

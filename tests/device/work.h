@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/trace.h"
-#include "pairs/ordered_pairs.h"
+#include "pairs/directed_pairs.h"
 
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>

@@ -392,7 +392,7 @@ TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
             ordered += 2 * follower.stats().pairs;
         }
     }
-    std::printf("[ counts   ] %llu contacts; %llu of %llu ordered pairs looked at\n",
+    std::printf("[ counts   ] %llu contacts; %llu of %llu directed pairs looked at\n",
                 static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(looks),
                 static_cast<unsigned long long>(ordered));
     EXPECT_GT(contacts, 10000u);

@@ -25,7 +25,7 @@ struct Counts {
     std::uint64_t decisions = 0;         ///< rays of the standard scenes; each certified scene has to come to the same
     std::uint64_t contacts = 0;          ///< of the standard scenes
     std::uint64_t cast = 0;              ///< rays cast by the first certified scene
-    std::uint64_t pairs = 0, asleep = 0; ///< ordered pairs of that scene
+    std::uint64_t pairs = 0, asleep = 0; ///< directed pairs of that scene
     std::uint64_t missed = 0, invented = 0, other = 0;
     std::string first; ///< of the wrong ones, in words
 };

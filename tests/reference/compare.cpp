@@ -29,7 +29,7 @@ struct Difference {
     double normal = 0, depth = 0, ray_length = 0, point = 0;
 };
 
-// One ordered pair: every ray of the reference, then what the library has beyond them.
+// One directed pair: every ray of the reference, then what the library has beyond them.
 class Direction {
 public:
     Direction(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose,

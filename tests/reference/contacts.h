@@ -10,7 +10,7 @@
 
 namespace raycontact::reference {
 
-/// One ray of an ordered pair (source, target) and what became of it.
+/// One ray of an directed pair (source, target) and what became of it.
 struct CastRay {
     std::uint32_t vertex = 0; ///< of the source solid
     bool contact = false;

@@ -10,7 +10,7 @@
 namespace raycontact {
 namespace {
 
-// Ordered pairs in slots that are in any order, as after many pairs have come and gone, or in theirs.
+// Directed pairs in slots that are in any order, as after many pairs have come and gone, or in theirs.
 TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
     reference::Random random(1);
     LocalContacts all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contacts/place.h"
+#include "contacts/vertex_order.h"
 
 #include "reference/random.h"
 

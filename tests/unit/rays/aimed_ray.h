@@ -16,13 +16,13 @@ namespace raycontact::reference {
 /// longer face alike that some roundings decide.
 struct AimedRay {
     kernels::prototype::SourceRay ray;
-    std::uint32_t slot = 0; ///< of the triangle
-    double depth = 0;       ///< metres along the ray to the triangle; below 0: from outside
+    std::uint32_t triangle_lane = 0; ///< of the triangle
+    double depth = 0;                ///< metres along the ray to the triangle; below 0: from outside
 };
 
 /// The triangle's two radii, of the narrow angle and of the wide one, metres.
-inline std::array<double, 2> cap_radii(const ShapeData& shape, std::uint32_t slot) {
-    const std::uint32_t cap = shape.triangle_blocks[slot / TRIANGLE_LANES].cap[slot % TRIANGLE_LANES];
+inline std::array<double, 2> cap_radii(const ShapeData& shape, std::uint32_t triangle_lane) {
+    const std::uint32_t cap = shape.triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
     const double unit = double(CAP_UNIT_TOLERANCES) * double(shape.header.tolerance);
     return {double(cap & 0xffffu) * unit, double(cap >> 16) * unit};
 }
@@ -34,11 +34,11 @@ inline double any_length(double least, double most, Random& random) {
 /// Nothing, where chance fell on a triangle without that cap.
 inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin, Random& random) {
     const std::uint32_t t = random.below(static_cast<std::uint32_t>(target.faces.size()));
-    const std::uint32_t slot = target.faces[t].slot;
-    if (slot == NONE) return std::nullopt;
+    const std::uint32_t triangle_lane = target.faces[t].triangle_lane;
+    if (triangle_lane == NONE) return std::nullopt;
     const double tolerance = double(target.header.tolerance);
     const bool narrow = random.below(2) == 0;
-    const double radius = cap_radii(target, slot)[narrow ? 0 : 1];
+    const double radius = cap_radii(target, triangle_lane)[narrow ? 0 : 1];
     if (!(radius > 0)) return std::nullopt;
     const Vec3 n{target.face_normals[t].x, target.face_normals[t].y, target.face_normals[t].z};
     // The direction: along the normal, or at the widest angle at which anything is said, or any.
@@ -53,7 +53,7 @@ inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin
     double u = random.uniform(), v = random.uniform();
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const std::size_t first = random.below(3);
-    const auto corner = corners(target, slot);
+    const auto corner = corners(target, triangle_lane);
     const Vec3 a = corner[first], b = corner[(first + 1) % 3], c = corner[(first + 2) % 3];
     if (random.below(3) == 0) v = random.uniform(-12, 12) * tolerance / length(c - a);
     if (random.below(6) == 0) u = random.uniform(-2, 3), v = random.uniform(-2, 3);
@@ -65,17 +65,18 @@ inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin
     const double reach = random.below(8) == 0   ? double(UNBOUNDED)
                          : random.below(4) == 0 ? std::fabs(depth) + random.uniform(-3, 3) * tolerance
                                                 : random.uniform(0.001, 1) * target.diagonal;
-    return AimedRay{prototype_ray(through - depth * d, d, std::max(reach, 0.0)), slot, depth};
+    return AimedRay{prototype_ray(through - depth * d, d, std::max(reach, 0.0)), triangle_lane, depth};
 }
 
 /// Of a ray of which a triangle is known and no tube: that one, or now and then a neighbour of a neighbour's neighbour.
-inline kernels::Held known_triangle(const ShapeData& target, std::uint32_t slot, Random& random) {
+inline kernels::Held known_triangle(const ShapeData& target, std::uint32_t triangle_lane, Random& random) {
     kernels::Held held = kernels::prototype::nothing_held(0);
-    held.triangle = slot;
+    held.triangle = triangle_lane;
     if (random.below(3) > 0) return held;
-    std::uint32_t other = target.triangle_blocks[slot / TRIANGLE_LANES].triangle[slot % TRIANGLE_LANES];
+    std::uint32_t other =
+        target.triangle_blocks[triangle_lane / TRIANGLE_LANES].triangle[triangle_lane % TRIANGLE_LANES];
     for (int step = 0; step < 3; ++step) other = target.faces[other].neighbour[random.below(3)];
-    held.triangle = target.faces[other].slot;
+    held.triangle = target.faces[other].triangle_lane;
     return held;
 }
 

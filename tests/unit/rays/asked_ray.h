@@ -20,10 +20,10 @@ inline void store(float (&to)[3], const Vec3& from) {
     to[2] = static_cast<float>(from.z);
 }
 
-/// The corners of the triangle at a slot, as the kernels see them.
-inline std::array<Vec3, 3> corners(const ShapeData& shape, std::uint32_t slot) {
-    const kernels::TriangleBlock& block = shape.triangle_blocks[slot / TRIANGLE_LANES];
-    const std::uint32_t lane = slot % TRIANGLE_LANES;
+/// The corners of the triangle at a triangle_lane, as the kernels see them.
+inline std::array<Vec3, 3> corners(const ShapeData& shape, std::uint32_t triangle_lane) {
+    const kernels::TriangleBlock& block = shape.triangle_blocks[triangle_lane / TRIANGLE_LANES];
+    const std::uint32_t lane = triangle_lane % TRIANGLE_LANES;
     std::array<Vec3, 3> all;
     for (std::size_t k = 0; k < 3; ++k)
         all[k] = {block.corner[3 * k][lane], block.corner[3 * k + 1][lane], block.corner[3 * k + 2][lane]};
@@ -39,14 +39,14 @@ inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const V
 }
 
 /// Of a pair of which nothing was held. radius: of tubes to be sought.
-inline kernels::HeldRange held_range(double margin, double radius, bool asks_caps) {
-    return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), asks_caps ? 1u : 0u};
+inline kernels::HeldRange held_range(double margin, double radius, bool tests_caps) {
+    return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), tests_caps ? 1u : 0u};
 }
 
 /// What is said of a held ray, and the place of the triangle that says it.
 struct Said {
     kernels::Hit hit;
-    std::uint32_t slot = 0;
+    std::uint32_t triangle_lane = 0;
 };
 
 /// What kernels read of a shape alone.
@@ -63,7 +63,7 @@ inline kernels::prototype::Arrays arrays_of(const ShapeData& shape) {
 inline std::optional<Said> said_of(const kernels::prototype::Arrays& arrays, const kernels::prototype::HeldGroup& group,
                                    std::uint32_t lane) {
     if (group.is_known[lane] == 0) return std::nullopt;
-    return Said{kernels::prototype::held_hit(&arrays, &group, lane), group.triangle_slot[lane]};
+    return Said{kernels::prototype::held_hit(&arrays, &group, lane), group.triangle_lane[lane]};
 }
 
 /// Asked alone: all lanes up to this one hold the same ray.
@@ -74,7 +74,7 @@ inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const
     HeldGroup group{};
     for (std::uint32_t i = 0; i <= lane; ++i) add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, 0);
     fetch_triangles(&arrays, &group);
-    ask_tubes_and_caps(&arrays, target.faces.data(), &group);
+    test_tubes_and_caps(&arrays, target.faces.data(), &group);
     return said_of(arrays, group, lane);
 }
 

@@ -70,7 +70,7 @@ Asked any_ray(const Ground& ground, Random& random) {
         asked.held = held_after_cast(asked.ray, target, asked.held_range);
         for (float& p : asked.ray.position) p += static_cast<float>(0.7 * random.uniform(-1, 1)) * asked.held.safe;
     } else {
-        asked.held = known_triangle(target, aimed->slot, random);
+        asked.held = known_triangle(target, aimed->triangle_lane, random);
     }
     if (random.below(10) == 0) asked.held.triangle = NONE;
     return asked;
@@ -92,7 +92,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
             add_held(&arrays, &group, i, &asked.ray, &asked.held, &asked.held_range, 0, asked.target);
         }
         fetch_triangles(&arrays, &group);
-        ask_tubes_and_caps(&arrays, ground.faces.data(), &group);
+        test_tubes_and_caps(&arrays, ground.faces.data(), &group);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto together = said_of(arrays, group, i);
             const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].held_range, 0);
@@ -100,9 +100,9 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
             if (together.has_value() != alone.has_value()) {
                 ++differing;
             } else if (alone) {
-                differing += differ(together->hit, alone->hit) || together->slot != alone->slot;
-                ++(all[i].held.safe > 0 && alone->slot == all[i].held.triangle ? by_tube : by_cap);
-                stepped += alone->slot != all[i].held.triangle;
+                differing += differ(together->hit, alone->hit) || together->triangle_lane != alone->triangle_lane;
+                ++(all[i].held.safe > 0 && alone->triangle_lane == all[i].held.triangle ? by_tube : by_cap);
+                stepped += alone->triangle_lane != all[i].held.triangle;
             }
         }
         group.rays.count = 0;

@@ -23,22 +23,23 @@ struct Counts {
 
 // No more than the cosine of the ray and any normal in the cap; -1: the ray begins outside. Half of what is kept from
 // the rim for rounding may be used up.
-double least_facing(const ShapeData& target, std::uint32_t slot, const Vec3& from, double along, double margin) {
-    const auto corner = corners(target, slot);
+double least_facing(const ShapeData& target, std::uint32_t triangle_lane, const Vec3& from, double along,
+                    double margin) {
+    const auto corner = corners(target, triangle_lane);
     const double far = length((1.0 / 3) * (corner[0] + corner[1] + corner[2]) - from) + 0.5 * margin;
-    const auto radii = cap_radii(target, slot);
+    const auto radii = cap_radii(target, triangle_lane);
     if (far >= radii[1]) return -1;
     const double angle = std::acos(std::min(along, 1.0));
     return std::cos(angle + std::acos(double(far < radii[0] ? CAP_NARROW_COSINE : CAP_WIDE_COSINE)));
 }
 
-void count_against_premises(const ShapeData& target, std::uint32_t slot, const kernels::prototype::SourceRay& ray,
-                            double margin, Counts& counts) {
+void count_against_premises(const ShapeData& target, std::uint32_t triangle_lane,
+                            const kernels::prototype::SourceRay& ray, double margin, Counts& counts) {
     const double tolerance = double(target.header.tolerance);
-    const auto corner = corners(target, slot);
+    const auto corner = corners(target, triangle_lane);
     const Vec3 p = vec(ray.position), d = (1 / length(vec(ray.direction))) * vec(ray.direction);
     const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]), n = (1 / length(normal)) * normal;
-    const double facing = least_facing(target, slot, p, dot(n, d), margin);
+    const double facing = least_facing(target, triangle_lane, p, dot(n, d), margin);
     counts.askew += !(facing > double(CAP_LEAST_FACING) + 0.5 * double(CAP_LOST_OF_FACING));
     const double t = dot(corner[0] - p, n) / dot(d, n);
     // Of 4 tolerances in the plane of the ray test more than half are left square to the ray.
@@ -58,7 +59,7 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
     for (int i = 0; i < rays; ++i) {
         const auto aimed = aim_at_cap(target, margin, random);
         if (!aimed) continue;
-        const kernels::Held held = known_triangle(target, aimed->slot, random);
+        const kernels::Held held = known_triangle(target, aimed->triangle_lane, random);
         ++counts.rays;
         const auto said = ask(aimed->ray, held, target, asks, random.below(RAYS_IN_GROUP));
         if (!said) continue;
@@ -66,9 +67,9 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
         ++counts.known;
         counts.contacts += truth.triangle != NONE;
         counts.outside += aimed->depth < 0;
-        counts.stepped += said->slot != held.triangle;
+        counts.stepped += said->triangle_lane != held.triangle;
         counts.wrong += differ(said->hit, truth);
-        count_against_premises(target, said->slot, aimed->ray, margin, counts);
+        count_against_premises(target, said->triangle_lane, aimed->ray, margin, counts);
     }
 }
 

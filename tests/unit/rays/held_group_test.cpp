@@ -170,7 +170,7 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
                     add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_caps, 0, asked.target);
                 }
                 fetch_triangles(&arrays, &group);
-                ask_held(&group);
+                test_held(&group);
                 for (std::uint32_t i = 0; i < count; ++i) compare(all[i], group, i, ground, counts);
                 group.rays.count = 0;
             }

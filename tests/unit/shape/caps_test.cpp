@@ -41,9 +41,10 @@ void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts
     const auto count = static_cast<std::uint32_t>(data.mesh.triangles.size());
     for (std::uint32_t i = 0; i < std::min(triangles, count); ++i) {
         const std::uint32_t t = triangles < count ? random.below(count) : i;
-        const std::uint32_t slot = data.faces[t].slot;
-        if (slot == NONE) continue;
-        const std::uint32_t cap = data.triangle_blocks[slot / TRIANGLE_LANES].cap[slot % TRIANGLE_LANES];
+        const std::uint32_t triangle_lane = data.faces[t].triangle_lane;
+        if (triangle_lane == NONE) continue;
+        const std::uint32_t cap =
+            data.triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
         const Vec3 centre = (1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2)), n = normal(t);
         ++counts.triangles;
         counts.narrow += (cap & 0xffffu) != 0;
@@ -60,7 +61,8 @@ void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts
         for (int k = 0; k < 2; ++k) {
             double nearest = most;
             for (std::uint32_t other = 0; other < count; ++other) {
-                if (data.faces[other].slot == NONE || dot(normal(other), n) > double(cosines[k]) + 1e-9) continue;
+                if (data.faces[other].triangle_lane == NONE || dot(normal(other), n) > double(cosines[k]) + 1e-9)
+                    continue;
                 nearest = std::min(nearest, distance_to_surface(alone[other], centre));
             }
             if (radii[k] > 0) {
@@ -117,8 +119,8 @@ std::uint32_t cap_of_needle(double height) {
     mesh.triangles.push_back({c, a, m});
     const auto shape = Shape::make(mesh);
     EXPECT_NE(shape->data().header.outward, 0u);
-    const std::uint32_t slot = shape->data().faces[middle].slot;
-    return shape->data().triangle_blocks[slot / TRIANGLE_LANES].cap[slot % TRIANGLE_LANES];
+    const std::uint32_t triangle_lane = shape->data().faces[middle].triangle_lane;
+    return shape->data().triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
 }
 
 TEST(Caps, NeedlesHaveNone) {

@@ -25,7 +25,7 @@ struct Lookup {
 
 // By the kernel itself: points given as the vertices of a source that stands in the target's frame.
 Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
-    kernels::OrderedPair pair{};
+    kernels::DirectedPair pair{};
     pair.rotation[0] = pair.rotation[4] = pair.rotation[8] = 1;
     // Endless bounds: no vertex is safe by being outside them.
     std::fill(pair.bounds, pair.bounds + 3, -UNBOUNDED);

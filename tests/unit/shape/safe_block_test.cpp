@@ -52,8 +52,8 @@ TEST(SafeBlock, IsNoSaferThanItsVertices) {
         const Pose world = reference::sheared(random.rotation(), random);
         source.centred = reference::composed(world, source.centred);
         target.centred = world;
-        kernels::OrderedPair pair;
-        order_pair(source, target, pair);
+        kernels::DirectedPair pair;
+        place_source(source, target, pair);
         const double margin = rounding_margin(source, target);
         const reference::Solid solid = reference::make_surface(*target.shape);
         const Pose relative = relative_pose(target.centred, source.centred);

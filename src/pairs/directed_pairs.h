@@ -27,24 +27,24 @@ inline Pose centred_pose(const Shape& shape, const Pose& pose) {
 
 /// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
 /// against b, + 1 for vertices of b against a (docs/design.md).
-struct DirectedPair {
+struct DirectedBodies {
     const PlacedBody& source;
     const PlacedBody& target;
 };
-inline DirectedPair directed_pair(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                                  std::uint32_t directed) {
+inline DirectedBodies directed_bodies(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+                                      std::uint32_t directed) {
     const auto [a, b] = pairs[directed / 2];
-    return directed % 2 == 0 ? DirectedPair{bodies[a], bodies[b]} : DirectedPair{bodies[b], bodies[a]};
+    return directed % 2 == 0 ? DirectedBodies{bodies[a], bodies[b]} : DirectedBodies{bodies[b], bodies[a]};
 }
 
 /// The source seen from the target: the relative pose is formed in double and only then rounded, so that nothing is
 /// lost far from the origin.
-void order_pair(const PlacedBody& source, const PlacedBody& target, kernels::OrderedPair& ordered);
+void place_source(const PlacedBody& source, const PlacedBody& target, kernels::DirectedPair& placed);
 /// The same where the relative pose is known already: with the bits that relative_pose() gives.
-void order_pair(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
-                kernels::OrderedPair& ordered);
+void place_source(const PlacedBody& source, const PlacedBody& target, const Pose& relative,
+                  kernels::DirectedPair& placed);
 
 /// The bounds grown by some metres on every side.
-void widen(kernels::OrderedPair& pair, float by);
+void widen(kernels::DirectedPair& pair, float by);
 
 } // namespace raycontact
