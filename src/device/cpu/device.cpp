@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <numeric>
 #include <string>
 #include <unistd.h>
 
@@ -47,15 +48,11 @@ kernels::uint number_of(const Count& count) {
 // By one thread: a step has too few items for two. Past 2^32 the firsts are worth nothing, but then nothing has room.
 void scan_here(const ScanOf& scan) {
     const kernels::uint count = number_of(scan.count);
-    kernels::uint* const firsts = words_of(scan.firsts);
+    const kernels::uint* values = words_of(scan.values);
+    std::exclusive_scan(values, values + count, words_of(scan.firsts), kernels::uint{0});
     std::array<std::uint64_t, MOST_COLUMNS> sums{};
-    for (std::size_t c = 0; c < scan.columns; ++c) {
-        const kernels::uint* const values = words_of(scan.values) + c * scan.stride;
-        for (kernels::uint i = 0; i < count; ++i) {
-            if (c == 0) firsts[i] = static_cast<kernels::uint>(sums[0]);
-            sums[c] += values[i];
-        }
-    }
+    for (std::size_t c = 0; c < scan.columns; ++c, values += scan.stride)
+        sums[c] = std::accumulate(values, values + count, std::uint64_t{0});
     kernels::Totals& totals = reinterpret_cast<kernels::Totals*>(words_of(scan.totals))[scan.at];
     const bool fits = sums[0] <= scan.room;
     totals.items = fits && sums[0] > 0 ? count : 0;
