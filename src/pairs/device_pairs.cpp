@@ -49,8 +49,8 @@ void DevicePairs::list_changes(const Update& update) {
     if (!changed) return;
     // A slot may be given again in the step in which it becomes free: it is sent once, as it is now.
     std::ranges::sort(changed_, {}, &kernels::PairChange::slot);
-    const auto again = std::ranges::unique(changed_, {}, &kernels::PairChange::slot);
-    changed_.erase(again.begin(), again.end());
+    const auto same_slot = [](const auto& a, const auto& b) { return a.slot == b.slot; };
+    changed_.erase(std::unique(changed_.begin(), changed_.end(), same_slot), changed_.end());
     for (auto& [slot, bodies] : changed_) bodies = pairs_[slot];
     directed_.resize(2 * pairs_.size());
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "device/launch.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
+#include "rays/look_threshold.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -13,12 +14,6 @@
 namespace raycontact {
 
 namespace {
-
-// Cost of a full look that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
-// ratio.
-constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
-// Share of the smaller body's diagonal: a pair that moves farther than this in a step is not worth following.
-constexpr double farthest = 0.015;
 
 template <class T>
 void put_bytes(std::vector<std::byte>& bytes, const T& value) {
@@ -42,30 +37,6 @@ kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody>
 
 } // namespace
 
-// Whether the pair's vertices reach other triangles within a few steps: then prediction costs more than it saves.
-bool CoherentRays::is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed) {
-    const ShapeData &first = a.shape->data(), &second = b.shape->data();
-    const double size = std::min(first.diagonal, second.diagonal), grain = std::min(first.grain, second.grain);
-    return speed > std::min(farthest * size, 0.125 * grain);
-}
-
-// How far a pair may move before its next full look, if no setting says so. A longer distance saves full looks but
-// follows more rays, since it must predict farther ahead. The counted costs of both decide, by one factor at each look.
-// Counts, not times, so that equal input gives equal results.
-double CoherentRays::next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                    double follows, bool predictive) {
-    const double size = std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-    const double least = 0.001 * size, most = farthest * size;
-    // Too fast to be followed: a full look in every step. (With `predictive` such pairs do not come here.)
-    if (speed > most) return 0.2 * least;
-    double threshold = 4 * speed;
-    if (state.threshold >= least) {
-        const double looks = cost_of_look[predictive ? 1 : 0] + state.look_cost;
-        threshold = state.threshold * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
-    }
-    return std::clamp(threshold, least, most);
-}
-
 // Decides for one pair, in double, whether it is looked at in full or followed.
 void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     const SlotPair& pair = update.pairs[i];
@@ -75,7 +46,7 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     auto& [left, kept] = table_.hot(i);
     const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
     const bool predictive = settings.method == Method::predictive;
-    if (predictive && !settings.displacement_threshold && is_too_fast(a, b, motion.pair_speed(pair))) {
+    if (predictive && !settings.displacement_threshold && is_too_fast_to_predict(a, b, motion.pair_speed(pair))) {
         turns_[i] = Turn::look;
         state = {};
         state.culling = -1;
@@ -97,9 +68,10 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     state.reference = now;
     const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
     state.looked = step_;
-    state.threshold = left = settings.displacement_threshold
-                                 ? *settings.displacement_threshold
-                                 : next_threshold(a, b, state, motion.pair_speed(pair), follows, predictive);
+    state.threshold = left =
+        settings.displacement_threshold
+            ? *settings.displacement_threshold
+            : next_threshold(a, b, motion.pair_speed(pair), state.threshold, state.look_cost, follows, predictive);
     state.safe = state.culling = 0;
     if (predictive)
         state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;

@@ -63,9 +63,6 @@ private:
         PairState state;
         Hot hot;
     };
-    static double next_threshold(const PlacedBody& a, const PlacedBody& b, const PairState& state, double speed,
-                                 double follows, bool predictive);
-    static bool is_too_fast(const PlacedBody& a, const PlacedBody& b, double speed);
     Kept& kept(std::uint32_t directed) { return table_.hot(directed / 2).kept[directed % 2]; }
 
     PairTable<PairState, Hot> table_;
