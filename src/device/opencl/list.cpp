@@ -13,7 +13,7 @@ namespace raycontact::opencl {
 
 namespace {
 
-/// What its float32 lacks to give our bits, by its own word; empty when nothing.
+/// What its float32 lacks to give our bits, as its driver reports it; empty if nothing.
 std::string lacks(cl_device_id id) {
     const auto config = value_of<cl_device_fp_config>(id, CL_DEVICE_SINGLE_FP_CONFIG);
     std::string missing;
