@@ -152,9 +152,8 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
 }
 
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
-// the bounds of the look. By pair: `reach`, the culling distance; `margins`, the safe distance up to which a vertex
-// could be in contact. The upper half of PairBlock.lanes marks vertices whose own ray must be cast. counts: as in
-// count_rays().
+// the bounds of the look. By pair: `reach`: that distance; `margins`: with at most this safe distance a vertex could be
+// in contact. The upper half of PairBlock.lanes marks vertices whose own ray must be cast. counts: see count_rays().
 KERNEL void count_near_rays(COUNT(count), uint stride, READS(DirectedPair) wide, READS(float) reach,
                             READS(float) margins, READS(ShapeHeader) shapes, READS(VertexBlock) vertices,
                             READS(uint) clearances, WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
