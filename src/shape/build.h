@@ -24,9 +24,8 @@ void build_caps(ShapeData& shape, std::span<const Vec3> normals);
 
 /// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
 /// closest face met from inside, without the triangles around the vertex. +inf if there is none, 0 if the ray points
-/// out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. The distances of a rigid body
-/// never change, so the paper's second test ("before leaving the source object", section 2.1) costs nothing at run
-/// time.
+/// out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. They never change, so the paper's
+/// second test ("before leaving the source object", section 2.1) costs nothing at run time.
 std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals);
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours

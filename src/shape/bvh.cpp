@@ -48,8 +48,8 @@ struct Cut {
     }
 };
 
-// The cheapest way to cover a branch: by itself (of_left 0), or with of_left parts for its left child and the rest for
-// its right.
+// The cheapest way to cover a branch: by itself (of_left 0), or of_left parts for its left child, the rest for its
+// right.
 struct Way {
     float cost = 0;
     std::size_t of_left = 0;

@@ -34,7 +34,7 @@ struct Ball {
 };
 
 // Balls follow the surface, so cells may be as long as its edges. Fine meshes have longer cells, by the power 3/4: that
-// costs a few more rays, but larger grids still fit the caches.
+// costs a few more rays, but grids of finer meshes still fit the caches.
 double wanted_cells(double triangles) {
     constexpr double each = 25, coarse = 1000;
     const double finer = triangles / coarse;
@@ -79,8 +79,7 @@ public:
         const TriangleBvh tree(points, shape.mesh.triangles, std::move(every));
         distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
         for (int stride = 256; stride >= 1; stride /= 2) {
-            // Smaller than for the stride before by more than a diagonal, so that a measured distance bounds each
-            // search.
+            // Less than for the stride before by over a diagonal, so that a measured distance bounds each search.
             const double near = stride < 4 ? 4 * stride : far;
             for (int z = 0; z < cells_.size[2]; z += stride)
                 for (int y = 0; y < cells_.size[1]; y += stride)
@@ -133,8 +132,7 @@ private:
     }
 
     // Chooses for each cell, among the empty balls on one side around nearby middles, the one that reaches farthest
-    // past the cell's middle. A large ball that touches the surface gives the distance of the points between almost
-    // exactly.
+    // past the cell's middle. A large ball at the surface gives the distance of the points between almost exactly.
     std::vector<Ball> choose_balls(bool outside) const {
         std::vector<Ball> balls(distance_.size());
         for (int i = 0; i < cells_.count(); ++i)

@@ -17,8 +17,7 @@ namespace {
 
 constexpr double rounding = 1.1920929e-7; // 2^-23
 
-// Rounds the vertices to float32. The double positions are replaced by the rounded ones, so that all users see one
-// geometry.
+// Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
 void round_vertices(ShapeData& shape) {
     shape.points.reserve(shape.mesh.vertices.size());
     Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
