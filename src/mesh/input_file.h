@@ -15,24 +15,24 @@
 
 namespace raycontact {
 
-/// A whole file in memory, and the way its readers complain: one line that names the file.
+/// A whole file in memory. Its readers report errors in one line that names the file.
 struct InputFile {
     std::filesystem::path path;
     std::string shown; ///< the path, fit for a message
     std::string bytes;
 
-    /// Throws InputError unless it is an ordinary file that can be read and holds something.
+    /// Throws InputError unless it is an ordinary file that can be read and is not empty.
     static InputFile read(const std::filesystem::path& path);
     [[noreturn]] void fail(const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };
 
-/// Text from a file, cut to a length and freed of control characters, in quotes.
+/// Text from a file in quotes, cut to a length, without control characters.
 std::string in_quotes(std::string_view text);
 /// The same for a whole path or a library's message: one line, no quotes, not cut.
 std::string printable(std::string_view text);
 
-/// A complaint about an index, at a place that the caller names.
+/// An error message about an index; the caller names the place.
 std::string no_vertex(std::int64_t index, std::size_t vertex_count);
 
 // One reader a format; each throws InputError as load_mesh says. The name is set by load_mesh.
