@@ -72,7 +72,7 @@ btManifoldPoint to_point(const Candidate& c, const btCollisionObject* a, const b
     return p;
 }
 
-/// What the solver remembered of a point goes over to its successor.
+/// Copies the solver's state of a point to its successor.
 void inherit(btManifoldPoint& p, const btManifoldPoint& old) {
     p.m_appliedImpulse = old.m_appliedImpulse;
     p.m_prevRHS = old.m_prevRHS;
@@ -126,7 +126,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
     stats.contacts += candidates.size();
     if (candidates.empty() && manifolds_.empty()) return;
 
-    // What was there, where it is now.
+    // The old points, where they are now.
     std::vector<Patch> patches;
     std::vector<Old> old;
     for (btPersistentManifold* m : manifolds_) {
