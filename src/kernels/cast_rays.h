@@ -34,7 +34,7 @@ DEVICE Closest traverse(const Arrays* arrays, const uint caster, const RayFrame*
 }
 
 // The closest hits of a group's rays, or of the opposite rays, by the BVH. A group of several rays is cast together,
-// each as far as its `length`; a hit so near is the closest of all. The other rays are cast alone.
+// each as far as its `length`; a hit so near is the closest of all. The other rays are cast one by one.
 DEVICE void find_group(const Arrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
     frame_group(group, opposite);
     const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->nodes, arrays->blocks) : 1u;

@@ -111,7 +111,7 @@ DEVICE float least_of_sixteen(const float* values) {
     return least[0];
 }
 
-// A safe distance for all vertices of a block, from the ball around its box alone.
+// A safe distance for all vertices of a block, from only the ball around its box.
 DEVICE float safe_block(READS(DirectedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
                         uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
     const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;

@@ -87,7 +87,7 @@ DEVICE float area_of(const Edges edges) {
     return (edges.u + edges.v) + edges.w;
 }
 
-// With accurate barycentrics, so that the distance found lies in every box that holds the triangle.
+// With accurate barycentrics, so that the distance found lies in every box that contains the triangle.
 DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float shear_z) {
     return ((edges.u * az + edges.v * bz + edges.w * cz) / area_of(edges)) * shear_z;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/certified.md): a pair watches the vertex blocks near its target. A block is tested only
-// once the pair has moved as far as its nearest vertex was from touching. The target's clearance grid then tells which
-// of its vertices could be in contact, and until when the others may sleep. hold.h tests the bounds.
+// once the pair has moved as far as the block's nearest vertex was from touching. The target's clearance grid then
+// tells which of its vertices could be in contact, and until when the others may sleep. hold.h tests the bounds.
 
 #define AWAKE (-1.0f)              // Watch.wake of a block to be tested in the next step
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
