@@ -35,7 +35,7 @@ std::string printable(std::string_view text);
 /// An error message about an index; the caller names the place.
 std::string no_vertex(std::int64_t index, std::size_t vertex_count);
 
-// One reader a format; each throws InputError as load_mesh says. The name is set by load_mesh.
+// One reader a format; each throws InputError as documented at load_mesh, which sets the mesh's name.
 Mesh read_obj(const InputFile& file);
 Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
@@ -57,7 +57,7 @@ T read_bytes(const char* at, bool little_endian = true) {
     return std::bit_cast<T>(raw);
 }
 
-/// How a binary file stores a kind of number. A double holds every value of all kinds.
+/// How a binary file stores a kind of number. A double can represent every value of all kinds.
 struct NumberType {
     std::size_t size;
     bool whole;

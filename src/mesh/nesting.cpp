@@ -143,7 +143,7 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
 }
 
 // The winding number changes by one across every triangle and nowhere else. Without self-intersections the space right
-// in front of a patch is connected and crosses no triangle (a patch goes on only over edges that have no third
+// in front of a patch is connected and crosses no triangle (a patch continues only across edges that have no third
 // triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, represents all space
 // next to the surface; and every region of space is next to some surface.
 bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
