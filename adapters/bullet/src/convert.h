@@ -42,7 +42,7 @@ public:
 
 private:
     struct Entry {
-        Mesh mesh; ///< compared in full: a hash alone could give a body another body's mesh
+        Mesh mesh; ///< compared in full: equal hashes do not mean equal meshes
         Converted converted;
         std::uint64_t used = 0;
     };

@@ -187,7 +187,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return;
     PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
     if (!algorithm) {
-        // A record made here has no pair yet; PairState, made next, holds it.
+        // A record made here has no pair yet; PairState, made next, acquires it.
         objects.refresh(*a, dispatch);
         objects.refresh(*b, dispatch);
         algorithm = make_algorithm(pair, *a, *b);

@@ -155,7 +155,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         patches.push_back(patch);
     }
 
-    // Each contact goes to the patch its key was in, else to the most suitable, else it opens a new one.
+    // Each contact joins the patch that its key was in, else the most suitable one, else it begins a new patch.
     std::vector<const Old*> before(candidates.size(), nullptr);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
         const Candidate& contact = candidates[c];

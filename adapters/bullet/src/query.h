@@ -24,7 +24,7 @@ private:
     ShapeCache& shapes_;
 };
 
-/// Holds an empty manifold as long as it lives: Bullet asks a result's manifold which body comes first.
+/// Owns an empty manifold: Bullet reads from a result's manifold which body comes first.
 class QueryAlgorithm final : public btCollisionAlgorithm {
 public:
     QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries,
