@@ -11,7 +11,7 @@ namespace raycontact {
 struct SliceReference {
     const void* function;
     void (*call)(const void*, std::uint32_t, std::uint32_t);
-    /// Under FloatEnvironment.
+    /// Calls it under FloatEnvironment.
     void operator()(std::uint32_t begin, std::uint32_t end) const;
 };
 
@@ -32,7 +32,7 @@ public:
     explicit Executor(std::uint32_t threads, int core = -1);
 
     std::uint32_t threads() const { return threads_; }
-    /// Calls for the threads, which take a while to wake up, without waiting for them: work is about to come.
+    /// Begins to wake the threads, which takes a while, and does not wait for them: work is about to come.
     void wake() {
         if (pool_) pool_->wake();
     }
@@ -54,7 +54,7 @@ private:
     std::unique_ptr<ThreadPool> pool_; ///< null for one thread
 };
 
-/// How many cores this process may use, and the system's number of the k-th of them (-1: there are not so many).
+/// How many cores this process may use, and the system's number of the k-th of them (-1: there are fewer).
 std::uint32_t usable_cores();
 int usable_core(std::uint32_t k);
 

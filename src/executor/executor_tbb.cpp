@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    // oneTBB keeps to the number of cores unless told otherwise; whoever asks for more threads gets them.
+    // Raises oneTBB's limit, the number of cores, if more threads are wanted.
     std::optional<tbb::global_control> allowed_;
     tbb::task_arena arena_;
 };

@@ -9,8 +9,8 @@
 
 namespace raycontact {
 
-/// Round to nearest, denormals kept, for as long as it lives: a caller may have set its own rules, and one flushed
-/// denormal would change a hash.
+/// Sets rounding to nearest and keeps denormals for as long as it lives: a caller may have set other modes, and one
+/// flushed denormal would change a hash.
 class FloatEnvironment {
 public:
 #if defined(__x86_64__) || defined(__i386__)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Apart from types.h: a device without double knows nothing of it.
-// A body in the world: the frame about its shape's centre, in double, as the host has it.
+// Not in types.h, so that a device without double need not compile it. A body's pose in the world: the frame at its
+// shape's centre, in double, as the host has it.
 STRUCT(BodyPlace) {
     double rotation[9];
     double translation[3];

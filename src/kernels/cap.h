@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Caps (docs/certified.md): of each triangle of a closed, outward mesh, the balls around its centre in which all
-// normals are within an angle of its own. A ray from there along them can only leave the mesh, and once at most,
-// however many triangles there are. Held rays that no tube decides are asked of their triangles' caps together, and
-// from triangle to triangle.
+// Caps (docs/certified.md): each triangle of a closed, outward mesh has balls around its centre in which all normals
+// are within an angle of its own. A ray that begins in such a ball and runs along these normals leaves the mesh at most
+// once. Rays that no tube decides are tested against the caps of their triangles, as a group, and go on to neighbours.
 
 #define CAP_UNIT_TOLERANCES 2.0f // a step of the stored radii
 // The two angles: 30 and 55 degrees.
@@ -10,15 +9,15 @@
 #define CAP_NARROW_SINE 0.5f
 #define CAP_WIDE_COSINE 0.5735764f
 #define CAP_WIDE_SINE 0.8191520f
-#define CAP_LEAST_FACING 0.125f  // cosine of ray and normal, below which nothing is said
-#define CAP_LOST_OF_FACING 0.01f // by rounding of the triangle's normal and of the ray's direction
+#define CAP_LEAST_FACING 0.125f  // least cosine of ray and normal for a cap to decide
+#define CAP_LOST_OF_FACING 0.01f // lost to rounding of the triangle's normal and of the ray's direction
 #define OUTSIDE_TOLERANCES 4.0f
 #define MOST_STEPS 16u   // before a ray is cast instead
 #define PLACES_NEARBY 4u // to either side
 
-// No more than the least cosine of a ray's direction and a normal in the triangle's cap; -1: the ray does not begin
-// there. far2: squared distance of its origin from the triangle's centre; along: cosine of direction and the triangle's
-// own normal; margin: metres of rounding.
+// A lower bound of the cosine between a ray's direction and any normal in the triangle's cap; -1: the ray begins
+// outside the cap. far2: squared distance of its origin from the triangle's centre; along: cosine of direction and the
+// triangle's own normal; margin: metres of rounding.
 DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, float along) {
     const float unit = CAP_UNIT_TOLERANCES * tolerance;
     const float narrow = (float)(int)(cap & 0xffffu) * unit - margin, wide = (float)(int)(cap >> 16) * unit - margin;
@@ -31,7 +30,7 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
     return component(2u - is_in_wide - is_in_narrow, in_narrow, in_wide, -1.0f);
 }
 
-// Whether its cap will know a ray by the triangle that it met, while it meets it.
+// Whether the cap of the triangle that a ray met can decide the ray in later steps.
 DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape,
                       READS(TriangleBlock) blocks, uint triangle_lane) {
     READS(TriangleBlock) block = blocks + shape->triangle_block_first + triangle_lane / TRIANGLE_LANES;
@@ -45,8 +44,8 @@ DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(Sh
     return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
 
-// After test_held(). A ray that begins in the triangle's cap and passes well inside of its edges leaves the mesh there,
-// and there alone; one that begins beyond it is outside, if by more than rounding.
+// Called after test_held(). A ray that begins in the triangle's cap and passes well inside its edges leaves the mesh
+// there and nowhere else. If it begins beyond the triangle by more than rounding, its vertex is outside.
 DEVICE void test_caps(HeldGroup* group) {
     RayGroup* rays = &group->rays;
     FOR_LANES(r, RAYS_IN_GROUP) {
@@ -80,7 +79,7 @@ DEVICE void test_caps(HeldGroup* group) {
     }
 }
 
-// Rays that passed their triangle by go on to the one across that edge. Returns how many did.
+// Rays that missed their triangle go on to the neighbour across the edge `beyond`. Returns how many did.
 DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
     uint stepped = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) {
@@ -97,7 +96,7 @@ DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group)
     return stepped;
 }
 
-// What held rays' tubes say, else their caps.
+// Decides rays by their tubes, and the others by their caps.
 DEVICE void test_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
     test_held(group);
     uint asks = 0u;
@@ -110,7 +109,7 @@ DEVICE void test_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGro
     }
 }
 
-// A triangle that a ray beside that place was known by: from there a ray without one may find its own.
+// The triangle of a ray near that place: a ray without a triangle begins its search there.
 DEVICE uint triangle_nearby(READS(Held) held, uint count, uint place) {
     for (uint k = 0u; k < PLACES_NEARBY; ++k) {
         if (place + k < count && held[place + k].triangle != NONE) return held[place + k].triangle;

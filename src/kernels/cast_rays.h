@@ -6,15 +6,15 @@
 #define CASTER_BASIC 0
 #define CASTER_BVH 1
 
-// -1: a face met from outside comes first, or nothing is hit; 1: one met from inside; 0: within rounding of each other.
+// -1: the closest face is met from outside, or none is met; 1: from inside; 0: two such faces are within rounding.
 DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
     if (closest->back >= UNBOUNDED || closest->back > reach) return -1;
     if (closest->front + tolerance < closest->back) return -1;
     return closest->back + tolerance < closest->front ? 1 : 0;
 }
 
-// What kernels that cast rays read of all shapes, and where they put how the rays ended. Columns of outcomes: the ray
-// is a contact; its side tests; it was cast in full.
+// The shape arrays that casting kernels read, and the results that they write. Columns of outcomes: the ray is a
+// contact; its side tests; it was cast in full.
 STRUCT(Arrays) {
     READS(ShapeHeader) shapes;
     READS(Node) nodes;
@@ -33,8 +33,8 @@ DEVICE Closest traverse(const Arrays* arrays, const uint caster, const RayFrame*
     return closest;
 }
 
-// What each ray of a group meets first, or its opposite, by the BVH. Where a group is more than one ray, they are cast
-// together as far as each one's `length`: what is met so near is the closest of all. The others are cast alone.
+// The closest hits of a group's rays, or of the opposite rays, by the BVH. A group of several rays is cast together,
+// each as far as its `length`; a hit so near is the closest of all. The other rays are cast one by one.
 DEVICE void find_group(const Arrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
     frame_group(group, opposite);
     const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->nodes, arrays->blocks) : 1u;
@@ -51,7 +51,7 @@ DEVICE Hit no_contact(uint sides) {
     return hit;
 }
 
-// The ray meets that triangle from inside.
+// The hit of a ray that meets the triangle from inside.
 DEVICE Hit hit_of(const Arrays* arrays, const SourceRay* ray, READS(ShapeHeader) shape, uint triangle, float distance,
                   uint sides) {
     const Packed3 n = arrays->normals[shape->normal_first + triangle];
@@ -72,16 +72,16 @@ DEVICE void record_hit(const Arrays* arrays, uint at, const Hit hit, uint was_ca
     arrays->outcomes[2u * arrays->stride + at] = was_cast;
 }
 
-// In contact exactly when the closest hit within reach is a face met from inside. Where the closest front and back
-// faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent a
-// contact a body size away: then other directions from the same point decide whether it is inside a closed mesh.
-// An open mesh has no inside, so there such a ray is no contact.
+// A vertex is in contact exactly when the closest hit within reach is a face met from inside. If the closest front and
+// back faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent
+// a contact a body size away. Then other directions from the same point decide whether it is inside a closed mesh. An
+// open mesh has no inside: there such a ray is no contact.
 DEVICE Hit decide(const Arrays* arrays, const uint caster, const SourceRay* ray, const Closest* own,
                   READS(ShapeHeader) shape) {
     int decided = verdict(own, ray->reach, shape->tolerance);
     uint sides = 0u;
     while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
-        // Unrelated to each other and to any axis, for the rare ray whose own direction cannot tell.
+        // Unrelated to each other and to any axis.
         const float directions[SIDE_DIRECTIONS][3] = {{0.5402f, 0.3173f, 0.7794f},
                                                       {-0.6311f, 0.7213f, 0.2856f},
                                                       {-0.2917f, -0.8349f, 0.4667f},
@@ -94,7 +94,7 @@ DEVICE Hit decide(const Arrays* arrays, const uint caster, const SourceRay* ray,
     return decided > 0 ? hit_of(arrays, ray, shape, own->back_triangle, own->back, sides) : no_contact(sides);
 }
 
-// What the rays of a group meet, and what that makes of each of them: hits by whose they are.
+// Casts the rays of a group, decides each of them and records its hit.
 DEVICE void cast_group(const Arrays* arrays, Closest* own, RayGroup* group) {
     READS(ShapeHeader) shapes = arrays->shapes;
     find_group(arrays, own, group, false);
@@ -107,7 +107,7 @@ DEVICE void cast_group(const Arrays* arrays, Closest* own, RayGroup* group) {
     }
 }
 
-// Every vertex is in the bounds.
+// All vertices are inside the bounds.
 KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                           READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                           READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far points can move before they could be in contact: a clearance grid keeps of each cell a ball without surface
-// (docs/certified.md).
+// How far points can move before they could be in contact. A clearance grid stores for each cell a ball that contains
+// no surface (docs/certified.md).
 
 // A clearance grid, without its balls.
 STRUCT(Clearance) {
@@ -25,7 +25,7 @@ DEVICE Clearance clearance_of(READS(ShapeHeader) shape) {
     return grid;
 }
 
-// The nearest point of the grid's box, and its cell; NaN takes its lower corner.
+// The nearest point of the grid's box, and its cell; for NaN the box's lower corner.
 STRUCT(GridPlace) {
     float x, y, z;
     int cell_x, cell_y, cell_z;
@@ -46,8 +46,8 @@ DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
     return place;
 }
 
-// No more than how far a point can move before it could be in contact. Outside a closed mesh that is the distance of
-// its surface; elsewhere its ray, which goes no farther than `reach`, must meet the surface. May be negative.
+// A lower bound of how far a point can move before it could be in contact. Outside a closed mesh: its distance from the
+// surface. Elsewhere: that distance less `reach`, since its ray goes no farther. May be negative.
 DEVICE float safe_distance(const Clearance grid, READS(uint) balls, float x, float y, float z, float reach) {
     const GridPlace p = place_in(grid, x, y, z);
     const uint word = balls[p.at];
@@ -61,15 +61,15 @@ DEVICE float safe_distance(const Clearance grid, READS(uint) balls, float x, flo
     const float az = p.z - (grid.low[2] + ((float)bz + 0.5f) * grid.cell);
     const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
-    // The box is convex: what is behind its nearest point is no nearer than by Pythagoras.
+    // The box is convex, so Pythagoras gives a lower bound for a point outside it.
     const float away = root_of(off2 + clear * clear);
     const uint outside =
         (grid.outward & (uint)(off2 > 0.0f)) | ((uint)(ball > 0.0f) & (uint)((word & CLEARANCE_OUTSIDE) != 0u));
-    // Rays are stretched with their rotation, which is rigid to 1e-4 for each body.
+    // Each body's rotation is rigid only to 1e-4, so it may stretch the ray.
     return away - (outside != 0u ? 0.0f : 1.0005f * reach);
 }
 
-// How far a point is outside the bounds at least, below 0 inside. As long as it needs to reach them, it casts nothing.
+// A lower bound of a point's distance from the bounds; negative inside. The point casts no ray before it reaches them.
 DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     const float gap_x = b[0] - x > x - b[3] ? b[0] - x : x - b[3];
     const float gap_y = b[1] - y > y - b[4] ? b[1] - y : y - b[4];
@@ -78,7 +78,7 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
     return gap_xy > gap_z ? gap_xy : gap_z;
 }
 
-// safe: metres each of the vertices from `first` on can move before it could be in contact; may be negative.
+// safe: metres that each vertex from `first` on can move before it could be in contact; may be negative.
 DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(DirectedPair) pair, READS(VertexBlock) block,
                        uint first, READS(ShapeHeader) target, READS(uint) clearances) {
     float b[6];
@@ -94,8 +94,8 @@ DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(DirectedPai
     }
 }
 
-// Sends for the words that safe_lanes() will ask.
-DEVICE void send_for_words(const InsideLanes* placed, READS(ShapeHeader) target, READS(uint) clearances) {
+// Prefetches the words that safe_lanes() will read.
+DEVICE void prefetch_words(const InsideLanes* placed, READS(ShapeHeader) target, READS(uint) clearances) {
     const Clearance grid = clearance_of(target);
     uint at[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
@@ -111,7 +111,7 @@ DEVICE float least_of_sixteen(const float* values) {
     return least[0];
 }
 
-// What the ball around a block's box says for all its vertices, without looking at them.
+// A safe distance for all vertices of a block, from only the ball around its box.
 DEVICE float safe_block(READS(DirectedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
                         uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
     const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
@@ -120,8 +120,8 @@ DEVICE float safe_block(READS(DirectedPair) pair, READS(ShapeHeader) source, REA
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
     const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
     const Clearance grid = clearance_of(target);
-    // Of an unknown side nothing is said: the reach of the block's rays is not. Poses, rigid to 1e-4 each, may stretch
-    // the box by more than the margin, hence the half thousandth.
+    // UNBOUNDED, since the reach of the block's rays is not known: only a middle that is outside gives a bound. Poses
+    // are rigid only to 1e-4 each and may stretch the box by more than the margin, hence the half thousandth.
     return safe_distance(grid, clearances + target->clearance_first,
                          ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
                          ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits that are contacts, as record_hit() counted them, in the order of the rays.
+// Writes the hits that record_hit() counted as contacts, in the order of the rays.
 KERNEL void write_contacts(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                            READS(VertexBlock) vertices, READS(Packed3) normals, READS(Ray) rays, READS(Hit) hits,
                            READS(uint) firsts, WRITES(LocalContact) contacts) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which blocks of sixteen vertices may reach into the target's bounds? Down a tree of boxes, sixteen children wide.
+// Finds the blocks of sixteen vertices that may reach into the target's bounds, by a tree of boxes, sixteen to a node.
 
-// The bounds of a pair as both frames see them: centres and half sizes, grown by the rounding of the transform.
+// The bounds of a pair in both frames: centres and half sizes, grown by the rounding of the transform.
 STRUCT(PairBounds) {
     float rotation[9], size[9]; // size: magnitudes of the rotation
     float offset[3];            // source origin relative to the middle of the bounds, target frame
@@ -32,7 +32,7 @@ DEVICE PairBounds bounds_of(READS(DirectedPair) pair) {
         const float far = magnitude_of(b.source_centre[i]) + half_size;
         farthest = far > farthest ? far : farthest;
     }
-    // Poses are rigid to 1e-4 only, and the transpose is as far from the inverse: millimetres on a large slab.
+    // Poses are rigid only to 1e-4, so the transpose differs from the inverse: by millimetres on a large slab.
     for (int i = 0; i < 3; ++i) {
         float shear = 0.0f;
         for (int j = 0; j < 3; ++j) {
@@ -45,7 +45,7 @@ DEVICE PairBounds bounds_of(READS(DirectedPair) pair) {
     return b;
 }
 
-// Child boxes that may reach into the bounds: no face of either box separates them.
+// Child boxes that may reach into the bounds: no face normal of either box separates them.
 DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
     int hit[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
@@ -68,7 +68,7 @@ DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
     return pack_sixteen(hit);
 }
 
-// Whose blocks are sought, in its source's tree of clusters, and what the boxes are compared with.
+// A search for the blocks of pair p in its source's tree of clusters, and what the boxes are compared with.
 STRUCT(Search) {
     uint p;
     READS(DirectedPair) pair;
@@ -103,7 +103,7 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
-        const uint passed_over = (uint)(safe > search->horizon); // not NaN, of empty lanes
+        const uint passed_over = (uint)(safe > search->horizon); // false for NaN, in empty lanes
         beyond[k] = passed_over != 0u ? safe : UNBOUNDED;
     }
     const float least = least_of_sixteen(beyond);
@@ -111,7 +111,7 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
-// No horizons: below 0.
+// Without horizons the horizon is negative.
 DEVICE Search search_of(uint p, READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                         READS(ClusterBlock) clusters, READS(uint) clearances) {
     READS(DirectedPair) pair = pairs + p;
@@ -120,16 +120,15 @@ DEVICE Search search_of(uint p, READS(DirectedPair) pairs, READS(float) horizons
     return search;
 }
 
-// by_horizon: near_lanes(), the boxes that the horizon and the target's clearance grid leave; else overlapping_lanes().
 DEVICE uint reached_lanes(Search* search, const PairBounds* bounds, const bool by_horizon, uint level, uint at) {
     READS(ClusterBlock) block = search->clusters + search->source->cluster_first[level] + at;
     return by_horizon ? near_lanes(search, block) : overlapping_lanes(bounds, block);
 }
 
-// For a source of up to this many vertex blocks the counting pass keeps its answer in one word, a bit for each block.
+// For a source of up to this many vertex blocks the counting pass keeps its result in one word, a bit for each block.
 #define BLOCKS_IN_MASK 64u
 
-// Where the blocks of a pair go, and the two columns of ray counts that begin at 0 (count_rays()).
+// Where the blocks of a pair are written, and the two columns of ray counts, which begin at 0 (count_rays()).
 STRUCT(FoundBlocks) {
     WRITES(PairBlock) blocks;
     WRITES(uint) ray_counts;
@@ -143,8 +142,8 @@ DEVICE void write_block(const FoundBlocks* found, uint at, const Search* search,
     found->ray_counts[found->stride + at] = 0u;
 }
 
-// Walks the implicit sixteen-wide tree of clusters, stackless; counts the vertex blocks it reaches and writes them if
-// `found` is not null.
+// Traverses the implicit sixteen-wide tree of clusters without a stack. Counts the vertex blocks it reaches and writes
+// them if `found` is not null.
 DEVICE uint reach_clusters(Search* search, const PairBounds* bounds, const bool by_horizon, const FoundBlocks* found) {
     uint count = 0u;
     const uint top = search->source->cluster_levels - 1u;
@@ -177,7 +176,7 @@ DEVICE uint reach_clusters(Search* search, const PairBounds* bounds, const bool 
     return count;
 }
 
-// block_mask: of a source of few blocks the blocks found, a bit each.
+// block_mask: the blocks found, a bit each, if the source has at most BLOCKS_IN_MASK.
 DEVICE uint count_reached(Search* search, const bool by_horizon, WRITES(ulong) block_mask) {
     const PairBounds bounds = bounds_of(search->pair);
     if (search->source->vertex_block_count > BLOCKS_IN_MASK)
@@ -203,9 +202,9 @@ DEVICE void write_reached(Search* search, ulong block_mask, const FoundBlocks* f
         reach_clusters(search, &bounds, true, found);
 }
 
-// Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair): without the
-// blocks that cannot be in contact before they have moved that far. safe_distances, where there are horizons: for a
-// pair without blocks, how far its vertices can move before one could be in contact; may be less, also negative.
+// Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
+// blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
+// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative.
 KERNEL void count_clusters(COUNT(count), READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                            READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which vertices of the source lie inside the target's bounds? Blocks of sixteen of them become one dense queue of rays
+// Finds the source's vertices inside the target's bounds, in blocks of sixteen, and writes their rays as one dense list
 // (the paper's padded grid, Fig. 6, would waste lanes).
 
 #define LEAST_DEPTH_IN_BALL 0.01f // of a cell: far more than rounding could hide
 
-// Those whose cell is known to lie outside a closed mesh need no ray: the first face they could meet is met from
-// outside.
+// Vertices whose cell lies outside a closed mesh need no ray: it would meet the first face from outside.
 DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) outside_cells) {
     const float scale = target->grid_scale;
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
@@ -14,7 +13,7 @@ DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
     int outside[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const bool known = found->inside[k] != 0;
-        // Other lanes, which may hold NaN, look at the first cell.
+        // Other lanes, which may hold NaN, read the first cell.
         const float px = known ? found->x[k] : low_x, py = known ? found->y[k] : low_y,
                     pz = known ? found->z[k] : low_z;
         const uint x = (uint)(int)((px - low_x) * scale);
@@ -26,7 +25,8 @@ DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
     return pack_vertices(outside);
 }
 
-// Whether a vertex casts, exactly as inside_lanes() has it. p: of its source_ray(), which has the same bits.
+// Whether a vertex casts a ray, exactly as inside_lanes() decides it. p: from its source_ray(), which has the same
+// bits.
 DEVICE bool in_bounds(READS(DirectedPair) pair, const float* p) {
     READS(float) b = pair->bounds;
     return ((uint)(p[0] >= b[0]) & (uint)(p[0] <= b[3]) & (uint)(p[1] >= b[1]) & (uint)(p[1] <= b[4])
@@ -34,8 +34,8 @@ DEVICE bool in_bounds(READS(DirectedPair) pair, const float* p) {
            != 0u;
 }
 
-// Vertices in a ball of the clearance grid that is outside. The outside grid knows whole cells only: about half of the
-// vertices that it leaves are outside all the same, and their rays are the longest.
+// Vertices in a ball of the clearance grid that is outside. The outside grid marks whole cells only: about half of the
+// vertices that it leaves are outside, too, and their rays are the longest.
 DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) clearances) {
     const Clearance grid = clearance_of(target);
     READS(uint) balls = clearances + target->clearance_first;
@@ -47,8 +47,8 @@ DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
     return pack_vertices(in_ball);
 }
 
-// Adds to column 0 of counts the vertices whose ray must be cast to know, to column 1 those in the bounds, one ray of
-// the rule each.
+// Adds to column 0 of counts the vertices whose rays must be cast, to column 1 all vertices inside the bounds: by the
+// paper's rule each of them has a ray.
 KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                        READS(VertexBlock) vertices, READS(uint) outside_cells, READS(uint) clearances,
                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
@@ -67,7 +67,7 @@ KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(DirectedP
     }
 }
 
-// Of `lanes`: the vertices from `first` on that an item of FOR_EACH_VERTICES writes.
+// The part of `lanes`, from `first` on, that an item of FOR_EACH_VERTICES writes.
 DEVICE uint own_lanes(uint lanes, uint first) {
     return lanes & (((1u << VERTICES_AT_ONCE) - 1u) << first);
 }

@@ -2,7 +2,7 @@
 // Rays followed from step to step: a walk over neighbouring triangles from the one met last (LGA13; paper section 3),
 // and predictive rays against the direction of the ray, for vertices about to touch (paper section 3.1, Algorithm 1).
 
-// Where a ray begins that is not followed: in full, or only ahead, since its vertex is known not to be in contact.
+// Start values of rays that are not followed: cast in full, or only ahead (the vertex is known not to be in contact).
 #define IN_FULL NONE
 #define AHEAD_ONLY 0xfffffffeu
 
@@ -17,12 +17,12 @@ STRUCT(Outcome) {
     uint how;
 };
 
-// What a kernel that follows rays is given.
+// The arguments of a kernel that follows rays.
 STRUCT(Follow) {
     Arrays all;
     READS(Face) faces;
     READS(DirectedPair) pairs;
-    READS(float) cullings; // by pair, metres; below 0: nothing is sought ahead
+    READS(float) cullings; // by pair, metres; below 0: no predictive rays
     READS(VertexBlock) vertices;
     READS(Ray) rays;
     READS(uint) starts;
@@ -34,7 +34,7 @@ STRUCT(Follow) {
 STRUCT(FollowedRay) {
     SourceRay own;
     uint pair, target, start;
-    uint inside; // the bounds, and its own ray is wanted: it may be in contact
+    uint inside; // the bounds, and not AHEAD_ONLY: it may be in contact
     float culling;
 };
 
@@ -57,13 +57,13 @@ DEVICE void record_outcome(const Follow* follow, uint i, const Outcome end) {
     follow->hows[i] = end.how;
 }
 
-// The face that the vertex will meet from inside if it goes on: the closest one ahead, not farther than `culling`
-// (paper equation 1), where the ray is cut (paper section 5.3).
+// The face through which the vertex will enter if it moves on: the closest one ahead, not farther than `culling` (paper
+// equation 1), where the ray ends (paper section 5.3).
 DEVICE uint predicted(const Closest* ahead, float culling) {
     return ahead->back <= culling && ahead->back <= ahead->front ? ahead->back_triangle : NONE;
 }
 
-// By the basic caster, the ray in full, and where it is no contact what lies ahead.
+// Casts the ray in full with the basic caster and, if it is no contact, predicts the face ahead.
 DEVICE Outcome cast_basic(const Follow* follow, const FollowedRay* followed) {
     const SourceRay* ray = &followed->own;
     READS(ShapeHeader) shape = follow->all.shapes + followed->target;
@@ -81,10 +81,10 @@ DEVICE Outcome cast_basic(const Follow* follow, const FollowedRay* followed) {
     return end;
 }
 
-// One step of a walk: where the ray's line passes, as seen from one triangle.
+// One step of a walk: where the ray's line passes one triangle.
 STRUCT(Passage) {
     uint through; // the line passes through it, from inside out as the ray goes
-    uint across;  // else the edge beyond which it passes, farthest first; NONE: none
+    uint across;  // else the edge that it passes farthest beyond; NONE: none
     float t;
 };
 
@@ -103,7 +103,7 @@ DEVICE Passage pass_triangle(const RayFrame* ray, READS(TriangleBlock) block, ui
         const float ex = at.x[f] - at.x[e], ey = at.y[f] - at.y[e];
         const float length2 = ex * ex + ey * ey;
         const float off = area > 0.0f ? -edge[e] : edge[e];
-        // Squared distance of the line from the edge; the way back is no way on.
+        // Squared distance of the line from the edge. The walk must not turn back.
         const float beyond = off > 0.0f && length2 > 0.0f ? off * (off / length2) : 0.0f;
         if (e != came_by && beyond > farthest) {
             farthest = beyond;
@@ -113,9 +113,9 @@ DEVICE Passage pass_triangle(const RayFrame* ray, READS(TriangleBlock) block, ui
     return passage;
 }
 
-// Algorithm 1: from the last triangle over neighbours, across the edge that the line passes farthest beyond, until the
-// line passes through one that it leaves through. Ends after max_iterations, at a border, and where it would turn back.
-// CAST, where no walk begins, or it is lost and that is asked for: nothing is known yet, the ray is to be cast in full.
+// Algorithm 1: walks from the last triangle over neighbours, across the edge that the line passes farthest beyond,
+// until the line leaves through a triangle. Ends after max_iterations, at a border, and where it would turn back. CAST:
+// the ray must be cast in full, since no walk begins or, with cast_lost, since the walk is lost.
 DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
     const SourceRay* ray = &followed->own;
     READS(ShapeHeader) shape = follow->all.shapes + followed->target;
@@ -152,8 +152,8 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
 }
 
 // The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
-// the bounds of the look; by pair, `reach`: that distance, `margins`: below which a vertex could be in contact. The
-// upper half of PairBlock.lanes tells those whose own ray must be cast. counts: as of count_rays().
+// the bounds of the look. By pair: `reach`: that distance; `margins`: with at most this safe distance a vertex could be
+// in contact. The upper half of PairBlock.lanes marks vertices whose own ray must be cast. counts: see count_rays().
 KERNEL void count_near_rays(COUNT(count), uint stride, READS(DirectedPair) wide, READS(float) reach,
                             READS(float) margins, READS(ShapeHeader) shapes, READS(VertexBlock) vertices,
                             READS(uint) clearances, WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
@@ -208,7 +208,7 @@ KERNEL void copy_candidates(COUNT(count), READS(Segment) segments, READS(uint) f
     }
 }
 
-// Predictive rays of vertices that are not in contact.
+// Casts predictive rays of vertices that are not in contact.
 DEVICE_BATCH void cast_ahead(const Follow* follow, RayGroup* ahead) {
     Closest met[RAYS_IN_GROUP];
     find_group(&follow->all, met, ahead, true);
@@ -216,7 +216,7 @@ DEVICE_BATCH void cast_ahead(const Follow* follow, RayGroup* ahead) {
     ahead->count = 0u;
 }
 
-// Where such a ray is no contact, what lies ahead is cast next.
+// Casts rays in full. If one is no contact, its predictive ray is cast next.
 DEVICE_BATCH void cast_casting(const Follow* follow, RayGroup* casting, RayGroup* ahead) {
     Closest met[RAYS_IN_GROUP];
     cast_group(&follow->all, met, casting);
@@ -282,7 +282,7 @@ KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive
     }
 }
 
-// Rays of a pair lie together. ranges: first and end of each pair, zero where it has none.
+// The rays of a pair are contiguous. ranges: first and end of each pair, zero if it has none.
 KERNEL void find_ranges(COUNT(count), READS(Ray) rays, WRITES(uint) ranges) {
     FOR_EACH(i, count) {
         const uint pair = rays[i].pair;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether what is known of a ray still decides it (docs/certified.md), asked of a group of rays together, a lane each:
-// nearly every ray at rest is decided so. On a GPU a group is one ray.
+// Tests whether what is kept of a ray (Held) still decides it (docs/certified.md), for a group of rays, one in each
+// lane. Nearly every ray at rest is decided so. On a GPU a group is one ray.
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
 
-// Rays, and what was held of each. All zero at first: lanes without a ray, or without a triangle, are asked with the
-// others.
+// Rays, and what was kept of each. All zero at first, since lanes without a ray or a triangle are tested, too.
 STRUCT(HeldGroup) {
     RayGroup rays;
-    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the tube was sought
+    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // at the tube search
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
     uint triangle_lane[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
@@ -19,16 +18,16 @@ STRUCT(HeldGroup) {
     float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    // For caps (cap_group.h), of every ray with a triangle: the edge functions of its line; is_inside_edges: whether
-    // the line passes well inside of all edges; is_exit: whether the ray leaves the target there, a hit if the ray can
-    // meet no other triangle. `distance` is then that of the triangle's plane.
+    // For caps (cap.h), of every ray with a triangle. edge: the edge functions of its line; is_inside_edges: whether
+    // the line passes well inside all edges; is_exit: whether the ray leaves the target there, a hit if it can meet no
+    // other triangle. `distance` is then that of the triangle's plane.
     float edge[3][RAYS_IN_GROUP];
     uint is_inside_edges[RAYS_IN_GROUP], is_exit[RAYS_IN_GROUP];
     uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the cap of the neighbour is tested next; 0: none
 };
 
-// Each of its words lies in another line.
-DEVICE void send_for_triangle(READS(TriangleBlock) block, uint lane) {
+// Each of the triangle's words lies in a cache line of its own.
+DEVICE void prefetch_triangle(READS(TriangleBlock) block, uint lane) {
     PREFETCH(block->triangle, lane);
     for (int k = 0; k < 9; ++k) PREFETCH(block->corner[0], TRIANGLE_LANES * k + lane);
 }
@@ -49,7 +48,7 @@ DEVICE void add_held(const Arrays* arrays, HeldGroup* group, uint at, const Sour
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
     READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
-    send_for_triangle(block, held->triangle % TRIANGLE_LANES);
+    prefetch_triangle(block, held->triangle % TRIANGLE_LANES);
     if (held_range->tests_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
@@ -62,14 +61,14 @@ DEVICE void fetch_triangle(const Arrays* arrays, HeldGroup* group, uint r) {
     PREFETCH(arrays->normals, arrays->shapes[group->rays.target[r]].normal_first + group->triangle[r]);
 }
 
-// What add_held() has sent for.
+// Loads what add_held() has prefetched.
 DEVICE void fetch_triangles(const Arrays* arrays, HeldGroup* group) {
     for (uint r = 0u; r < group->rays.count; ++r)
         if (group->triangle_lane[r] != NONE) fetch_triangle(arrays, group, r);
 }
 
-// First whether any part of the ray has left its tube: none of its points has moved farther than one of its ends. Then
-// what the triangle says, as hit_lane() would have it, and whether that is all there is to say.
+// First tests whether any part of the ray has left its tube: no point of it has moved farther than one of its ends.
+// Then tests the triangle with the result of hit_lane(), and whether any other triangle can matter.
 DEVICE void test_held(HeldGroup* group) {
     RayGroup* rays = &group->rays;
     frame_group(rays, false);
@@ -101,7 +100,7 @@ DEVICE void test_held(HeldGroup* group) {
         const float t = distance_of(e, z0, z1, z2, shear_z);
 
         const float tolerance = rays->tolerance[r], reach = rays->reach[r];
-        const float least = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED; // as of nothing_hit()
+        const float least = reach < UNBOUNDED ? reach + tolerance : UNBOUNDED; // as in nothing_hit()
         const float t0 = z0 * shear_z, t1 = z1 * shear_z, t2 = z2 * shear_z;
         const float beyond = least + tolerance, behind = -2.0f * tolerance;
         const uint away = ((uint)(t0 > beyond) & (uint)(t1 > beyond) & (uint)(t2 > beyond))
@@ -130,7 +129,7 @@ DEVICE void test_held(HeldGroup* group) {
     }
 }
 
-// As decide() would have it: of one triangle there is nothing to tell apart, so no other direction is asked.
+// The result of decide(). A single triangle cannot be confused with another, so no other direction is cast.
 DEVICE Hit held_hit(const Arrays* arrays, const HeldGroup* group, uint r) {
     const SourceRay ray = ray_of(&group->rays, r);
     return group->is_hit[r] != 0u ? hit_of(arrays, &ray, arrays->shapes + group->rays.target[r], group->triangle[r],

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that need not be cast again (docs/certified.md). What is known by a tube (tube.h) lasts until a point of the ray
-// has moved as far as that is wide: one triangle alone can be met, or none. What a triangle's cap says is asked anew in
-// each step (cap_group.h).
+// Rays that need not be cast again (docs/certified.md). A tube (tube.h) lasts until a point of the ray has moved by its
+// radius: until then the ray can meet only one triangle, or none. A triangle's cap is tested in each step (cap.h).
 
-#define WAIT_STEPS 3.0f     // before the next attempt, where a tube was hardly wide enough for one step
-#define WORTH_HOLDING 0.02f // of the radius sought
+#define WAIT_STEPS 3.0f     // before the next search, if the last tube was hardly wide enough for one step
+#define WORTH_HOLDING 0.02f // of the search radius
 
-// The place of a ray among those that its pair held, which ascend by vertex_lane, or of the first one after it. likely:
-// its place among those of this step, mostly the same.
+// The place of a ray among those kept of its pair, which ascend by vertex_lane, or of the first one after it. likely:
+// its place among the rays of this step, mostly the same.
 DEVICE uint find_held(READS(Held) held, uint count, uint vertex_lane, uint likely) {
     if (likely < count && held[likely].vertex_lane == vertex_lane) return likely;
     uint low = 0u, high = count;
@@ -26,12 +25,12 @@ DEVICE Held nothing_held(uint vertex_lane) {
     return held;
 }
 
-// Nothing is known of the pair's rays, and nothing is to be sought: nobody will ask in the next step.
+// Nothing was kept of the pair's rays, and nothing will be.
 DEVICE bool is_idle(READS(HeldRange) held_range) {
     return held_range->count == 0u && held_range->radius <= 0.0f && held_range->tests_caps == 0u;
 }
 
-// What is known of a ray from now on, where it had to be cast.
+// Searches a tube around a ray that was cast. Returns what is kept of the ray.
 DEVICE_BATCH Held seek_tube(const Arrays* arrays, const SourceRay* ray, const Closest* own, READS(HeldRange) held_range,
                             READS(ShapeHeader) shape) {
     Held held = nothing_held(NONE);
@@ -55,7 +54,7 @@ DEVICE_BATCH Held seek_tube(const Arrays* arrays, const SourceRay* ray, const Cl
     return held;
 }
 
-// before, after: rays held in the last step and now; those of idle pairs are left as they are.
+// before, after: what was kept of rays in the last step, and what is kept in this one; not written for idle pairs.
 STRUCT(Holding) {
     Arrays all;
     READS(Face) faces;
@@ -64,8 +63,8 @@ STRUCT(Holding) {
     WRITES(Held) after;
 };
 
-// Rays that are not known by what was held. after: of those whose pair is not idle, what was held; then, what is held
-// from now on.
+// Casts rays that neither a tube nor a cap decides. `after`, if their pair is not idle: what was kept of them becomes
+// what is kept from now on.
 DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
     Closest own[RAYS_IN_GROUP];
     cast_group(&hold->all, own, waiting);
@@ -83,9 +82,10 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
         held.limit = waits;
         const bool met = hit.triangle != NONE && held_range->tests_caps != 0u;
         const uint lane_met = met ? hold->faces[shape->face_first + hit.triangle].triangle_lane : NONE;
-        // A cap that holds the ray, and was asked in vain: an edge is near, or the surface. Then a tube may do.
-        const bool in_vain = !had_tube && held.triangle == lane_met;
-        if (lane_met != NONE && !in_vain
+        // The cap of the triangle that the ray meets was tested and did not decide: an edge or the surface is near. A
+        // tube may.
+        const bool cap_failed = !had_tube && held.triangle == lane_met;
+        if (lane_met != NONE && !cap_failed
             && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.blocks, lane_met)) {
             held = nothing_held(vertex_lane);
             held.triangle = lane_met;
@@ -98,7 +98,7 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
     waiting->count = 0u;
 }
 
-// Not asked of the outside grid, of which most such rays would wait for a cell that says nothing.
+// Does not test the outside grid: most such rays would wait for a cell that decides nothing.
 DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const SourceRay* ray, uint pair, uint target) {
     add_ray(waiting, at, ray, ray->reach, pair, target, hold->all.shapes);
     if (is_full(waiting)) cast_waiting(hold, waiting);
@@ -126,9 +126,9 @@ DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* w
     group->rays.count = 0u;
 }
 
-// Whether something is held of a ray in the bounds, to be asked first; then it joins the group.
-DEVICE bool ask_first(const Holding* hold, HeldGroup* group, uint at, const Ray ray, const SourceRay* source,
-                      uint target, bool inside) {
+// Adds a ray inside the bounds to the group if a tube or a cap may decide it. Returns whether it did.
+DEVICE bool add_if_kept(const Holding* hold, HeldGroup* group, uint at, const Ray ray, const SourceRay* source,
+                        uint target, bool inside) {
     READS(HeldRange) held_range = hold->held_ranges + ray.pair;
     if (is_idle(held_range)) return false;
     READS(Held) own = hold->before + held_range->first;
@@ -144,7 +144,7 @@ DEVICE bool ask_first(const Holding* hold, HeldGroup* group, uint at, const Ray 
     return true;
 }
 
-// The hits of cast_rays_bvh, bit for bit; none of vertices outside the bounds.
+// Gives the hits of cast_rays_bvh, bit for bit; vertices outside the bounds have none.
 KERNEL void hold_rays(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(HeldRange) held_ranges,
                       READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(Node) nodes,
                       READS(TriangleBlock) blocks, READS(Face) faces, READS(Packed3) normals, READS(Ray) rays,
@@ -162,7 +162,7 @@ KERNEL void hold_rays(COUNT(count), uint stride, READS(DirectedPair) pairs, READ
         const uint target = pairs[ray.pair].target;
         const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.vertex_lane);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
-        if (ask_first(&hold, &group, i, ray, &source, target, inside)) {
+        if (add_if_kept(&hold, &group, i, ray, &source, target, inside)) {
             if (is_full(&group.rays)) decide_held(&hold, &group, &waiting);
         } else if (inside) {
             cast_later(&hold, &waiting, i, &source, ray.pair, target);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where bodies are in the world becomes where each source is, seen from its target: relative_pose() in double, rounded
-// only then, so that nothing is lost far from the origin. The only kernels that use double.
+// Turns the poses of bodies in the world into the pose of each source in its target's frame: relative_pose() in double,
+// rounded only then, so that nothing is lost far from the origin. Only these kernels use double.
 
 // Bodies that moved, then pairs that came or went.
 KERNEL void apply_changes(COUNT(count), uint moved_count, READS(BodyPlace) moved, READS(PairChange) changed,

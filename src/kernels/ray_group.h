@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that wait until there are enough of them for a group, to be framed and cast together. A lane each; on a GPU a
-// group is one ray.
+// Rays are collected into groups, one in each lane, to be framed and cast together. On a GPU a group is one ray.
 
 #define ENDLESS_TOLERANCES 65536.0f // how far a group follows a ray without end: a sixteenth of the box diagonal
 
-// A ray in each lane; of its frame, what RayFrame holds.
+// A ray in each lane, with the members of its RayFrame.
 STRUCT(RayGroup) {
     float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // target frame
     float origin[3][RAYS_IN_GROUP], shear[3][RAYS_IN_GROUP], inverse[3][RAYS_IN_GROUP];
     uint axis[3][RAYS_IN_GROUP];
     float reach[RAYS_IN_GROUP];
-    float length[RAYS_IN_GROUP], tolerance[RAYS_IN_GROUP]; // metres; the group seeks no farther than `length`
+    float length[RAYS_IN_GROUP], tolerance[RAYS_IN_GROUP]; // metres; the group is cast no farther than `length`
     uint pair[RAYS_IN_GROUP], target[RAYS_IN_GROUP];
     uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
-    uint at[RAYS_IN_GROUP]; // whose ray it is
+    uint at[RAYS_IN_GROUP]; // index of the ray
     uint count;
 };
 
-// Lanes without a ray are framed with the others.
+// Sets all lanes, since lanes without a ray are framed, too.
 DEVICE void clear_group(RayGroup* group) {
     group->count = 0u;
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) group->position[i][r] = group->direction[i][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = group->tolerance[r] = 0.0f;
 }
 
-// at: whose ray it is.
+// at: index of the ray.
 DEVICE void add_ray(RayGroup* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
                     READS(ShapeHeader) shapes) {
     const uint r = group->count;
@@ -58,8 +57,7 @@ DEVICE SourceRay ray_of(const RayGroup* group, uint r) {
     return ray;
 }
 
-// frame_ray() for every lane, where components are chosen instead of looked up. opposite: frame_opposite(); then the
-// rays themselves are turned, too.
+// frame_ray() for every lane; components are selected, not indexed. opposite: also reverses the directions of the rays.
 DEVICE void frame_group(RayGroup* group, const bool opposite) {
     const float sign = opposite ? -1.0f : 1.0f;
     FOR_LANES(r, RAYS_IN_GROUP) {

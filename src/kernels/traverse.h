@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two casters (paper section 5.1). Both give the same hit: the boxes hold every one that counts.
+// The two casters (paper section 5.1). Both give the same hit: the boxes contain every hit that counts.
 
 DEVICE Closest nothing_hit(float reach, float tolerance) {
     const Closest closest = {UNBOUNDED, UNBOUNDED, NONE, reach < UNBOUNDED ? reach + tolerance : UNBOUNDED};
@@ -11,12 +11,12 @@ DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock
     for (; lanes != 0u; lanes &= lanes - 1u) hit_lane(closest, ray, block, lowest_bit(lanes), tolerance, by_distance);
 }
 
-// Blocks tested, for one ray after another, before any lane is looked at closely: a bit each, and few enough that they
-// are still in the first-level cache (20 of 32 KiB) when the next ray comes.
+// So many blocks are tested for one ray after another before any lane is tested exactly: a bit each, and few enough to
+// stay in the first-level cache (20 of 32 KiB) for the next ray.
 #define BLOCKS_AHEAD 32
 
-// All rays against the same shape. Lanes let through are set aside without a branch, since a wrong guess would throw
-// away the tests already begun behind it; each ray still takes them in their order.
+// All rays against the same shape. Lanes that pass are stored without a branch, since a misprediction would discard the
+// tests already begun; each ray still takes them in their order.
 DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count, READS(ShapeHeader) shape,
                                 READS(TriangleBlock) blocks) {
     for (uint first = 0u; first < shape->triangle_block_count; first += BLOCKS_AHEAD) {
@@ -43,8 +43,8 @@ DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray
     }
 }
 
-// A ray and its opposite in one pass (paper section 5.3): the sixteen tests ask where the line passes, whichever way it
-// runs, so the second ray costs no more than its close looks.
+// A ray and its opposite in one pass (paper section 5.3): the block test covers the line in both directions, so the
+// second ray costs only its exact tests.
 DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
                                      READS(ShapeHeader) shape, READS(TriangleBlock) blocks) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
@@ -57,8 +57,7 @@ DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Clos
     }
 }
 
-// Whether a ray that meets the near planes of a box at n, the far ones at f, meets the box no farther than the
-// limit.
+// Whether a ray meets a box within the limit. It meets the box's near planes at n and the far ones at f.
 DEVICE uint meets_box(float nx, float ny, float nz, float fx, float fy, float fz, float limit, float tolerance) {
     const float nxy = nx > ny ? nx : ny, nzt = nz > -tolerance ? nz : -tolerance;
     const float fxy = fx < fy ? fx : fy, fzt = fz < limit ? fz : limit;
@@ -108,7 +107,7 @@ STRUCT(Descent) {
     uint at, children; // a node, and those of its children still to visit, a bit each
 };
 
-// The next child, a node or a leaf, taken from those to visit.
+// Removes the next child, a node or a leaf, from those to visit.
 DEVICE uint next_child(Descent* way, READS(Node) tree) {
     const uint child = tree[way->at].child[lowest_bit(way->children)];
     way->children &= way->children - 1u;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that end, several at a time, where RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish each test
-// before it knows the next one. Here each stage is done for all rays before the next stage begins, so that hardly any
-// branch depends on an unfinished test. The rays of a pair begin side by side, and short ones end there: what of the
-// tree reaches into the box around them is sought once for all, and each ray is tested against those leaves alone.
+// Casts rays of finite length, several at a time, if RAYS_IN_GROUP is more than 1: on a CPU. A single ray must finish
+// each test before it knows the next one. Here each stage is done for all rays before the next stage begins, so that
+// hardly any branch depends on an unfinished test. The rays of a pair begin side by side, and short ones end there: the
+// leaves that overlap the box around them are found once, and each ray is tested only against these.
 
-#define GROUP_VISITS (8 * RAYS_IN_GROUP) // a ray alone has two or three leaves
+#define GROUP_VISITS (8 * RAYS_IN_GROUP) // a single ray has two or three leaves
 
-// Rays of a group that belong to one pair lie side by side, short ones in a small box.
+// The rays of a group, by pair: rays of one pair are neighbours in the group, and short ones have a small box.
 STRUCT(Runs) {
     float box[RAYS_IN_GROUP][6]; // lower x y z, upper x y z
     uint rays[RAYS_IN_GROUP];    // a bit each
@@ -20,14 +20,14 @@ STRUCT(Visits) {
     uint count;
 };
 
-// Leaves that a run's box reaches: lanes of nodes.
+// Leaves that overlap a run's box: lanes of nodes.
 STRUCT(NearLeaves) {
     uint run[GROUP_VISITS], node[GROUP_VISITS], lane[GROUP_VISITS], block[GROUP_VISITS];
     uint meets[GROUP_VISITS]; // rays of the run, a bit each
     uint count;
 };
 
-// The box of a run holds its rays up to their lengths, and as far beyond either end as they are tested.
+// The box of a run contains its rays up to their lengths, and as far beyond either end as they are tested.
 DEVICE void find_runs(Runs* runs, const RayGroup* group) {
     float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];
     for (int i = 0; i < 3; ++i) {
@@ -58,14 +58,14 @@ DEVICE void find_runs(Runs* runs, const RayGroup* group) {
     runs->count = run + 1u;
 }
 
-// Masks of sixteen bits, four at a time: a loop over the bits of each would end where nobody can guess.
+// Masks of sixteen bits, four at a time: the end of a loop over the bits of a single one is hard to predict.
 DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
     ulong bits = 0u;
     for (uint i = 0u; i < 4u; ++i) bits |= (ulong)(first + i < count ? masks[first + i] : 0u) << (16u * i);
     return bits;
 }
 
-// Down the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
+// Traverses the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
 DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) nodes) {
     Visits levels[2];
     uint near[GROUP_VISITS];
@@ -83,7 +83,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
         below->count = 0u;
         for (uint i = 0u; i < visits->count; ++i)
             near[i] = ((full >> visits->who[i]) & 1u) != 0u
-                          ? 0u // in vain, and in the way of others
+                          ? 0u // it would take the room of others
                           : children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
         for (uint i = 0u; i < visits->count; i += 4u) {
             ulong left = four_sixteens(near, i, visits->count);
@@ -93,7 +93,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
                     full |= near[j] != 0u ? 1u << visits->who[j] : 0u;
                 continue;
             }
-            // Written to both, and kept in one: which it is, is hard to guess.
+            // Written to both lists and counted in one: a branch would be hard to predict.
             for (; left != 0u; left &= left - 1u) {
                 const uint bit = lowest_bit_of_long(left), j = i + bit / 16u, lane = bit % 16u;
                 const uint run = visits->who[j], node = visits->at[j];
@@ -112,8 +112,8 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
     return full;
 }
 
-// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. For lanes that
-// children_in() let through only: the box of an empty one would come out the right way round.
+// A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. Only for lanes that
+// children_in() found: an empty lane's inverted box would count as a valid one here.
 DEVICE uint rays_that_meet(const RayGroup* group, READS(Node) node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
@@ -145,7 +145,7 @@ DEVICE uint traverse_group(Closest* closest, const RayGroup* group, READS(Node) 
         const uint meets = rays_that_meet(group, nodes + near.node[i], near.lane[i]);
         near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
     }
-    // Of a fine mesh the leaves lie beyond the caches.
+    // The leaves of a fine mesh do not fit the caches.
     for (uint i = 0u; i < near.count; ++i) {
         if (near.meets[i] == 0u) continue;
         for (uint j = 0u; j < 9u; ++j) PREFETCH((GLOBAL const float*)(blocks + near.block[i]), TRIANGLE_LANES * j);

@@ -12,7 +12,7 @@ STRUCT(RayFrame) {
     float inverse[3]; // 1 / direction, huge instead of infinite
 };
 
-// Closest hits so far. `limit` bounds what can still change the outcome.
+// Closest hits so far. Hits beyond `limit` cannot change the outcome.
 STRUCT(Closest) {
     float back, front; // distances of the closest face met from inside, from outside
     uint back_triangle;
@@ -25,8 +25,8 @@ DEVICE float safe_inverse(float d) {
     return 1.0f / (magnitude_of(d) < tiny ? least : d);
 }
 
-// Axes of a frame: z where the direction is largest, the winding kept. Found without a branch: where a ray points is as
-// good as random, and a wrong guess costs more than it all.
+// Axes of a frame: z where the direction is largest; the winding is kept. Found without a branch: directions are as
+// good as random, and a misprediction costs more than the computation.
 STRUCT(Axes) {
     uint x, y, z;
 };
@@ -45,7 +45,7 @@ DEVICE Axes axes_of(uint z, float along, const bool mirrored) {
     return axes;
 }
 
-// opposite: the frame of the opposite ray, as if seen in a mirror, so that faces keep the side that they show.
+// opposite: the mirrored frame of the opposite ray, so that each face counts as front or back as it does for the ray.
 DEVICE RayFrame frame_ray(const float* p, const float* d, const bool opposite) {
     RayFrame ray;
     const float sign = opposite ? -1.0f : 1.0f, v[3] = {sign * d[0], sign * d[1], sign * d[2]};
@@ -71,12 +71,12 @@ DEVICE float cross_accurate(float a, float b, float c, float d) {
     return (p - q) + (product_error(a, b, p) - product_error(c, d, q));
 }
 
-// Edge functions of a triangle as the ray sees it: of no two signs where the ray's line passes through it.
+// Edge functions of a triangle in a ray's frame: no two have opposite signs if the ray's line passes through it.
 STRUCT(Edges) {
     float u, v, w;
 };
 
-// Of sheared corners.
+// From sheared corners.
 DEVICE Edges edges_of(float x0, float y0, float x1, float y1, float x2, float y2) {
     const Edges edges = {cross_accurate(x2, y1, y2, x1), cross_accurate(x0, y2, y0, x2),
                          cross_accurate(x1, y0, y1, x0)};
@@ -87,12 +87,12 @@ DEVICE float area_of(const Edges edges) {
     return (edges.u + edges.v) + edges.w;
 }
 
-// With accurate barycentrics, so that the distance found lies in every box that holds the triangle.
+// With accurate barycentrics, so that the distance found lies in every box that contains the triangle.
 DEVICE float distance_of(const Edges edges, float az, float bz, float cz, float shear_z) {
     return ((edges.u * az + edges.v * bz + edges.w * cz) / area_of(edges)) * shear_z;
 }
 
-// A face met from outside a hair behind the origin still counts: the origin may be outside. From inside it does not.
+// A face met from outside counts up to `tolerance` behind the origin: the origin may be outside. A back face does not.
 DEVICE void accept_hit(Closest* closest, float t, bool back, uint triangle, float tolerance) {
     if (t < (back ? 0.0f : -tolerance) || t > closest->limit) return;
     if (back) {
@@ -122,7 +122,7 @@ DEVICE Corners corners_of(const RayFrame* ray, READS(TriangleBlock) block, uint 
     return at;
 }
 
-// One lane again, closely.
+// Tests one lane exactly.
 DEVICE void hit_lane(Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, uint lane, float tolerance,
                      const bool by_distance) {
     const Corners at = corners_of(ray, block, lane);
@@ -138,11 +138,11 @@ DEVICE void hit_lane(Closest* closest, const RayFrame* ray, READS(TriangleBlock)
     accept_hit(closest, distance_of(e, z[0], z[1], z[2], ray->shear[2]), back, block->triangle[lane], tolerance);
 }
 
-// Sixteen triangles at once: through which may the ray's line pass? Through those whose edge functions do not have both
-// signs; two products and one minimum tell. If a product is 0 or underflows, the lane passes and hit_lane() decides.
-// by_distance: also leaves out lanes whose corners are all behind the ray, or all too far, by more than rounding could
-// hide (a hit is a mean of its corners). That pays where the block is near; where every block is tried, few lanes get
-// so far.
+// Tests sixteen triangles at once: the ray's line may pass through those whose edge functions do not have both signs;
+// two products and one minimum decide. If a product is 0 or underflows, the lane passes and hit_lane() decides.
+// by_distance: also rejects lanes whose corners are all behind the ray, or all too far, by more than rounding could
+// hide (a hit is a mean of its corners). That pays if the block is near; if every block is tested, few lanes get so
+// far.
 DEVICE uint hit_block(const Closest* closest, const RayFrame* ray, READS(TriangleBlock) block, float tolerance,
                       const bool by_distance) {
     READS(float) ax = (block->corner + ray->axis[0])[0];

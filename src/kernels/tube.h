@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The neighbourhood of a ray, up to a little behind what it met: which triangle is nearest, and how far all others are.
+// The neighbourhood of a ray, up to a little behind its hit: the nearest triangle, and the distance of all others.
 
 STRUCT(Tube) {
     float origin[3];
@@ -16,12 +16,12 @@ STRUCT(Neighbours) {
     uint triangle_lane;
 };
 
-// To `end`, in lengths of the ray's direction.
+// end: in lengths of the ray's direction.
 DEVICE Tube tube_of(const SourceRay* ray, float end, float radius) {
     Tube tube;
     tube.radius = radius;
     const float* d = ray->direction;
-    // Rotations are rigid to 1e-4 only: not quite of unit length, and distances count in lengths of it.
+    // Rotations are rigid only to 1e-4: the direction is not quite a unit vector, and distances count in its lengths.
     const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
     for (int i = 0; i < 3; ++i) {
         tube.origin[i] = ray->position[i];
@@ -45,7 +45,7 @@ DEVICE Tube tube_of(const SourceRay* ray, float end, float radius) {
     return tube;
 }
 
-// How far the origin is from a triangle of the plane along the normal of its edge from a to b; c is the third corner.
+// Separation of the origin from a 2D triangle along the normal of its edge from a to b; c is the third corner.
 DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv) {
     const float nu = bv - av, nv = au - bu, n2 = nu * nu + nv * nv;
     const float scale = n2 > 1.0e-30f ? 0.9999f / root_of(n2) : 0.0f;
@@ -54,8 +54,8 @@ DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv
     return low > -high ? low : -high;
 }
 
-// No triangle is nearer to the axis than along a direction that separates them: the axis, the triangle's normal, and,
-// seen along the axis, the normals of its edges. Any direction will do, so that rounding one does no harm.
+// A triangle is at least as far from the axis as along any separating direction. It tries the axis, the triangle's
+// normal and, seen along the axis, the normals of its edges. Any direction is valid, so rounding one does no harm.
 DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlock) block, uint index) {
     float apart[TRIANGLE_LANES];
     int nearer[TRIANGLE_LANES];
@@ -96,7 +96,7 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlo
         const float gap = (above > below ? above : below) * scale;
         best = gap > best ? gap : best;
         apart[k] = best;
-        nearer[k] = -(int)(best < bound); // not NaN, of empty lanes
+        nearer[k] = -(int)(best < bound); // false for NaN, in empty lanes
     }
     for (uint left = pack_sixteen(nearer); left != 0u; left &= left - 1u) {
         const uint lane = lowest_bit(left);
@@ -110,7 +110,7 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlo
     }
 }
 
-// Of all triangles in the tube.
+// Searches all triangles in the tube.
 DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(Node) nodes,
                                    READS(TriangleBlock) blocks) {
     Neighbours found;

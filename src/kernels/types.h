@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What crosses the bus: structs of scalars with checked sizes, offsets instead of pointers.
+// The structs in device buffers: scalars only, sizes checked, offsets instead of pointers.
 
-// Pointers into buffers where nothing else points: to what is read, and to what is written (and may be read).
+// Pointers into buffers, without aliases: to data that is only read, and to data that is written (and may be read).
 #define READS(type) GLOBAL const type* RESTRICT
 #define WRITES(type) GLOBAL type* RESTRICT
 
@@ -18,20 +18,21 @@
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
-// A word of a clearance grid: bits 0 to 14 the cell in whose middle a ball without surface lies, relative to its own,
-// plus CLEARANCE_OFFSET; bit 15: the ball is outside; the rest its radius in steps, CLEARANCE_STEPS a cell.
+// A word of a clearance grid: a ball that contains no surface. Bits 0 to 14: the cell of its middle, relative to the
+// word's cell, plus CLEARANCE_OFFSET. Bit 15: it is outside. The rest: its radius in steps, CLEARANCE_STEPS a cell.
 #define CLEARANCE_OFFSET 16
 #define CLEARANCE_OUTSIDE 0x8000u
 #define CLEARANCE_STEPS 2048
 
-// Items that one kernel adds up; more take three.
+// One kernel scans up to so many items; more take three kernels.
 #define SCAN_AT_ONCE 65536u
 #define MOST_COLUMNS 4
 
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
-// Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which no test passes.
-// cap: radii of the two balls in which all triangles face alike (cap.h), the narrow angle's in the lower half; 0: none.
+// Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which fails every
+// test. cap: radii of the two balls in which all normals are close to the triangle's (cap.h), the narrow angle's in the
+// lower half; 0: none.
 STRUCT(TriangleBlock) {
     float corner[9][TRIANGLE_LANES];
     uint triangle[TRIANGLE_LANES];
@@ -39,8 +40,8 @@ STRUCT(TriangleBlock) {
 };
 WIRE_SIZE(TriangleBlock, 704);
 
-// Sixteen child boxes, already grown by the rounding that a ray test can suffer (docs/design.md). bounds[axis] are the
-// lower, bounds[3 + axis] the upper planes. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
+// Sixteen child boxes, grown by the rounding error of a ray test (docs/design.md). bounds[axis] are the lower planes,
+// bounds[3 + axis] the upper ones. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
 STRUCT(Node) {
     float bounds[6][NODE_LANES];
     uint child[NODE_LANES];
@@ -49,7 +50,7 @@ STRUCT(Node) {
 };
 WIRE_SIZE(Node, 512);
 
-// Sixteen vertices that cast rays. direction is the inward normal; exit the distance at which it leaves its own mesh.
+// Sixteen vertices that cast rays. direction: the inward normal. exit: distance at which the ray leaves its own mesh.
 STRUCT(VertexBlock) {
     float position[3][VERTEX_LANES];
     float direction[3][VERTEX_LANES];
@@ -77,7 +78,7 @@ STRUCT(ShapeHeader) {
     uint cluster_levels;
     uint normal_first;
     uint closed;
-    uint outward;      // closed, and wound once around its inside: a vertex beyond its surface cannot touch
+    uint outward;      // closed, winding number 1 inside, 0 outside: a vertex outside cannot touch
     float tolerance;   // metres: distances of two hits closer than this are not told apart
     uint grid_first;   // words of outside_cells, a bit for each cell, x fastest
     uint grid_size[3]; // cells; 0: no grid
@@ -90,7 +91,7 @@ STRUCT(ShapeHeader) {
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
-    uint caps_pay;                             // most triangles have caps: it pays to ask them
+    uint caps_pay;                             // most triangles have caps: it pays to test them
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
 };
@@ -144,8 +145,8 @@ STRUCT(Candidate) {
 };
 WIRE_SIZE(Candidate, 8);
 
-// How a pair's rays ended: candidates kept for the next step, of them without contact; walks, of them lost, of those
-// cast in full.
+// How a pair's rays ended. kept: candidates for the next step; predictions: those of them without contact. walks; lost:
+// those that ended nowhere; cast: those of the lost that were cast in full.
 STRUCT(Followed) {
     uint kept;
     uint predictions;
@@ -155,8 +156,8 @@ STRUCT(Followed) {
 };
 WIRE_SIZE(Followed, 20);
 
-// A vertex block that its pair watches. lanes: vertices that could be in contact, whose rays are decided in each step;
-// the others cannot before the pair's clock exceeds `wake`.
+// A vertex block that its pair watches. lanes: vertices that could be in contact; their rays are decided in each step.
+// The others cannot be in contact before the pair's clock exceeds `wake`.
 STRUCT(Watch) {
     uint vertex_block; // absolute
     float wake;        // metres
@@ -164,8 +165,8 @@ STRUCT(Watch) {
 };
 WIRE_SIZE(Watch, 12);
 
-// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: what its clock shows, metres. margin:
-// metres of rounding that a certificate must exceed.
+// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: its clock, metres. margin: the rounding
+// that a certificate must exceed, metres.
 STRUCT(Segment) {
     uint pair;
     uint first, count;
@@ -174,8 +175,8 @@ STRUCT(Segment) {
 };
 WIRE_SIZE(Segment, 20);
 
-// What looking at a segment found. wake: the least of its watches. blocks: looked at. rays: those to be decided.
-// casting: a bit for each watch that has any.
+// The result of testing a segment's watches. wake: the least of theirs. blocks: number tested. rays: number to be
+// decided. casting: a bit for each watch that has rays.
 STRUCT(LookResult) {
     uint casting;
     float wake;
@@ -184,22 +185,22 @@ STRUCT(LookResult) {
 };
 WIRE_SIZE(LookResult, 16);
 
-// What is known of a ray. In a tube one triangle decides it, or none, while no point of it has moved by `safe`. Without
-// a tube it is asked of its triangle's cap, if of any, or cast. Lengths along the ray count in lengths of its
-// direction.
+// What is kept of a ray between steps. With a tube, one triangle or none decides it while no point of it has moved by
+// `safe`. Without a tube, its triangle's cap is tested, if it has one; else it is cast. Lengths along the ray count in
+// lengths of its direction.
 STRUCT(Held) {
     uint vertex_lane;  // VERTEX_LANES * vertex block + lane
     uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
     float safe;        // metres; 0: it has no tube
-    float limit;       // along the ray: where its tube ends; of one without, steps until it is sought again
-    float position[3]; // when the tube was sought
+    float limit;       // along the ray: where its tube ends; without a tube: steps until the next search
+    float position[3]; // at the tube search
     float direction[3];
 };
 WIRE_SIZE(Held, 40);
 
-// The held rays of a directed pair: first, count: those of the last step, in the array of Held; now_first: where those
-// of this step begin. margin: metres of rounding. radius: of tubes to seek, metres; 0: none, the pair is too fast.
-// tests_caps: 1: rays test the caps of the target.
+// The rays kept of a directed pair. first, count: those of the last step, in the array of Held; now_first: where those
+// of this step begin. margin: metres of rounding. radius: of the tubes to search, metres; 0: none, the pair is too
+// fast. tests_caps: 1: rays test the caps of the target.
 STRUCT(HeldRange) {
     uint first, count; // Held
     uint now_first;
@@ -225,9 +226,9 @@ STRUCT(Hit) {
 };
 WIRE_SIZE(Hit, 16);
 
-// What a scan leaves. items: the number of items whose results are to be written; 0 if there are no results or no room.
-// results: the number of results; 0 if there is no room. sums: of the columns, whether or not there is room; NONE if 32
-// bits cannot hold one.
+// The results of a scan. items: the number of items whose results are to be written; 0 if there are no results or no
+// room. results: the number of results; 0 if there is no room. sums: of the columns, whether or not there is room; NONE
+// if 32 bits cannot hold one.
 STRUCT(Totals) {
     uint items;
     uint results;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices of a block as the target sees them: VERTICES_AT_ONCE of them, from one on.
+// VERTICES_AT_ONCE vertices of a block, in the target's frame.
 
 STRUCT(InsideLanes) {
     float x[VERTICES_AT_ONCE], y[VERTICES_AT_ONCE], z[VERTICES_AT_ONCE]; // target frame
     int inside[VERTICES_AT_ONCE];                                        // -1 or 0
 };
 
-// Vertices inside the bounds, exactly as the ray will see them.
+// Vertices inside the bounds; their positions have the bits that source_ray() gives.
 DEVICE InsideLanes inside_lanes(READS(DirectedPair) pair, READS(VertexBlock) block, uint first) {
     InsideLanes found;
     float r[9], t[3], b[6];

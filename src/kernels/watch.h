@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified method (docs/certified.md): a pair watches the vertex blocks near its target. Each is looked at only
-// once the pair has moved as far as its nearest vertex was from touching: its vertices are asked of the target's balls,
-// which of them could be in contact, and until when the others may sleep. The bounds are asked of each ray (hold.h).
+// The certified method (docs/certified.md): a pair watches the vertex blocks near its target. A block is tested only
+// once the pair has moved as far as the block's nearest vertex was from touching. The target's clearance grid then
+// tells which of its vertices could be in contact, and until when the others may sleep. hold.h tests the bounds.
 
-#define AWAKE (-1.0f)              // of Watch.wake: to be looked at in the next step
+#define AWAKE (-1.0f)              // Watch.wake of a block to be tested in the next step
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 #define LOOKS_TOGETHER 4
 
-// A new list. Blocks that are clearly outside sleep at once, the others are looked at in the step that made the list.
-// places, margins: by pair.
+// Begins a new list. Blocks that are clearly outside sleep at once, the others are tested in the step that made the
+// list. places, margins: by pair.
 KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
                           READS(uint) clearances, READS(float) margins, READS(PairBlock) near_blocks,
                           READS(uint) firsts, READS(uint) places, WRITES(Watch) watches) {
@@ -26,7 +26,7 @@ KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHe
     }
 }
 
-// What looks at watches read and write.
+// What testing watches reads and writes.
 STRUCT(Looking) {
     READS(DirectedPair) pairs;
     READS(ShapeHeader) shapes;
@@ -35,16 +35,16 @@ STRUCT(Looking) {
     READS(Segment) segments;
     WRITES(Watch) watches;
     WRITES(LookResult) looks;
-    WRITES(uint) rays; // of each look
+    WRITES(uint) rays; // by segment
 };
 
-// What a block has to say: in a segment it is number `bit`.
+// The result of a block, number `bit` of its segment.
 DEVICE LookResult look_of(uint lanes, float wake, uint bit, uint blocks) {
     const LookResult found = {(uint)(lanes != 0u) << bit, wake, blocks, bit_count(lanes)};
     return found;
 }
 
-// What several looks found together.
+// The sum of two results.
 DEVICE LookResult add_looks(LookResult sum, const LookResult more) {
     sum.wake = more.wake < sum.wake ? more.wake : sum.wake;
     sum.blocks += more.blocks;
@@ -58,8 +58,8 @@ DEVICE void add_to_segment(const Looking* in, uint s, const LookResult found) {
     in->rays[s] = in->looks[s].rays;
 }
 
-// A block that is due. The words of its cells are not near: a grid is large, or the caches went to others since the
-// last step. So looks wait for each other: what one reads is under way while others are done.
+// A block that is due. The words of its cells are seldom in a cache: a grid is large, and other data has filled the
+// caches since the last step. So several blocks are collected: the words of one are fetched while others are tested.
 STRUCT(DueBlock) {
     uint segment, watch;
     InsideLanes placed;
@@ -81,11 +81,11 @@ DEVICE LookResult look_at_block(const Looking* in, const DueBlock* look) {
     }
     const uint lanes = pack_sixteen(unsafe);
     float least = least_of_sixteen(others) - segment.margin;
-    // Vertices that cast are asked again after a while whether they still must.
+    // Vertices that cast are tested again after a while: they may no longer need to.
     const float again = REFRESH_TOLERANCES * target->tolerance;
     if (lanes != 0u && least > again) least = again;
     watch->lanes = lanes;
-    // Never asleep, whichever way the clock was rounded.
+    // AWAKE is never asleep, however the clock was rounded.
     watch->wake = least > 0.0f ? segment.now + least : AWAKE;
     return look_of(lanes, watch->wake, look->watch - segment.first, 1u);
 }
@@ -95,7 +95,7 @@ DEVICE_BATCH void look_together(const Looking* in, DueBlock* waiting, uint count
         DueBlock* look = waiting + k;
         READS(DirectedPair) pair = in->pairs + in->segments[look->segment].pair;
         look->placed = inside_lanes(pair, in->vertices + in->watches[look->watch].vertex_block, 0u);
-        send_for_words(&look->placed, in->shapes + pair->target, in->clearances);
+        prefetch_words(&look->placed, in->shapes + pair->target, in->clearances);
     }
     for (uint k = 0u; k < count; ++k) add_to_segment(in, waiting[k].segment, look_at_block(in, waiting + k));
 }
@@ -116,7 +116,7 @@ KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(Shape
                 found = add_looks(found, look_of(watches[i].lanes, watches[i].wake, i - segment.first, 0u));
                 continue;
             }
-            // All of the block: what a look leaves its rays will read.
+            // Prefetches the whole block: its rays will read what this test does not.
             READS(VertexBlock) block = vertices + watches[i].vertex_block;
             for (uint line = 0u; line < 8u; ++line) PREFETCH(block->position[0], VERTEX_LANES * line);
             waiting[waits].segment = s;

@@ -30,7 +30,7 @@ std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles) {
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<Triangle> neighbours(triangles.size(), Triangle{none, none, none});
     for_each_edge(sorted_half_edges(triangles), [&](std::span<const HalfEdge> sides) {
-        // Corners ascend, so the lowest triangle comes first; it alone looks further, for the lowest after itself.
+        // Corners ascend, so the lowest triangle comes first. Its neighbour is the second lowest.
         const std::uint32_t lowest = sides[0].triangle();
         const auto other = std::ranges::find_if(sides, [&](const HalfEdge& s) { return s.triangle() != lowest; });
         const std::uint32_t second = other == sides.end() ? none : other->triangle();

@@ -40,7 +40,7 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// How triangles hang together.
+/// Whether the mesh is closed, manifold and oriented, and its number of components.
 void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std::span<const HalfEdge> edges) {
     report.closed = report.manifold = report.oriented = true;
     // Corners of triangles that follow each other around a vertex end in one set: a fan.
@@ -58,7 +58,7 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
         }
         report.closed = report.closed && sides.size() % 2 == 0;
         report.manifold = report.manifold && sides.size() <= 2;
-        // As many one way as the other; of an odd number one is left over. A border has nothing to agree with.
+        // As many sides run one way as the other; of an odd number one is left over. A border always agrees.
         report.oriented = report.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
         components.unite(sides[0].lo, sides[0].hi);
     });

@@ -8,10 +8,10 @@
 
 namespace raycontact {
 
-/// Throws InputError, which calls the mesh by `name`, where it is empty, too large, not finite or out of range.
+/// Throws InputError, which calls the mesh `name`, if it is empty, too large, not finite or out of range.
 void check_mesh(const Mesh& mesh, const std::string& name);
 
-/// All of the report but its repairs and the counts of the file. The hierarchy is over snapped vertices.
+/// Fills the report, except its repairs and the counts of the file. The hierarchy is over snapped vertices.
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
                  std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh);
 

@@ -22,7 +22,7 @@ std::string printable(std::string_view text) {
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 24;
     std::string out(text.substr(0, longest));
-    // Bytes of a damaged file need not be UTF-8, and JSON or a terminal would trip over them.
+    // Bytes of a damaged file need not be UTF-8, which JSON and terminals expect.
     std::ranges::replace_if(
         out, [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
     return "'" + out + (text.size() > longest ? "...'" : "'");

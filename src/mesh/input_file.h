@@ -15,27 +15,27 @@
 
 namespace raycontact {
 
-/// A whole file in memory, and the way its readers complain: one line that names the file.
+/// A whole file in memory. Its readers report errors in one line that names the file.
 struct InputFile {
     std::filesystem::path path;
     std::string shown; ///< the path, fit for a message
     std::string bytes;
 
-    /// Throws InputError unless it is an ordinary file that can be read and holds something.
+    /// Throws InputError unless it is an ordinary file that can be read and is not empty.
     static InputFile read(const std::filesystem::path& path);
     [[noreturn]] void fail(const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };
 
-/// Text from a file, cut to a length and freed of control characters, in quotes.
+/// Text from a file in quotes, cut to a length, without control characters.
 std::string in_quotes(std::string_view text);
 /// The same for a whole path or a library's message: one line, no quotes, not cut.
 std::string printable(std::string_view text);
 
-/// A complaint about an index, at a place that the caller names.
+/// An error message about an index; the caller names the place.
 std::string no_vertex(std::int64_t index, std::size_t vertex_count);
 
-// One reader a format; each throws InputError as load_mesh says. The name is set by load_mesh.
+// One reader a format; each throws InputError as documented at load_mesh, which sets the mesh's name.
 Mesh read_obj(const InputFile& file);
 Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
@@ -57,7 +57,7 @@ T read_bytes(const char* at, bool little_endian = true) {
     return std::bit_cast<T>(raw);
 }
 
-/// How a binary file stores a kind of number. A double holds every value of all kinds.
+/// How a binary file stores a kind of number. A double can represent every value of all kinds.
 struct NumberType {
     std::size_t size;
     bool whole;

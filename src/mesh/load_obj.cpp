@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own reader: tinyobjloader reads `v 1 abc nan` as 1 0 0 without a word, and names no line for a damaged face. The
-// tests compare with it on sound files.
+// Our own reader: tinyobjloader reads `v 1 abc nan` as 1 0 0 without an error, and names no line for a damaged face.
+// The tests compare with it on valid files.
 #include "mesh/text_scanner.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace raycontact {
 namespace {
 
-// What the format knows besides `v` and `f`. A word outside it is damage: a lost `v` would shift every index after it.
+// The format's statements besides `v` and `f`. Any other word is damage: a lost `v` would shift every index after it.
 constexpr auto other_statements = std::to_array<std::string_view>(
     {"vt",   "vn",    "vp",       "cstype",   "deg",  "bmat",       "step",      "p",      "l",      "curv", "curv2",
      "surf", "parm",  "trim",     "hole",     "scrv", "sp",         "end",       "con",    "g",      "s",    "mg",
@@ -77,7 +77,7 @@ private:
         return vertex;
     }
 
-    // Texture and normal indices are not used, but one that is no number is damage.
+    // Texture and normal indices are not used, but one that is not a number is damage.
     void check_others(std::string_view rest) {
         const std::size_t slash = rest.find('/');
         const std::string_view texture = rest.substr(0, slash);
@@ -89,7 +89,7 @@ private:
     TextScanner scanner_;
     Mesh mesh_;
     std::vector<std::uint32_t> corners_;
-    /// Vertices that come later in the file than a face that names them, which is legal; with the line of the face.
+    /// Vertices that come later in the file than a face that uses them, which is legal; with the line of the face.
     std::vector<std::pair<std::uint32_t, std::size_t>> forward_;
 };
 

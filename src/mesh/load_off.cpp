@@ -31,7 +31,7 @@ Mesh read_off(const InputFile& file) {
     TextScanner scanner(file);
     scanner.comment = '#';
     check_header(scanner);
-    // The shortest vertex or face line has six characters (`0 0 0\n`): no count may promise more than the file holds.
+    // The shortest vertex or face line has six characters (`0 0 0\n`): no count may exceed what the file can contain.
     const auto limit = static_cast<std::int64_t>(file.bytes.size() / 6 + 1);
     const std::int64_t vertices = read_count(scanner, scanner.word(), "vertex count", limit);
     const std::int64_t faces = read_count(scanner, scanner.word_on_line(), "face count", limit);

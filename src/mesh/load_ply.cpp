@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements in silence.
+// Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements without an error.
 #include "mesh/text_scanner.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Element {
     std::string name;
     std::uint64_t count = 0;
     std::vector<Property> properties;
-    /// The properties that are read, all others being skipped: x, y and z of a vertex; the list of corners of a face.
+    /// The properties that are read: x, y and z of a vertex; the list of corners of a face. All others are skipped.
     static constexpr std::size_t none = ~std::size_t{0}, corners = 3;
     std::array<std::size_t, 4> used{none, none, none, none};
 };
@@ -215,7 +215,7 @@ private:
     bool ascii_ = true;
     bool little_endian_ = true;
     std::size_t at_ = 0;       ///< next byte of a binary file
-    std::string name_;         ///< of the element at hand
+    std::string name_;         ///< of the current element
     std::uint64_t record_ = 0; ///< in it
     std::vector<Element> elements_;
     std::vector<std::uint32_t> corners_;

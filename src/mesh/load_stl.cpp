@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp welds and reorders vertices by its own rules, keeps text coordinates as float32 and accepts
-// truncated files in silence.
+// truncated files without an error.
 #include "mesh/text_scanner.h"
 #include "mesh/vector.h"
 
@@ -52,7 +52,7 @@ private:
         if (same(word, "endsolid")) return false;
         if (!same(word, "facet")) complain(word, "facet or endsolid");
         expect("normal");
-        // The winding says what the normal says, and exporters write nan for slivers: the numbers are not looked at.
+        // The numbers are not read: the winding gives the normal, and exporters write nan for slivers.
         for (int i = 0; i < 3; ++i) {
             if (scanner_.word().empty()) complain({}, "a normal");
         }

@@ -21,9 +21,9 @@ Box box_of(std::span<const Vec3> points) {
 }
 
 // Sums over the tetrahedra (q, a, b, c), q near the mesh so that nothing cancels far from the origin. Seen from q, with
-// s = a + b + c, the integral of x over one is volume / 4 * s, that of x x^T is
-// volume / 20 * (s s^T + a a^T + b b^T + c c^T). The volume is the one that reports show; the centre is a quotient of
-// plain sums, on whose bits the procedural meshes rest.
+// s = a + b + c, the integral of x over one is volume / 4 * s, that of x x^T is volume / 20 * (s s^T + a a^T + b b^T +
+// c c^T). The volume is the one that reports show; the centre is a quotient of plain sums, since the procedural meshes
+// depend on its bits.
 Mass mass_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     Mass mass;
     if (triangles.empty()) return mass;

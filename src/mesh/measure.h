@@ -7,7 +7,7 @@
 
 namespace raycontact {
 
-/// A sum in twice the precision of double (after Knuth), so that the order of its terms does not show.
+/// A sum in twice the precision of double (after Knuth), so that the order of its terms does not matter.
 class LongSum {
 public:
     void add(double x);

@@ -21,8 +21,8 @@ double random(std::uint32_t& state) { // -1 to 1, the same on every machine
     return static_cast<double>(state >> 8) / 8388608.0 - 1;
 }
 
-/// How a ray crosses a triangle whose corners are given from its origin: the sign of the crossing, or 0. Where rounding
-/// could decide otherwise, `clear` becomes false.
+/// How a ray crosses a triangle whose corners are relative to the ray's origin: the sign of the crossing, or 0. If
+/// rounding could change that, `clear` becomes false.
 int cross_triangle(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c, bool& clear) {
     const double reach_a = length(a), reach_b = length(b), reach_c = length(c);
     const double speed = 1e-14 * length(direction);
@@ -46,9 +46,8 @@ int cross_triangle(const Vec3& direction, const Vec3& a, const Vec3& b, const Ve
     return along > 0 ? 1 : -1;
 }
 
-/// All other triangles that one ray from the middle of a triangle into the space in front of it crosses. Directions are
-/// tried until one keeps clear, by more than rounding, of every edge and of surface at its origin; false when none
-/// does.
+/// Finds all other triangles that a ray from the middle of a triangle crosses in the space in front of it. Tries
+/// directions until one is clear, by more than rounding, of every edge and of surface at its origin; false if none is.
 bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& bvh, std::vector<Crossing>& crossings) {
     const auto corners = [&](std::uint32_t t) {
         const auto [a, b, c] = mesh.triangles[t];
@@ -78,8 +77,8 @@ bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& 
     return false;
 }
 
-/// The triangles of each patch that reach furthest along each axis, either way: where a patch that pokes out of another
-/// is not inside it, one of them usually shows it. By place, not by index, so the order of a file does not matter.
+/// The triangles of each patch that reach furthest along each axis, either way: if a patch pokes out of another, one of
+/// them usually shows that it is not inside. By place, not by index, so the order of a file does not matter.
 std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& mesh, const Patches& patches) {
     std::vector<std::array<std::uint32_t, 6>> extremes(patches.list.size());
     for (std::size_t p = 0; p < extremes.size(); ++p) extremes[p].fill(patches.list[p].first);
@@ -98,8 +97,8 @@ std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& 
     return extremes;
 }
 
-/// Whether an odd number of closed patches is around every given triangle of a patch: those that rays from there cross
-/// an odd number of times.
+/// Whether an odd number of closed patches surrounds every given triangle of a patch. A patch surrounds a triangle if a
+/// ray from there crosses it an odd number of times.
 bool is_cavity(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh, const Patches& patches,
                const TriangleBvh& bvh) {
     std::vector<std::uint32_t> around;
@@ -144,9 +143,9 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
 }
 
 // The winding number changes by one across every triangle and nowhere else. Without self-intersections the space right
-// in front of a patch is connected and crosses no triangle (a patch goes on only over edges that have no third
-// triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, speaks for all space
-// next to the surface; and every region of space is next to some.
+// in front of a patch is connected and crosses no triangle (a patch continues only across edges that have no third
+// triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, represents all space
+// next to the surface; and every region of space is next to some surface.
 bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
     std::vector<std::uint32_t> largest(patches.list.size());
     std::vector<double> area(patches.list.size(), 0);

@@ -10,12 +10,12 @@
 
 namespace raycontact {
 
-/// For each patch whether it must be turned, its windings having been made to agree: a closed patch inside an even
-/// number of others should enclose a positive volume (an outer surface), inside an odd number a negative one (a
-/// cavity). Patches that are open, not orientable or without volume are left alone.
+/// Whether each patch must be turned, once its windings agree: a closed patch inside an even number of others should
+/// enclose a positive volume (an outer surface), inside an odd number a negative one (a cavity). Patches that are open,
+/// not orientable or without volume stay as they are.
 std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh);
 
-/// Of a closed, oriented mesh without self-intersections: whether its winding number is 0 outside and 1 inside
+/// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.
 bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh);
 

@@ -19,8 +19,8 @@
 namespace raycontact {
 namespace {
 
-/// For each item the lowest index of an equal one, linear: -0 and 0 are made one beforehand. Open addressing; items are
-/// met in order, so the first of its kind is the lowest. No result depends on the hash.
+/// The lowest index of an equal item, for each item, in linear time; -0 and 0 must have been made equal. Open
+/// addressing; items are visited in order, so the first of its kind is the lowest. No result depends on the hash.
 template <class Item>
 std::vector<std::uint32_t> lowest_equal(const std::vector<Item>& items) {
     constexpr std::uint32_t empty = 0xffffffffu;
@@ -49,7 +49,7 @@ PreparedMesh weld(const Mesh& mesh) {
     return prepared;
 }
 
-/// A vertex named twice, or all three on one line, exactly.
+/// Whether a vertex occurs twice or all three lie on one line, exactly.
 bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
     const auto [a, b, c] = triangle;
     return a == b || b == c || c == a || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
@@ -59,7 +59,7 @@ std::string counted(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// Drops the triangles for which drop(i) holds, and says how many.
+/// Drops the triangles for which drop(i) holds, and reports how many.
 template <class Drop>
 void drop_triangles(PreparedMesh& prepared, const char* kind, Drop&& drop) {
     std::size_t kept = 0;
@@ -74,18 +74,18 @@ void drop_triangles(PreparedMesh& prepared, const char* kind, Drop&& drop) {
     if (kept < before) prepared.report.repairs.push_back("dropped " + counted(before - kept, kind));
 }
 
-/// Degenerate triangles, and those with the vertices and the winding of an earlier one.
+/// Drops degenerate triangles, and those with the vertices and the winding of an earlier one.
 void drop_useless(PreparedMesh& prepared, std::span<const Vec3> vertices) {
     std::vector<Triangle>& triangles = prepared.triangles;
     drop_triangles(prepared, "degenerate triangle",
                    [&](std::size_t i) { return is_degenerate(triangles[i], vertices); });
-    std::vector<Triangle> turned(triangles); // so that the lowest vertex comes first
+    std::vector<Triangle> turned(triangles); // rotated so that the lowest vertex comes first
     for (Triangle& t : turned) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     const std::vector<std::uint32_t> lowest = lowest_equal(turned);
     drop_triangles(prepared, "duplicate triangle", [&](std::size_t i) { return lowest[i] != i; });
 }
 
-/// From file vertices to the distinct ones in use.
+/// Replaces file vertices by the distinct ones in use.
 void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
     for (const Triangle& t : prepared.triangles) {
@@ -102,8 +102,8 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
-/// Makes the windings of each orientable patch agree, the fewer following the more, then turns closed patches whose
-/// winding contradicts their nesting.
+/// Makes the windings of each orientable patch agree with the majority, then turns closed patches whose winding
+/// contradicts their nesting.
 void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);

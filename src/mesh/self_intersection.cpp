@@ -26,7 +26,7 @@ bool segments_meet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, s
     const int a_side = orient2d(c, d, a, drop), b_side = orient2d(c, d, b, drop);
     if (a_side * b_side > 0) return false;
     if (c_side != 0 || d_side != 0 || a_side != 0 || b_side != 0) return true;
-    // All on one line: their extents must overlap along both axes that are left.
+    // All on one line: their extents must overlap along both remaining axes.
     for (const std::size_t k : {(drop + 1) % 3, (drop + 2) % 3}) {
         const auto [low1, high1] = std::minmax({axis(a, k), axis(b, k)});
         const auto [low2, high2] = std::minmax({axis(c, k), axis(d, k)});
@@ -55,9 +55,9 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, int p_side, int q_side
     return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
 }
 
-/// Closed triangles that share no corner (`shared` 0), or their corner 0 (1). Where they meet, an edge of one meets the
-/// other: the common segment ends on an edge, and of coplanar ones the boundaries cross or one holds the other. What
-/// they have in common besides corner 0 is convex with it, so it reaches an opposite edge.
+/// Closed triangles that share no corner (`shared` 0), or their corner 0 (1). If they meet, an edge of one meets the
+/// other: the common segment ends on an edge; if they are coplanar, the boundaries cross or one contains the other.
+/// What they have in common besides corner 0 is convex with it, so it reaches an opposite edge.
 bool edges_meet(const Corners& a, const Corners& b, std::size_t shared) {
     const auto one_side = [&](const std::array<int, 3>& side) {
         return side[1] == side[2] && side[2] != 0 && (shared == 1 || side[0] == side[1]);

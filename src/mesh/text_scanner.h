@@ -9,7 +9,7 @@
 
 namespace raycontact {
 
-/// Walks over the words of a text file and knows its line; every complaint names it. Lines end in \n, \r\n or \r.
+/// Reads the words of a text file and counts its lines; every error names the line. Lines end in \n, \r\n or \r.
 class TextScanner {
 public:
     explicit TextScanner(const InputFile& file);
@@ -23,13 +23,13 @@ public:
     /// Whether nothing but blanks and comments is left. Moves to the next word.
     bool at_end();
 
-    /// Reads a word as a finite number, or complains about `what`.
+    /// Reads a word as a finite number, or throws an error about `what`.
     double number(std::string_view word, const char* what) const;
-    /// Reads a word as a whole number that fits, or complains about `what`.
+    /// Reads a word as a whole number that fits, or throws an error about `what`.
     std::int64_t integer(std::string_view word, const char* what) const;
     /// Three coordinates on this line.
     Vec3 point_on_line();
-    /// Reads the rest of this line as numbers, or complains about `what`; tells how many there are.
+    /// Reads the rest of this line as numbers, or throws an error about `what`; returns how many there are.
     std::size_t numbers_on_line(const char* what);
 
     char comment = '\n';      ///< starts a comment (OBJ and OFF '#')

@@ -75,7 +75,7 @@ bool TriangleBvh::meets(const Box& box, const Vec3& origin, const Vec3& directio
         enter = std::max(enter, std::min(t1, t2));
         leave = std::min(leave, std::max(t1, t2));
     }
-    // Wide enough for the rounding above; a box too many costs little.
+    // Wide enough for the rounding above; one box too many costs little.
     return enter <= leave + 1e-9 * std::fabs(leave);
 }
 

@@ -17,7 +17,7 @@ public:
     /// Over the given triangles only; at least one.
     TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen);
 
-    /// Calls test(i, k) once for each two triangles whose boxes touch, until it returns true; tells whether one did.
+    /// Calls test(i, k) once for each two triangles whose boxes touch, until it returns true; returns whether it did.
     template <class Test>
     bool any_pair(Test&& test) const {
         return any_pair_of(0, 0, test);
@@ -36,7 +36,7 @@ public:
         along_ray(origin, direction, visit, node.right);
     }
 
-    /// Squared distance of a point from the nearest triangle, or `bound` where none is nearer than that.
+    /// Squared distance of a point from the nearest triangle, or `bound` if none is nearer than that.
     double nearest(const Vec3& point, double bound, std::uint32_t below = 0) const;
 
 private:
@@ -62,7 +62,7 @@ private:
             return any_pair_of(a + 1, a + 1, test) || any_pair_of(left.right, left.right, test)
                    || any_pair_of(a + 1, left.right, test);
         }
-        // The larger one is opened, so that boxes of like size meet.
+        // Descends into the larger one, so that boxes of similar size are compared.
         if (left.right != 0 && (right.right == 0 || left.size() >= right.size()))
             return any_pair_of(a + 1, b, test) || any_pair_of(left.right, b, test);
         if (right.right != 0) return any_pair_of(a, b + 1, test) || any_pair_of(a, right.right, test);

@@ -7,7 +7,7 @@
 
 namespace raycontact {
 
-/// Squared distance of a point from a segment; from its beginning where it has no length.
+/// Squared distance of a point from a segment; from its beginning if it has no length.
 inline double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 along = b - a, from = p - a;
     const double length2 = dot(along, along);
@@ -16,7 +16,7 @@ inline double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
     return dot(apart, apart);
 }
 
-/// Whether a triangle's normal is accurate to some 1e-10. A narrower one is as good as its edges.
+/// Whether a triangle's normal is accurate to some 1e-10. Of a narrower one only the edges count.
 inline bool has_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
     return dot(normal, normal) > 1e-12 * dot(ab, ab) * dot(ac, ac);

@@ -18,14 +18,14 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.
 void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow);
 
-/// Fills the caps of triangle_blocks (kernels/cap.h), from below; 0, where the mesh is not closed and outward, of
-/// needles and of triangles larger than their cap. Wants the tree and the header's flags and tolerance.
+/// Fills the caps of triangle_blocks (kernels/cap.h) with lower bounds; 0 for needles, for triangles larger than their
+/// cap, and if the mesh is not closed and outward. Needs the tree and the header's flags and tolerance.
 void build_caps(ShapeData& shape, std::span<const Vec3> normals);
 
 /// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
-/// closest face met from inside, the triangles around the vertex left out. +inf where there is none, 0 where the ray
-/// points out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. A rigid body's never
-/// change, so the paper's second test ("before leaving the source object", section 2.1) costs nothing at run time.
+/// closest face met from inside, without the triangles around the vertex. +inf if there is none, 0 if the ray points
+/// out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. They never change, so the paper's
+/// second test ("before leaving the source object", section 2.1) costs nothing at run time.
 std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals);
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
@@ -35,14 +35,14 @@ void build_clusters(ShapeData& shape);
 /// Fills outside_cells and the grid of the header: a bit for each cubic cell of the box, set when the whole cell, grown
 /// by the rounding of a look-up, lies outside the mesh. A vertex there cannot be in contact, whatever its ray, since
 /// the first face that it meets is met from outside. Only for meshes whose winding number is 0 outside and 1 inside
-/// everywhere (report.outward); others, and meshes of needles longer than a grid is worth, get no grid and lose nothing
-/// but time. No distance is stored: nothing depends on the resolution but how many rays need not be cast.
+/// everywhere (report.outward); other meshes, and those whose long needles make a grid too slow to build, get none and
+/// lose only time. No distance is stored: only the number of rays that need not be cast depends on the resolution.
 void build_outside_grid(ShapeData& shape);
 
 /// Fills `clearances` and its part of the header: for each cubic cell around the shape the largest useful ball that no
-/// surface enters, and whether it is certainly outside (closed, outward meshes only). From one look-up follows how far
-/// a vertex can move before it could touch (docs/certified.md). No contact is made from it; a coarser grid only makes
-/// pairs wake up earlier.
+/// surface enters, and whether it is certainly outside (closed, outward meshes only). One look-up tells how far a
+/// vertex can move before it could touch (docs/certified.md). No contact depends on it; a coarser grid only makes pairs
+/// wake up earlier.
 void build_clearance_grid(ShapeData& shape);
 
 } // namespace raycontact

@@ -37,7 +37,7 @@ struct Item {
     uint triangle;
 };
 
-// Where to part items that are sorted along an axis.
+// Where to split items that are sorted along an axis.
 struct Cut {
     double cost = std::numeric_limits<double>::infinity();
     int axis = 0;
@@ -48,7 +48,8 @@ struct Cut {
     }
 };
 
-// How a branch is covered at the least cost: by itself, or so many for its left part and the rest for its right.
+// The cheapest way to cover a branch: by itself (of_left 0), or of_left parts for its left child, the rest for its
+// right.
 struct Way {
     float cost = 0;
     std::size_t of_left = 0;
@@ -103,7 +104,7 @@ private:
         Cut best;
         for (int axis = 0; axis < 3; ++axis)
             if (balanced_ || items.size() > sweep_at_most) {
-                // The longest axis in the middle: good enough where a sweep would cost too much.
+                // The longest axis, split in the middle: good enough if a sweep would cost too much.
                 const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
                 best.improve({low->centre[axis] - high->centre[axis], axis, block_size * (blocks_of(items) / 2)});
             } else {
@@ -155,10 +156,10 @@ private:
         return id;
     }
 
-    // Which binary branches become wide nodes, so that the sum of their areas, the nodes that a ray is expected to
-    // visit, is least: of each branch, the cheapest way to cover it with up to so many leaves and nodes, from below
-    // (after Pinter 2010). The largest branches opened first would leave most nodes above the leaves nearly empty. Or,
-    // to bound the depth, always four levels of branches.
+    // Chooses the binary branches that become wide nodes so that the sum of their areas, the expected number of nodes
+    // that a ray visits, is least. From the leaves up, it finds the cheapest way to cover each branch with up to 1, 2,
+    // ... leaves and nodes (after Pinter 2010). Opening the largest branches first would leave most nodes above the
+    // leaves nearly empty. four_levels: always four levels of branches, to bound the depth.
     void weigh(bool four_levels) {
         for (std::size_t id = branches_.size(); id-- > 0;) { // children come after their parents
             Branch& b = branches_[id];
@@ -177,7 +178,7 @@ private:
         }
     }
 
-    // What covers a branch with up to `most` children of a wide node.
+    // Finds up to `most` children of a wide node that cover a branch.
     void cover(std::size_t branch, std::size_t most, std::vector<std::size_t>& children) const {
         const Branch& b = branches_[branch];
         const std::size_t of_left = b.ways[most - 1].of_left;

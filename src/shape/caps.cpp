@@ -12,10 +12,10 @@ namespace raycontact {
 namespace {
 
 using kernels::uint;
-constexpr double largest = 65535;   // steps: an eighth of the diagonal
-constexpr double least_height = 64; // of tolerances: what float32 makes of a narrower triangle's normal is not known
+constexpr double largest = 65535;         // steps: an eighth of the diagonal
+constexpr double least_height = 64;       // of tolerances: float32 may get a narrower triangle's normal wrong
 constexpr double beyond_own_corners = 16; // of tolerances
-constexpr double fine = 0.75;             // of the triangles have caps where it pays to ask them
+constexpr double fine = 0.75;             // of the triangles have caps if testing them pays
 
 /// Directions within an angle, less than a right one, of an axis; cosine <= 0: any direction.
 struct Cone {
@@ -37,7 +37,7 @@ public:
         find_cones(0, below);
     }
 
-    /// Distance of the nearest triangle whose normal is farther from `normal` than the angle, or `bound`.
+    /// Distance of the nearest triangle whose normal is farther from `normal` than the angle, at most `bound`.
     double nearest_unlike(const Vec3& from, const Vec3& normal, double least_cosine, double bound) const {
         double bound2 = bound * bound;
         search(0, from, normal, least_cosine, bound2);
@@ -127,7 +127,7 @@ void build_caps(ShapeData& shape, std::span<const Vec3> normals) {
             const double own = std::max({length(a - centre), length(b - centre), length(c - centre)});
             const auto steps = [&](float cosine, double bound) {
                 const double radius = caps.nearest_unlike(centre, normals[t], double(cosine), bound);
-                // One step less: float32 finds the centre elsewhere.
+                // One step less: the centre in float32 differs a little.
                 return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
             };
             const double wide = steps(CAP_WIDE_COSINE, largest * unit);

@@ -22,8 +22,8 @@ struct Cells {
         return within(0) && within(1) && within(2);
     }
 
-    /// Goes from beyond the grid's faces inwards, from cell to cell: enters(i, from) tells whether the way from cell
-    /// `from`, -1 beyond the grid, into cell i is open and cell i was not entered before.
+    /// Floods the grid from outside, from cell to cell. enters(i, from) tells whether the way from cell `from` (-1:
+    /// outside the grid) into cell i is open and cell i was not entered before.
     template <class Enters>
     void flood(Enters&& enters) const {
         std::vector<int> open;

@@ -19,13 +19,13 @@ constexpr double far = 1e15;
 constexpr int pad = 4;                         // cells around the box, for balls that touch it from outside
 constexpr int farthest = CLEARANCE_OFFSET - 1; // cells from a cell to the middle of its ball, each axis
 
-// Without surface, around the middle of a cell; lengths in cells.
+// A ball that contains no surface, around the middle of a cell; lengths in cells.
 struct Ball {
     Cell middle{};
     double radius = -far; // none
 
-    // About how deep the points of a cell lie in it, on average. At the middle alone its own ball would always win, and
-    // be small.
+    // About how deep the points of a cell lie in it, on average. At the middle alone the cell's own ball would always
+    // win, and it is small.
     double depth_at(const Cell& cell) const {
         const int dx = middle[0] - cell[0], dy = middle[1] - cell[1], dz = middle[2] - cell[2];
         if (radius < 0 || std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) > farthest) return -far;
@@ -33,8 +33,8 @@ struct Ball {
     }
 };
 
-// Balls follow the surface, so cells may be as long as its edges. Of a fine mesh longer ones, by the power 3/4: what
-// they no longer tell costs a few rays, and the grid stays within the caches for longer.
+// Balls follow the surface, so cells may be as long as its edges. Fine meshes have longer cells, by the power 3/4: that
+// costs a few more rays, but grids of finer meshes still fit the caches.
 double wanted_cells(double triangles) {
     constexpr double each = 25, coarse = 1000;
     const double finer = triangles / coarse;
@@ -66,8 +66,8 @@ public:
         outside_.resize(distance_.size());
     }
 
-    // Of the middles, in cells: exactly near the surface, where there are few, and farther off for every second, then
-    // every fourth along each axis. The others keep what follows from one that was measured before, which is no more.
+    // Distances of the middles from the surface, in cells: measured for all middles near it, which are few, farther off
+    // for every second, then every fourth along each axis. The others get a lower bound from one that was measured.
     void measure(const ShapeData& shape) {
         std::vector<Vec3> points;
         points.reserve(shape.points.size());
@@ -79,7 +79,7 @@ public:
         const TriangleBvh tree(points, shape.mesh.triangles, std::move(every));
         distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
         for (int stride = 256; stride >= 1; stride /= 2) {
-            // Less than that of the strides before by more than a diagonal: what bounds a search was measured itself.
+            // Less than for the stride before by over a diagonal, so that a measured distance bounds each search.
             const double near = stride < 4 ? 4 * stride : far;
             for (int z = 0; z < cells_.size[2]; z += stride)
                 for (int y = 0; y < cells_.size[1]; y += stride)
@@ -119,20 +119,20 @@ public:
         const std::vector<Ball> outer = choose_balls(true), other = choose_balls(false);
         for (int i = 0; i < cells_.count(); ++i) {
             const Cell cell = cells_.at(i);
-            // A ball outside first, where it reaches into the cell at all: vertices there are the many.
+            // Prefers a ball outside if it reaches into the cell at all: most vertices are outside.
             const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
             if (ball.radius >= 0) shape.clearances[i] = word(ball, cell);
         }
     }
 
 private:
-    // Of a middle whose distance is known to be no more than `bound`.
+    // The distance of a middle, known to be no more than `bound`.
     static double nearest(const TriangleBvh& tree, const Cell& cell, double bound) {
         return std::sqrt(tree.nearest({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
     }
 
-    // For each cell, of the empty balls around middles near it, on one side, the one that reaches farthest past its own
-    // middle. A large ball that touches the surface tells the distance of the points between almost exactly.
+    // Chooses for each cell, among the empty balls on one side around nearby middles, the one that reaches farthest
+    // past the cell's middle. A large ball at the surface gives the distance of the points between almost exactly.
     std::vector<Ball> choose_balls(bool outside) const {
         std::vector<Ball> balls(distance_.size());
         for (int i = 0; i < cells_.count(); ++i)

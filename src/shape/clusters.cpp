@@ -44,10 +44,10 @@ void order_by_place(const ShapeData& shape, std::span<uint> vertices) {
     order_by_place(shape, vertices.subspan(left));
 }
 
-// Of nothing until something is added.
+// Empty (NaN) until something is added.
 struct Bounds {
     float low[3] = {nan, nan, nan}, high[3] = {nan, nan, nan};
-    void add(std::size_t k, float from, float to) { // each prefers a number to NaN
+    void add(std::size_t k, float from, float to) { // fmin and fmax prefer a number to NaN
         low[k] = std::fmin(low[k], from);
         high[k] = std::fmax(high[k], to);
     }
@@ -80,9 +80,9 @@ void build_clusters(ShapeData& shape) {
     }
     shape.header.vertex_block_count = static_cast<uint>(shape.vertex_blocks.size());
 
-    // A share of the shape's size, so that no rounding on the way into any target's frame matters.
+    // Proportional to the shape's size, so that rounding in the transform to a target's frame does not matter.
     const float slack = 1.0e-6f * static_cast<float>(shape.diagonal);
-    // The top level may hold several blocks; the walk takes them in turn.
+    // The top level may hold several blocks; the traversal takes them in turn.
     uint level = 0;
     do {
         shape.header.cluster_first[level] = static_cast<uint>(shape.clusters.size());

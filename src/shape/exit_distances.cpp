@@ -13,8 +13,8 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-// Which side of the faces around the vertex does the direction leave on? The closest feature of their infinite wedges
-// decides by its pseudo-normal (Baerentzen and Aanaes 2005): a face, an edge, or the vertex itself.
+// Whether the direction leads from the vertex into the mesh. The closest feature of the faces' infinite wedges decides
+// by its pseudo-normal (Baerentzen and Aanaes 2005): a face, an edge, or the vertex itself.
 bool points_inside(const ShapeData& shape, std::span<const Vec3> normals, std::uint32_t vertex, const Vec3& direction,
                    std::span<const std::uint32_t> around) {
     double best = 0; // cosine to the closest feature; none in front of the direction: the apex, which is inside

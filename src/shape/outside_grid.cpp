@@ -10,7 +10,7 @@ namespace raycontact {
 
 namespace {
 
-// Share of a cell that a look-up's rounding, or the rounding of a ray test, could cross. Far more than either.
+// Part of a cell, far more than the rounding of a look-up or of a ray test could cross.
 constexpr double margin = 1e-2;
 
 enum State : unsigned char { Unknown, Surface, Outside };
@@ -47,7 +47,7 @@ void build_outside_grid(ShapeData& shape) {
         const Cell from = cell_of(box.low, -margin), to = cell_of(box.high, margin);
         const Cells around{{to[0] - from[0] + 1, to[1] - from[1] + 1, to[2] - from[2] + 1}};
         const auto visits = static_cast<std::size_t>(around.count());
-        // Going through the cells around triangles so long costs more than a grid could save.
+        // So many visits cost more than a grid could save.
         if (visits > visits_left) return;
         visits_left -= visits;
         const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -61,7 +61,7 @@ void build_outside_grid(ShapeData& shape) {
     }
 
     // A cell at the faces of the box that no triangle touches is outside, and so is every cell that can be reached from
-    // it without touching one.
+    // it without touching a triangle.
     cells.flood([&](int i, int) {
         const bool enters = states[i] == Unknown;
         if (enters) states[i] = Outside;

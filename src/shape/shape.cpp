@@ -17,7 +17,7 @@ namespace {
 
 constexpr double rounding = 1.1920929e-7; // 2^-23
 
-// From here on the shape is what float32 says: the double positions follow, so that every user sees one geometry.
+// Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
 void round_vertices(ShapeData& shape) {
     shape.points.reserve(shape.mesh.vertices.size());
     Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
@@ -74,7 +74,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
 
-    // How far float32 may err in a ray test, with a margin: docs/design.md derives these. Into an open mesh rays may
+    // Bounds of the float32 error in a ray test, with a margin: docs/design.md derives them. Rays into an open mesh may
     // start well outside its box.
     shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
     shape.header.outward = shape.header.closed != 0 && mesh.report.outward ? 1 : 0;

@@ -11,7 +11,7 @@ namespace raycontact {
 
 namespace {
 
-// Appends to an array and returns where; kernels count in 32 bits.
+// Appends to an array and returns the place; kernels count in 32 bits.
 template <class T>
 kernels::uint append(Device& device, Array<T>& array, const std::vector<T>& more) {
     const std::size_t first = array.size();
@@ -28,7 +28,7 @@ void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
         ++found->second.users;
         return;
     }
-    // Entered last: a shape that the device has no memory for leaves nothing behind.
+    // Entered last, so that a shape too large for the device's memory leaves nothing behind.
     Entry entry{shape, 0, 1};
     upload(entry);
     order_.reserve(order_.size() + 1);

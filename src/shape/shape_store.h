@@ -10,7 +10,7 @@
 
 namespace raycontact {
 
-/// The shapes in use by one scene, concatenated in one device's memory. Counts its users; a shape nobody uses any more
+/// The shapes in use by one scene, concatenated in one device's memory. Counts the users of each; a shape without users
 /// is dropped when the store is next packed.
 class ShapeStore {
 public:
@@ -37,7 +37,7 @@ public:
     /// Counts the times that indices changed.
     std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
-    /// arrays().headers, as the host has them.
+    /// The host's copy of arrays().headers.
     std::span<const kernels::ShapeHeader> headers() const { return headers_; }
 
 private:

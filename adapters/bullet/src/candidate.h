@@ -5,7 +5,7 @@
 
 namespace raycontact::bullet {
 
-/// A contact as Bullet wants it, before it has a place in a manifold. World frame, metres.
+/// A contact in Bullet's terms, not yet part of a manifold. World frame, metres.
 struct Candidate {
     PointKey key;
     int triangle = 0;    ///< of the other body, index of its file; 0 on a plane

@@ -7,15 +7,15 @@
 
 namespace raycontact::bullet {
 
-/// A point that wants a place in a manifold.
+/// A point that may become part of a manifold.
 struct Applicant {
     btVector3 position; ///< world, metres
     btScalar depth;     ///< metres
-    bool present;       ///< it had a place in the step before
+    bool present;       ///< it was part of one in the step before
 };
 
-/// Picks at most four: the deepest, then those that span the largest area, those present given an advantage so that a
-/// body at rest does not change its feet every step. Ties go to the lower index. Indices come back ascending.
+/// Picks at most four: the deepest, then those that span the largest area. Points already present have an advantage, so
+/// that a body at rest does not change its points every step. Ties go to the lower index. Indices come back ascending.
 std::vector<int> choose_points(const std::vector<Applicant>& applicants);
 
 } // namespace raycontact::bullet

@@ -92,7 +92,7 @@ void append(Mesh& mesh, const btStridingMeshInterface& interface, int index, con
     }
 }
 
-/// A height field is open: its faces must look up, or bodies would be held from below.
+/// A height field is open: its faces must point up, or it would support bodies from below.
 struct FieldTriangles : btTriangleCallback {
     Mesh* mesh;
     int up;
@@ -221,7 +221,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
         }
     }
     Entry entry;
-    // A height field's windings are ours; repairs would judge an open sheet by guesswork.
+    // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
     entry.converted.shape = Shape::make(prepare_mesh(mesh, repair));
     entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
@@ -256,7 +256,7 @@ std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& sc
     }
     mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
     mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
-    // Lengths, areas and volumes have changed: check anew, but keep the file's indices.
+    // Lengths, areas and volumes have changed: check again, but keep the file's indices.
     Mesh plain;
     plain.name = mesh.name;
     plain.vertices = mesh.vertices;

@@ -13,7 +13,7 @@
 
 namespace raycontact::bullet {
 
-/// A Bullet mesh made ready: what RayContact and the planes need of it.
+/// A converted Bullet mesh: what RayContact and the plane test need of it.
 struct Converted {
     std::shared_ptr<const Shape> shape;
     std::shared_ptr<const MeshTree> tree;
@@ -28,7 +28,7 @@ enum class Kind {
 };
 Kind kind_of(const btCollisionShape& shape);
 
-/// The effective scaling of a mesh or field: a change of it means converting anew.
+/// The effective scaling of a mesh or field: if it changes, the shape must be converted again.
 btVector3 scaling_of(const btCollisionShape& shape);
 
 /// Shapes by content, so bodies with equal meshes share one and no pointer can go stale. Throws InputError for an
@@ -37,12 +37,12 @@ class ShapeCache {
 public:
     /// `shape` is of kind mesh or field.
     Converted get(const btCollisionShape& shape);
-    /// Once a dispatch: lets go of shapes that no body has used for a while.
+    /// Call it once a dispatch: drops shapes that no body has used for a while.
     void sweep();
 
 private:
     struct Entry {
-        Mesh mesh; ///< compared in full: a hash alone could give a body another body's mesh
+        Mesh mesh; ///< compared in full: equal hashes do not mean equal meshes
         Converted converted;
         std::uint64_t used = 0;
     };

@@ -38,7 +38,7 @@ bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
     return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
 }
 
-/// What can be said of a pair of leaves without looking at positions.
+/// What handles a pair of leaves; this does not depend on their positions.
 enum class Work { batch, plane, bullet, nothing };
 
 Work work_for(Kind a, Kind b, const btCollisionShape& shape_a, const btCollisionShape& shape_b) {
@@ -49,7 +49,7 @@ Work work_for(Kind a, Kind b, const btCollisionShape& shape_a, const btCollision
     return Work::bullet;
 }
 
-/// Whether two shapes give RayContact something to do: the answer costs a look at two types for most pairs.
+/// Whether RayContact handles two shapes; for most pairs two type checks decide.
 bool for_us(const btCollisionShape& a, const btCollisionShape& b) {
     if (a.isConvex() || b.isConvex()) return false;
     const bool mesh_a = Objects::holds(a, Kind::mesh), mesh_b = Objects::holds(b, Kind::mesh);
@@ -149,7 +149,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     }
 }
 
-// Remembers the pair if it is.
+// Also records the pair if it is ours.
 bool CollisionDispatcher::State::is_ours(btBroadphasePair& pair) {
     const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
@@ -169,7 +169,7 @@ bool CollisionDispatcher::State::is_ours(btBroadphasePair& pair) {
     return true;
 }
 
-// What is kept of a pair lies anywhere, and the solver has used the caches since: sent for some pairs ahead.
+// Prefetches the state of some pairs ahead: it lies scattered in memory, and the solver has used the caches since.
 void CollisionDispatcher::State::fetch_ahead(std::size_t i) const {
     constexpr std::size_t algorithms = 12, states = 6;
     if (i + algorithms < ours.size()) __builtin_prefetch(ours[i + algorithms]->m_algorithm);
@@ -187,7 +187,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return;
     PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
     if (!algorithm) {
-        // A record made here has no pair yet; PairState, made next, holds it.
+        // A record made here has no pair yet; PairState, made next, acquires it.
         objects.refresh(*a, dispatch);
         objects.refresh(*b, dispatch);
         algorithm = make_algorithm(pair, *a, *b);

@@ -82,7 +82,7 @@ void MeshTree::vertices_below(const btVector3& normal, btScalar offset, std::vec
     for (std::uint32_t i = 0; i < nodes_.size();) {
         const Node& node = nodes_[i];
         const btVector3 centre = (node.low + node.high) * btScalar(0.5), half = (node.high - node.low) * btScalar(0.5);
-        // A little slack: the box may only be ruled out, the vertices themselves decide.
+        // A little slack: a box is only pruned; the vertices themselves decide.
         const btScalar slack = btScalar(1e-5) * (size.dot(centre.absolute() + half) + btFabs(offset));
         if (normal.dot(centre) - size.dot(half) > offset + slack) {
             i = node.skip;

@@ -27,7 +27,7 @@ struct Leaf {
 /// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.
 struct Object {
     std::vector<Leaf> leaves;
-    std::uint64_t version = 0; ///< changes when the leaves do
+    std::uint64_t version = 0; ///< changes when the leaves change
     std::uint64_t seen = 0;    ///< dispatch in which poses were last handed over
     std::uint32_t uses = 0;    ///< pairs that refer to it
     bool pinned = false;       ///< by add_body
@@ -39,15 +39,15 @@ class Objects {
 public:
     explicit Objects(Scene& scene) : scene_(scene) {}
 
-    /// The object's record, made when new, its leaves rebuilt when its shape has changed, its poses handed to the
-    /// scene once per `dispatch`.
+    /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
+    /// poses to the scene once per `dispatch`.
     Object& refresh(const btCollisionObject& object, std::uint64_t dispatch) {
         return refresh(object, records_[&object], dispatch);
     }
-    /// The same where the record is known.
+    /// The same for a record that is known.
     Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
     Object* find(const btCollisionObject& object);
-    /// The record stays, and where it is, until it is released.
+    /// The record stays, at the same address, until it is released.
     Object& acquire(const btCollisionObject& object) {
         Object& record = records_.at(&object);
         ++record.uses;
@@ -58,7 +58,7 @@ public:
 
     ShapeCache& shapes() { return shapes_; }
 
-    /// Whether the object holds a mesh, directly or in a compound.
+    /// Whether the object contains a mesh, directly or in a compound.
     static bool holds(const btCollisionShape& shape, Kind kind);
 
 private:

@@ -28,9 +28,9 @@ public:
     PairState(const PairState&) = delete;
     PairState& operator=(const PairState&) = delete;
 
-    /// Lets Bullet's algorithm for two leaves work, or drops it when their boxes are apart.
+    /// Runs Bullet's algorithm for two leaves, or drops it if their boxes are apart.
     void run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, const btDispatcherInfo& info);
-    /// When an object's leaves have changed, what was kept for the old ones goes.
+    /// Drops what was kept for old leaves if an object's leaves have changed.
     void check_versions(std::uint64_t version0, std::uint64_t version1);
     void all_manifolds(btManifoldArray& out) const;
 
@@ -49,15 +49,15 @@ private:
     std::uint64_t version0_ = 0, version1_ = 0;
 };
 
-/// Hangs on Bullet's broad-phase pair: when that goes, so do the manifolds. Small, because it lives in Bullet's pool of
-/// algorithms, which does not check sizes.
+/// Belongs to Bullet's broad-phase pair: when that is deleted, so are the manifolds. Small, because it lies in Bullet's
+/// pool of algorithms, which does not check sizes.
 class PairAlgorithm final : public btCollisionAlgorithm {
 public:
     PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, std::unique_ptr<PairState> state)
         : btCollisionAlgorithm(info), state_(std::move(state)) {}
 
     PairState& state() { return *state_; }
-    /// Ours among Bullet's; asked for every pair in every step, so not by dynamic_cast, which takes longer.
+    /// Null for Bullet's own. Called for every pair in every step, so without dynamic_cast, which takes longer.
     static PairAlgorithm* of(btCollisionAlgorithm* algorithm) {
         return algorithm && typeid(*algorithm) == typeid(PairAlgorithm) ? static_cast<PairAlgorithm*>(algorithm)
                                                                         : nullptr;

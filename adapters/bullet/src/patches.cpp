@@ -72,7 +72,7 @@ btManifoldPoint to_point(const Candidate& c, const btCollisionObject* a, const b
     return p;
 }
 
-/// What the solver remembered of a point goes over to its successor.
+/// Copies the solver's state of a point to its successor.
 void inherit(btManifoldPoint& p, const btManifoldPoint& old) {
     p.m_appliedImpulse = old.m_appliedImpulse;
     p.m_prevRHS = old.m_prevRHS;
@@ -126,7 +126,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
     stats.contacts += candidates.size();
     if (candidates.empty() && manifolds_.empty()) return;
 
-    // What was there, where it is now.
+    // The old points, where they are now.
     std::vector<Patch> patches;
     std::vector<Old> old;
     for (btPersistentManifold* m : manifolds_) {
@@ -155,7 +155,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         patches.push_back(patch);
     }
 
-    // Each contact goes to the patch its key was in, else to the most suitable, else it opens a new one.
+    // Each contact joins the patch that its key was in, else the most suitable one, else it begins a new patch.
     std::vector<const Old*> before(candidates.size(), nullptr);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
         const Candidate& contact = candidates[c];

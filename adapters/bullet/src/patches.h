@@ -8,7 +8,7 @@
 namespace raycontact::bullet {
 
 /// The manifolds of one pair: one for each patch of contacts with like normals, so that a pair that touches in several
-/// places is held in all of them.
+/// places is supported in all of them.
 class Patches {
 public:
     Patches(btCollisionDispatcher& dispatcher, const btCollisionObject* object0, const btCollisionObject* object1)
@@ -19,7 +19,7 @@ public:
 
     /// This step's contacts, in the order of their keys. Points whose key is there again keep their impulses.
     void update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings, DispatcherStats& stats);
-    /// Sends for what update() will read: the list of manifolds, then the manifolds.
+    /// Prefetches what update() will read: the list of manifolds, then the manifolds.
     void fetch_list() const { __builtin_prefetch(manifolds_.data()); }
     void fetch() const {
         for (const btPersistentManifold* m : manifolds_)

@@ -16,7 +16,7 @@ void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const b
     const double height =
         nx * double(origin.x()) + ny * double(origin.y()) + nz * double(origin.z()) + double(plane.getPlaneConstant());
 
-    // The tree rules out in the mesh's frame with slack; the depth is decided in double, in the world.
+    // The tree prunes in the mesh's frame, with slack; the depth is computed in double, in the world.
     const btVector3 local = normal * mesh_pose.getBasis(); // row vector: the inverse rotation
     const double at = nx * double(mesh_pose.getOrigin().x()) + ny * double(mesh_pose.getOrigin().y())
                       + nz * double(mesh_pose.getOrigin().z());

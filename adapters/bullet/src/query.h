@@ -10,7 +10,7 @@
 
 namespace raycontact::bullet {
 
-/// What contactTest and contactPairTest need where Bullet has nothing to offer: meshes against meshes, planes, fields.
+/// What contactTest and contactPairTest need where Bullet has no algorithm: meshes against meshes, planes, fields.
 class Queries {
 public:
     Queries(const Settings& settings, ShapeCache& shapes) : scene_(settings), shapes_(shapes) {}
@@ -20,11 +20,11 @@ public:
     const Scene& scene() const { return scene_; } ///< with the contacts of the last call, its bodies gone
 
 private:
-    Scene scene_; ///< its own: the dispatcher's keeps the last step's contacts
+    Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
     ShapeCache& shapes_;
 };
 
-/// Holds an empty manifold as long as it lives: Bullet asks a result's manifold which body comes first.
+/// Owns an empty manifold: Bullet reads from a result's manifold which body comes first.
 class QueryAlgorithm final : public btCollisionAlgorithm {
 public:
     QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries,

@@ -45,7 +45,7 @@ kernels::uint number_of(const Count& count) {
     return count.buffer ? words_of(count.buffer)[count.value] : count.value;
 }
 
-// By one thread: a step has too few items for two. Past 2^32 the firsts are worth nothing, but then nothing has room.
+// With one thread: a step has too few items for two. Beyond 2^32 the firsts are wrong, but then there is no room.
 void scan_here(const ScanOf& scan) {
     const kernels::uint count = number_of(scan.count);
     const kernels::uint* values = words_of(scan.values);

@@ -6,8 +6,8 @@
 #include <immintrin.h>
 #endif
 
-// The kernels' words in C++. The FOR_EACH loops walk the slice that a thread was given; FOR_LANES promises that
-// lanes do not depend on each other. The device looks up the number of items before it hands out slices.
+// The kernel dialect in C++. The FOR_EACH loops run over the slice of a thread; FOR_LANES promises that lanes do not
+// depend on each other. The device reads the number of items before it hands out slices.
 namespace raycontact::kernels {
 using uint = std::uint32_t;
 using ulong = std::uint64_t;
@@ -18,8 +18,8 @@ struct Range {
 
 #define KERNEL inline
 #define DEVICE [[maybe_unused, gnu::always_inline]] static inline
-#define DEVICE_CALL DEVICE // once in the program where inlining everywhere takes a compiler minutes (NVRTC)
-#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or looks, or seldom
+#define DEVICE_CALL DEVICE                                  // not inlined where that takes a compiler minutes (NVRTC)
+#define DEVICE_BATCH [[maybe_unused, gnu::noinline]] static // called once for many rays or blocks, or rarely
 #define GLOBAL
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) __builtin_prefetch((array) + (index))
@@ -60,7 +60,7 @@ DEVICE float magnitude_of(float x) {
 DEVICE float root_of(float x) {
     return __builtin_sqrtf(x);
 }
-// By masks: conditions asked again and again would be threaded to branches, which lanes cannot take.
+// By masks: compilers would turn repeated conditions into branches, which lanes cannot take.
 DEVICE float component(uint axis, float x, float y, float z) {
     const uint is_x = 0U - static_cast<uint>(axis == 0), is_y = 0U - static_cast<uint>(axis == 1);
     const uint is_z = 0U - static_cast<uint>(axis == 2);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dialect's words that depend on the instruction set; included once for each, inside its namespace. The same bits
-// from all of them.
+// The part of the dialect that depends on the instruction set; included once for each, inside its namespace. All give
+// the same bits.
 
-// What rounding took from p = fl(a * b): by one fused multiply-add, or in double, which holds every product of two
-// floats and what p leaves of it; either rounds once, so the bits are the same for every a and b.
+// The rounding error of p = fl(a * b): by one fused multiply-add, or in double, which can represent every product of
+// two floats and its difference from p. Either rounds once, so the bits are the same for every a and b.
 #ifdef __FMA__
 DEVICE float product_error(float a, float b, float p) {
     return __builtin_fmaf(a, b, -p);
@@ -14,8 +14,8 @@ DEVICE float product_error(float a, float b, float p) {
 }
 #endif
 
-// A bit for each lane that is -1, the others being 0: compilers reduce sixteen lanes in eight instructions where one or
-// two do.
+// A bit for each lane that is -1; the others are 0. Compilers reduce sixteen lanes in eight instructions; one or two
+// do.
 DEVICE uint pack_sixteen(const int* lanes) {
 #if defined(__AVX512DQ__)
     return _mm512_movepi32_mask(_mm512_loadu_si512(lanes));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels as one instruction set sees them; CMake compiles this file once for each, with its flags.
+// The kernels for one instruction set; CMake compiles this file once for each, with its flags.
 #include "device/cpu/kernel_table.h"
 
 namespace raycontact::kernels::RAYCONTACT_ISA {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decides a contact, once each: a device is exact when it computes all of it as the host does. Result k of item i
-// lies at k * count + i.
+// Every operation that decides a contact: a device is exact if it computes them all as the host does. Result k of item
+// i lies at k * count + i.
 
 KERNEL void probe_float(COUNT(count), GLOBAL const float* RESTRICT operands, GLOBAL float* RESTRICT results) {
     FOR_EACH(i, count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// As probe.h, of what places pairs.
+// As probe.h, for the operations that place pairs.
 
 KERNEL void probe_double(COUNT(count), GLOBAL const double* RESTRICT operands, GLOBAL float* RESTRICT rounded,
                          GLOBAL double* RESTRICT results) {

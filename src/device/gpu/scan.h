@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sums of a table (ScanOf, device.h) for devices whose threads work in groups: one kernel for few items, three for
-// more. Integers, so that no order changes a bit. The dialects' words for groups are used here alone.
+// more. Integers, so that no order changes a bit. Only this file uses the dialects' macros for groups.
 // NOLINTBEGIN(modernize-use-using): this text is C as well
 
 // Part `part` of `parts` of n items.
@@ -22,7 +22,7 @@ DEVICE ulong sum_of(GLOBAL const uint* RESTRICT values, const Slice slice) {
     return sum;
 }
 
-// Past 2^32 the firsts are worth nothing, but then there is no room either.
+// Beyond 2^32 the firsts are wrong, but then there is no room either.
 DEVICE void write_firsts(GLOBAL const uint* RESTRICT values, const Slice slice, ulong before,
                          GLOBAL uint* RESTRICT firsts) {
     uint at = (uint)before;
@@ -32,7 +32,7 @@ DEVICE void write_firsts(GLOBAL const uint* RESTRICT values, const Slice slice, 
     }
 }
 
-// What the threads before this one have together; total: what all have. shared: one for each thread.
+// The sum over the threads before this one; total: over all threads. shared: one element for each thread.
 DEVICE ulong sum_before(ulong own, LOCAL ulong* shared, ulong* total) {
     shared[THREAD] = own;
     BARRIER;
@@ -88,7 +88,7 @@ GROUP_KERNEL void scan_blocks(COUNT(count), uint columns, uint stride, GLOBAL co
     }
 }
 
-// One group, a thread a block: the sums of column 0 become those of the blocks before.
+// One group, a thread a block: the sum of each block in column 0 becomes the sum of the blocks before it.
 GROUP_KERNEL void scan_sums(COUNT(count), uint columns, GLOBAL ulong* RESTRICT sums, GLOBAL Totals* RESTRICT totals,
                             uint at, uint room) {
     SHARED(ulong, shared, SCAN_GROUP);

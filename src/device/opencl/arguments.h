@@ -11,7 +11,7 @@ inline void set_argument(cl_kernel kernel, cl_uint at, cl_mem memory) {
 inline void set_argument(cl_kernel kernel, cl_uint at, kernels::uint number) {
     check(clSetKernelArg(kernel, at, sizeof number, &number), "clSetKernelArg");
 }
-/// The first two: where the count is, or null and the count.
+/// Sets the first two arguments: the buffer of the count and its place there, or null and the count.
 inline void set_count(cl_kernel kernel, const Count& count) {
     set_argument(kernel, 0, memory_of(count.buffer));
     set_argument(kernel, 1, count.value);

@@ -21,7 +21,7 @@ private:
     std::size_t bytes_;
 };
 
-/// Null for none, as an empty array has.
+/// Null for no buffer: an empty array has none.
 inline cl_mem memory_of(const Buffer* buffer) {
     return buffer ? static_cast<const DeviceBuffer&>(*buffer).memory() : nullptr;
 }

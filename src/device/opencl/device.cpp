@@ -21,7 +21,7 @@ Context make_context(cl_device_id device) {
     return context;
 }
 
-// What a kernel is launched with where there is nothing to do.
+// The arguments of a launch over no items.
 template <typename Function>
 struct Nothing;
 template <typename... Parameters>
@@ -42,7 +42,7 @@ public:
         traits_.has_double = probed.exact_double;
     }
 
-    // Some drivers compile a kernel when it is first launched; that is not to happen in the midst of a step.
+    // Some drivers compile a kernel at its first launch; that must not happen during a step.
     void launch_all() {
 #define RAYCONTACT_KERNEL(name)                                                                                        \
     if (program_.kernel(KernelId::name)) launch(KernelId::name, 0, Nothing<Prototype<KernelId::name>::type>::arguments);

@@ -9,12 +9,12 @@ namespace raycontact::opencl {
 
 struct Source;
 
-/// Every device of every OpenCL driver here, by what the drivers say; nothing is built for that.
+/// Every device of every OpenCL driver here, as the drivers describe it; nothing is built for this.
 std::vector<DeviceInfo> describe();
 
-/// id: "opencl:i", the i-th of describe(), or "opencl:i/k", the k-th of its cores. Throws InputError for one that is
-/// not there, or that cannot run the kernels; also, unless `inexact`, for one that gives other bits than the host.
-/// change: what is built, for tests.
+/// id: "opencl:i", the i-th of describe(), or "opencl:i/k", the k-th of its cores. Throws InputError if the device does
+/// not exist or cannot run the kernels; also, unless `inexact`, if its bits differ from the host's. change: alters what
+/// is built, for tests.
 std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::function<void(Source&)>& change = {});
 
 } // namespace raycontact::opencl

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels' words in OpenCL C 1.2. Contraction is off in the text itself, whatever the build options say.
+// The kernel dialect in OpenCL C 1.2. The text itself turns contraction off, whatever the build options are.
 #pragma OPENCL FP_CONTRACT OFF
 
 #define KERNEL __kernel
@@ -28,7 +28,7 @@
     for (uint i = (uint)get_global_id(0), few = 1u, i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
 #define FOR_LANES(k, n) for (int k = 0; k < (n); ++k)
 
-// Of kernels whose threads work together (gpu/scan.h).
+// For kernels whose threads work together (gpu/scan.h).
 #define SCAN_GROUP 256u
 #define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1)))
 #define GROUP ((uint)get_group_id(0))
@@ -69,7 +69,7 @@ DEVICE uint pack_vertices(const int* lanes) {
     return bits;
 }
 
-// What rounding took from p = fl(a * b), exactly: fma() rounds once on every device, some only do it slowly.
+// The exact rounding error of p = fl(a * b): fma() rounds once on every device, though slowly on some.
 DEVICE float product_error(float a, float b, float p) {
     return fma(a, b, -p);
 }

@@ -10,7 +10,7 @@
 
 namespace raycontact::opencl {
 
-/// Throws std::runtime_error naming what failed, and how.
+/// Throws std::runtime_error that names what failed, and how.
 void check(cl_int status, std::string_view what);
 
 template <auto release>
@@ -30,7 +30,7 @@ using BuiltProgram = Owned<cl_program, clReleaseProgram>;
 using Kernel = Owned<cl_kernel, clReleaseKernel>;
 using Event = Owned<cl_event, clReleaseEvent>;
 
-/// What a device says of itself; empty or zero where it does not know the question.
+/// A property of a device; empty or zero if it does not know that property.
 std::string text_of(cl_device_id device, cl_device_info what);
 template <typename T>
 T value_of(cl_device_id device, cl_device_info what) {

@@ -7,7 +7,7 @@ namespace raycontact::opencl {
 
 namespace {
 
-// One size for all: some drivers compile a kernel anew for each (PoCL: 83 ms).
+// One group size for all: some drivers compile a kernel again for each size (PoCL: 83 ms).
 constexpr std::size_t items_in_group = 64;
 
 // Enough to keep every unit busy to the end; more only cost time where there are few items.

@@ -14,11 +14,11 @@ public:
     Launcher(cl_context context, cl_device_id device);
 
     cl_command_queue queue() const { return queue_.get(); }
-    /// As many threads as the device has use for, and no more than there may be items.
+    /// Starts as many threads as the device can use, and no more than there may be items.
     void over_items(cl_kernel kernel, const char* name, std::size_t most);
     void in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups);
 
-    /// Once all that was started has been waited for.
+    /// Call it once everything that was started has finished.
     void add_up();
     double busy_ms() const { return static_cast<double>(busy_ns_) * 1e-6; }
 

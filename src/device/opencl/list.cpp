@@ -13,7 +13,7 @@ namespace raycontact::opencl {
 
 namespace {
 
-/// What its float32 lacks to give our bits, by its own word; empty when nothing.
+/// What its float32 lacks to give our bits, as its driver reports it; empty if nothing.
 std::string lacks(cl_device_id id) {
     const auto config = value_of<cl_device_fp_config>(id, CL_DEVICE_SINGLE_FP_CONFIG);
     std::string missing;
@@ -38,7 +38,7 @@ std::string cannot_run(cl_device_id id) {
     return "";
 }
 
-/// The PCI address, as "0000:65:00.0", of a driver that tells it.
+/// The PCI address, as "0000:65:00.0", if the driver reports it.
 std::string bus_of(cl_device_id id) {
     constexpr cl_device_info pci_khr = 0x410F, bus_nv = 0x4008, slot_nv = 0x4009, domain_nv = 0x400A;
     constexpr cl_device_info topology_amd = 0x4037;

@@ -14,15 +14,15 @@ namespace raycontact::opencl {
 struct Listed {
     cl_device_id id = nullptr;
     DeviceInfo info;
-    bool runs = false; ///< our kernels, be it with other bits
+    bool runs = false; ///< our kernels, perhaps with other bits
 };
 
 /// Every device of every driver, in the loader's order; none where there is no driver.
 const std::vector<Listed>& devices();
-/// The parts of one compute unit each of devices()[index]; none where its driver gives none.
+/// The parts of devices()[index], one compute unit each; none if its driver gives none.
 const std::vector<Listed>& parts(std::size_t index);
 
-/// The device that an id names ("opencl:0", "opencl:0/1"). Throws InputError for one that is not there.
+/// The device that an id names ("opencl:0", "opencl:0/1"). Throws InputError if there is none.
 const Listed& find(std::string_view id);
 
 } // namespace raycontact::opencl

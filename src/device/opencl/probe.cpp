@@ -25,8 +25,8 @@ constexpr const char* operations[] = {"products", "sums",      "products and sum
                                       "roots",    "denormals", "product residues",  "conversions"};
 constexpr std::size_t float_results = std::size(operations), double_results = 3;
 
-// Random signs and mantissas. Three sets of four are of middling size, and c about as large as a * b, so that
-// contraction shows; of the fourth products leave the range on either side.
+// Random signs and mantissas. In three of four sets the operands are of medium size and c is about as large as a * b,
+// so that contraction shows. In the fourth, products overflow or underflow.
 std::vector<float> float_operands() {
     std::mt19937_64 random(65536);
     std::vector<float> operands;

@@ -37,7 +37,7 @@ Source exact_source(cl_device_id device) {
     const bool has_double = claims_double(device);
     std::string options = "-cl-std=CL1.2";
     if (rounds) options += " -cl-fp32-correctly-rounded-divide-sqrt";
-    if (is_cpu(device)) options += " -D VERTICES_AT_ONCE=16"; // a vertex an item takes it twice the time of a step
+    if (is_cpu(device)) options += " -D VERTICES_AT_ONCE=16"; // with one vertex an item a step takes twice as long
     return {kernel_text(opencl_pieces, has_double), options, has_double};
 }
 

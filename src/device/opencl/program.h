@@ -8,24 +8,24 @@
 
 namespace raycontact::opencl {
 
-/// What is built, and how.
+/// The text that is built, and its build options.
 struct Source {
     std::string text, options;
-    bool has_double = true; ///< the kernels that compute in double are there
+    bool has_double = true; ///< it contains the kernels that compute in double
 };
 
-/// The kernels, with the options that our bits need of this device.
+/// The kernels, with the build options that give our bits on this device.
 Source exact_source(cl_device_id device);
 
-/// The kernels of one device, built from their text by its driver, which keeps in its own cache what it has built.
+/// The kernels of one device, built from their text by its driver, which caches what it has built.
 class Program {
 public:
     Program(cl_context context, cl_device_id device, const Source& source);
 
-    /// Null for those that only run where memory is shared, or in double where the device has none.
+    /// Null for kernels that need shared memory, or double that the device lacks.
     cl_kernel kernel(KernelId id) const { return kernels_[static_cast<std::size_t>(id)].get(); }
     static const char* name_of(KernelId id);
-    /// One that is not of the pipeline.
+    /// A kernel that is not part of the pipeline.
     Kernel entry(const char* name) const;
 
 private:

@@ -7,7 +7,7 @@
 
 namespace raycontact::opencl {
 
-/// Queue::scan(), by the kernels of device/gpu/scan.h.
+/// Queue::scan() with the kernels of device/gpu/scan.h.
 class Scan {
 public:
     Scan(const Program& program, cl_context context, cl_device_id device);
@@ -17,7 +17,7 @@ public:
 
 private:
     Kernel at_once_, blocks_, sums_, firsts_;
-    std::size_t group_size_ = 0; ///< as the text has it
+    std::size_t group_size_ = 0; ///< as the kernel text sets it
     Memory block_sums_;
 };
 

@@ -17,7 +17,8 @@ struct ManifoldSettings {
     /// ... and points within this part of the smaller body's box diagonal from the patch's centre.
     btScalar patch_reach = btScalar(0.25);
     /// A point whose contact is gone lives on for this many steps while its surfaces stay within the manifold's
-    /// breaking threshold: rays see only what penetrates, and a resting body must not lose its support in between.
+    /// breaking threshold: rays find only vertices that penetrate, and a resting body must not lose its support in
+    /// between.
     int keep_steps = 8;
 };
 
@@ -26,11 +27,11 @@ struct DispatcherStats {
     std::uint64_t pairs = 0;          ///< pairs of objects that RayContact handled
     std::uint64_t mesh_pairs = 0;     ///< pairs of meshes in its batch (a compound gives several)
     std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
-    std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nobody here can handle: no contacts
+    std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
     std::uint64_t contacts = 0;       ///< mesh and plane contacts found
     std::uint64_t points = 0;         ///< kept as manifold points
     std::uint64_t points_matched = 0; ///< of those, points that were there in the step before (same key)
-    std::uint64_t points_held = 0;    ///< points held although their contact is gone (ManifoldSettings::keep_steps)
+    std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
     std::uint64_t reduced_away = 0;   ///< contacts that no manifold point stands for
     std::uint64_t manifolds = 0;      ///< patches
 };
@@ -43,10 +44,10 @@ struct PointKey {
     friend bool operator==(const PointKey&, const PointKey&) = default;
 };
 
-/// Put in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
+/// Use it in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
 /// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, also inside compounds) go to RayContact in one batch a step;
-/// meshes against planes and height fields are handled here as well; all else falls through to Bullet's near callback.
-/// A mesh changed in place must be made known with refresh(). Not thread-safe, like Bullet's.
+/// meshes against planes and height fields are handled here as well; Bullet's near callback gets the rest. Call
+/// refresh() for a mesh that was changed in place. Not thread-safe, like Bullet's.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use.
@@ -58,12 +59,12 @@ public:
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
 
-    /// Optional: gives the object's meshes their place in scene() at once and keeps it when no pair needs it, so slots
-    /// follow the caller's order; returns the id of its first mesh. The object must be removed by remove_body
+    /// Optional: gives the object's meshes their slots in scene() at once and keeps them even when no pair needs them,
+    /// so slots follow the caller's order. Returns the id of its first mesh. The object must be removed by remove_body
     /// before it is deleted.
     BodyId add_body(const btCollisionObject& object);
     void remove_body(const btCollisionObject& object);
-    /// Converts the meshes of an object anew at the next dispatch: its mesh interface has been written to.
+    /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
     /// The batch: contacts(), pairs() and stats() of the last dispatch.

@@ -11,15 +11,15 @@ namespace raycontact::bullet {
 
 class MeshTree;
 
-/// What getAabb puts its world box around.
+/// What the world box of getAabb bounds.
 enum class Bounds {
     vertices, ///< the vertices (small groups of them for big meshes): fewest pairs
-    box,      ///< the local box, turned, as Bullet does for its own meshes: quicker, and about twice the pairs in a pile
+    box, ///< the local box, turned, as Bullet does for its own meshes: quicker, and about twice the pairs in a pile
 };
 
 /// A RayContact shape as a Bullet collision shape, moving or not. Bullet takes the body's origin for its centre of
 /// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. Convex shapes, compounds of them, rays
-/// and sweeps meet it through Bullet's own algorithms; meshes, planes and height fields through CollisionDispatcher.
+/// and sweeps are tested by Bullet's own algorithms; meshes, planes and height fields through CollisionDispatcher.
 ATTRIBUTE_ALIGNED16(class) MeshShape : public btConcaveShape {
 public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
