@@ -85,6 +85,13 @@ TEST(Load, ObjFacesOfEveryKind) {
     EXPECT_EQ(mesh.vertices[4], (Vec3{0, 0, 0}));
 }
 
+TEST(Load, ObjStatementsThatAreNotReadMayContinueOnTheNextLine) {
+    const TempFolder folder;
+    const Mesh mesh =
+        load_mesh(folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 \\\n3\ng a \\\r\nb\n# no end \\\nf 1 2 3\n"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
+}
+
 TEST(Load, LinesMayEndInCarriageReturnAlone) {
     const TempFolder folder;
     const Mesh mesh = load_mesh(folder.write("m.obj", "\xef\xbb\xbfv 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r"));
