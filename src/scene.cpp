@@ -141,6 +141,7 @@ Scene::Scene(const Settings& settings) {
 }
 Scene::~Scene() = default;
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): by value in the interface; the store keeps a copy
 BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     State& s = *state_;
     const BodyId id = s.slots.next();

@@ -177,7 +177,10 @@ Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions
             step.poses[body] = poses[slot_of(recorded.id)];
             body_of[recorded.id] = body;
         }
-        for (const auto& [a, b] : pairs) step.pairs.push_back(std::minmax(body_of.at(a), body_of.at(b)));
+        for (const auto& [a, b] : pairs) {
+            const auto [first, second] = std::minmax(body_of.at(a), body_of.at(b));
+            step.pairs.emplace_back(first, second);
+        }
         std::sort(step.pairs.begin(), step.pairs.end());
     }
     return work;

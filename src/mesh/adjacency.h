@@ -15,7 +15,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct HalfEdge {
     std::uint32_t lo, hi, corner;
     bool forward; ///< the triangle runs from lo to hi
-    friend auto operator<=>(const HalfEdge&, const HalfEdge&) = default;
+    friend auto operator<=>(const HalfEdge&,
+                            const HalfEdge&) = default; // NOLINT(modernize-use-nullptr): of clang-tidy 14
     std::uint32_t triangle() const { return corner / 3; }
 };
 

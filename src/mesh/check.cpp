@@ -70,10 +70,9 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
 
 void check_mesh(const Mesh& mesh, const std::string& name) {
     const auto fail = [&](const std::string& what) { throw InputError(name + ": " + what); };
-    constexpr std::size_t most = 0xffffffffu / 3; // three corners of every triangle are counted in 32 bits
     if (mesh.triangles.empty()) fail("has no triangles; export a triangle mesh");
-    if (mesh.triangles.size() >= most || mesh.vertices.size() >= 0xffffffffu)
-        fail("has more than " + std::to_string(most) + " triangles; split or reduce it");
+    if (mesh.triangles.size() > most_triangles || mesh.vertices.size() > most_vertices)
+        fail("has more than " + std::to_string(most_triangles) + " triangles; split or reduce it");
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (!is_finite(mesh.vertices[i])) fail("vertex " + std::to_string(i) + " is not finite");
     }

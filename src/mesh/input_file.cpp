@@ -40,7 +40,7 @@ void InputFile::fail_at(std::size_t line, const std::string& what) const {
     fail("line " + std::to_string(line) + ": " + what);
 }
 
-InputFile InputFile::read(const std::filesystem::path& path) {
+InputFile InputFile::read(const std::filesystem::path& path, std::size_t most) {
     InputFile file{path, printable(path.string()), {}};
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -49,9 +49,9 @@ InputFile InputFile::read(const std::filesystem::path& path) {
     if (status.type() == std::filesystem::file_type::directory) file.fail("is a folder; name a mesh file in it");
     // A pipe or device could block for ever or never end.
     if (status.type() != std::filesystem::file_type::regular) file.fail("is not an ordinary file; copy it to one");
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    const std::uintmax_t whole = std::filesystem::file_size(path, error), size = std::min<std::uintmax_t>(whole, most);
     if (error) file.fail("cannot be read: " + error.message());
-    if (size == 0) file.fail("is empty; export the mesh again");
+    if (whole == 0) file.fail("is empty; export the mesh again");
 
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!stream) file.fail(std::string("cannot be read: ") + std::strerror(errno));

@@ -15,14 +15,17 @@
 
 namespace raycontact {
 
+/// The limits on one mesh: three corners of every triangle are counted in 32 bits.
+constexpr std::size_t most_vertices = 0xfffffffeu, most_triangles = 0xffffffffu / 3 - 1;
+
 /// A whole file in memory. Its readers report errors in one line that names the file.
 struct InputFile {
     std::filesystem::path path;
     std::string shown; ///< the path, fit for a message
     std::string bytes;
 
-    /// Throws InputError unless it is an ordinary file that can be read and is not empty.
-    static InputFile read(const std::filesystem::path& path);
+    /// Throws InputError unless it is an ordinary file that can be read and is not empty. Stops after `most` bytes.
+    static InputFile read(const std::filesystem::path& path, std::size_t most = std::string::npos);
     [[noreturn]] void fail(const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };

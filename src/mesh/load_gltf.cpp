@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <deque>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -52,25 +53,15 @@ struct Placement {
     }
 };
 
-/// The member of an object; null where it is missing.
-const json& member(const json& object, const char* key) {
-    static const json missing;
-    const auto found = object.find(key);
-    return found == object.end() ? missing : *found;
-}
-
-/// Empty where the value is no text.
-std::string text_of(const json& value) {
-    return value.is_string() ? value.get<std::string>() : "";
-}
-
 // Stops at the padding, or at damage, which leaves too few bytes.
-std::string decoded_base64(std::string_view text) {
+std::string decoded_base64(std::string_view text, std::size_t most) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string bytes;
     std::size_t bits = 0;
     int count = 0;
+    bytes.reserve(std::min(most, text.size() / 4 * 3));
     for (const char c : text) {
+        if (bytes.size() == most) break;
         const std::size_t digit = digits.find(c);
         if (digit == std::string_view::npos) break;
         bits = bits << 6 | digit;
@@ -100,31 +91,46 @@ std::string decoded_uri(std::string_view uri) {
 class GltfReader {
 public:
     explicit GltfReader(const InputFile& file) : file_(file) {
-        const bool binary = file.bytes.starts_with("glTF");
-        const std::string_view text = binary ? chunk(12, "JSON") : std::string_view(file.bytes);
-        if (binary) after_json_ = 20 + text.size();
+        std::string_view text = file.bytes;
+        if (text.starts_with("glTF")) {
+            if (text.size() < 12 || read_bytes<std::uint32_t>(&text[8]) > text.size())
+                file.fail("has fewer bytes than its GLB header says; it is truncated");
+            if (read_bytes<std::uint32_t>(&text[4]) != 2) file.fail("is not of GLB version 2; export it as glTF 2.0");
+            text = chunk(12, "JSON");
+            after_json_ = 20 + text.size();
+        }
         json_ = json::parse(text);
-        if (!text_of(member(member(json_, "asset"), "version")).starts_with("2"))
+        if (!text_of(needed(needed(root_, "asset"), "version")).starts_with("2"))
             file.fail("is no sound glTF file: it does not say that its version is 2");
+        for (const char* key : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"}) {
+            for (std::size_t i = 0; i < list(root_, key).size(); ++i) check_object(item(key, i));
+        }
     }
 
     Mesh read() {
         for (const json& entry : list(root_, "extensionsRequired")) {
-            const std::string extension = text_of(entry);
+            const std::string extension = text_of({entry, "extensionsRequired"});
             if (extension != "KHR_mesh_quantization" && extension.find("materials") == std::string::npos
                 && extension.find("texture") == std::string::npos && extension.find("lights") == std::string::npos) {
                 file_.fail("needs the extension " + in_quotes(extension) + "; export without it");
             }
         }
-        for (std::size_t i = 0; i < list(root_, "buffers").size(); ++i)
-            buffers_.push_back(read_buffer(item("buffers", i)));
+        for (std::size_t i = 0; i < list(root_, "buffers").size(); ++i) buffers_.push_back(read_buffer(i));
         place_nodes();
+        constexpr std::size_t most_primitives = 1u << 22; // empty ones cost time, too
+        std::size_t placed = 0;
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const Item node = item("nodes", n);
-            if (!nodes_[n].in_scene || member(node.value, "mesh").is_null()) continue;
-            const Item mesh = item("meshes", whole(node, "mesh"));
-            for (const json& primitive : list(mesh, "primitives")) {
-                read_primitive({primitive, mesh.name + ".primitives"}, node.name, nodes_[n].placement);
+            const std::optional<Item> named = member(node, "mesh");
+            if (!named) continue;
+            const Item mesh = item("meshes", whole(*named));
+            if (!nodes_[n].in_scene) continue;
+            const json& primitives = list(mesh, "primitives");
+            placed += primitives.size();
+            if (placed > most_primitives) file_.fail("places too many primitives; split or reduce it");
+            for (std::size_t i = 0; i < primitives.size(); ++i) {
+                const std::string name = mesh.name + ".primitives[" + std::to_string(i) + "]";
+                read_primitive({primitives[i], name}, node.name, nodes_[n].placement);
             }
         }
         return std::move(mesh_);
@@ -157,18 +163,45 @@ private:
         return {entries[index], name};
     }
 
-    static Item member_of(const Item& of, const char* key) { return {member(of.value, key), of.name + "." + key}; }
+    void check_object(const Item& item) const {
+        if (!item.value.is_object()) fail(item, "is no object");
+    }
 
-    /// Null, which has no entries, where it is missing.
+    /// None where the key is missing. A null is a value, and of the wrong kind for every key.
+    std::optional<Item> member(const Item& of, const char* key) const {
+        check_object(of);
+        const auto found = of.value.find(key);
+        if (found == of.value.end()) return {};
+        return Item{*found, of.name + "." + key};
+    }
+
+    Item needed(const Item& of, const char* key) const {
+        if (const std::optional<Item> found = member(of, key)) return *found;
+        fail(of, "has no " + std::string(key));
+    }
+
+    /// Without entries where it is missing.
     const json& list(const Item& of, const char* key) const {
-        const Item found = member_of(of, key);
-        if (!found.value.is_array() && !found.value.is_null()) fail(found, "is no list");
-        return found.value;
+        static const json none = json::array();
+        const std::optional<Item> found = member(of, key);
+        if (found && !found->value.is_array()) fail(*found, "is no list");
+        return found ? found->value : none;
+    }
+
+    const std::string& text_of(const Item& text) const {
+        if (!text.value.is_string()) fail(text, "is no text");
+        return text.value.get_ref<const std::string&>();
+    }
+
+    /// False where it is missing.
+    bool flag(const Item& of, const char* key) const {
+        const std::optional<Item> found = member(of, key);
+        if (found && !found->value.is_boolean()) fail(*found, "is neither true nor false");
+        return found && found->value.get<bool>();
     }
 
     std::size_t whole(const Item& of, const char* key, std::optional<std::size_t> otherwise = {}) const {
-        const Item found = member_of(of, key);
-        return found.value.is_null() && otherwise ? *otherwise : whole(found);
+        return otherwise && !member(of, key) ? *otherwise : whole(needed(of, key));
     }
 
     std::size_t whole(const Item& number) const {
@@ -189,33 +222,45 @@ private:
     /// As many numbers as told, or none where the list is missing.
     std::vector<double> numbers(const Item& of, const char* key, std::size_t size) const {
         const json& entries = list(of, key);
-        if (entries.empty()) return {};
+        if (!member(of, key)) return {};
         if (entries.size() != size || !std::ranges::all_of(entries, [](const json& e) { return e.is_number(); }))
             fail(of, std::string(key) + " has not " + std::to_string(size) + " numbers");
         return entries.get<std::vector<double>>();
     }
 
-    std::string read_buffer(const Item& buffer) const {
-        const std::string uri = text_of(member(buffer.value, "uri"));
-        std::string bytes;
-        if (uri.empty()) {
-            bytes = chunk(after_json_, {"BIN\0", 4});
-        } else if (uri.starts_with("data:")) {
-            bytes = decoded_base64(std::string_view(uri).substr(uri.find(',') + 1));
-        } else {
-            try {
-                bytes = InputFile::read(file_.path.parent_path() / decoded_uri(uri)).bytes;
-            } catch (const InputError& error) {
-                fail(buffer, error.what());
-            }
-        }
+    /// As many bytes as the buffer announces; the rest of its file is not kept.
+    std::string_view read_buffer(std::size_t index) {
+        const Item buffer = item("buffers", index);
         const std::size_t length = whole(buffer, "byteLength");
+        std::string_view bytes;
+        if (const std::optional<Item> uri = member(buffer, "uri")) {
+            bytes = fetched_.emplace_back(fetched(*uri, length));
+            bytes_ += bytes.size();
+        } else {
+            // The chunk of a GLB is its first buffer (glTF 2.0, section 3.6.1.2).
+            if (index > 0 || !after_json_) file_.fail(buffer.name + " has no uri; it is damaged");
+            bytes = chunk(*after_json_, {"BIN\0", 4});
+        }
         if (bytes.size() < length) {
             fail(buffer, "has " + std::to_string(bytes.size()) + " bytes of " + std::to_string(length)
                              + "; it is truncated or damaged");
         }
-        bytes.resize(length);
-        return bytes;
+        return bytes.substr(0, length);
+    }
+
+    std::string fetched(const Item& uri, std::size_t most) const {
+        const std::string& text = text_of(uri);
+        if (!text.starts_with("data:")) {
+            try {
+                return InputFile::read(file_.path.parent_path() / decoded_uri(text), most).bytes;
+            } catch (const InputError& error) {
+                fail(uri, error.what());
+            }
+        }
+        const std::size_t data = text.find(',') + 1; // 0 where there is none
+        if (!std::string_view(text).substr(0, data).ends_with(";base64,"))
+            fail(uri, in_quotes(text) + " is no base64; export the buffer as a file or in base64");
+        return decoded_base64(std::string_view(text).substr(data), most);
     }
 
     // From the roots down, so that a deep chain costs each of its nodes once.
@@ -234,7 +279,7 @@ private:
         // The default scene, or the first; all nodes where the file has no scene.
         std::vector<std::size_t> order(nodes_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        const bool has_scene = !list(root_, "scenes").empty();
+        const bool has_scene = !list(root_, "scenes").empty() || member(root_, "scene");
         for (const std::size_t n : has_scene ? node_list(item("scenes", whole(root_, "scene", 0)), "nodes") : order)
             nodes_[n].in_scene = true;
         std::erase_if(order, [&](std::size_t n) { return nodes_[n].waits; });
@@ -283,6 +328,13 @@ private:
         fail(of, "component type " + std::to_string(code) + " is unknown");
     }
 
+    const NumberType& index_type(const Item& of) const {
+        const ComponentType& type = component_type(of);
+        if (type.code != 5121 && type.code != 5123 && type.code != 5125)
+            fail(of, "component type " + std::to_string(type.code) + ": indices must be unsigned whole numbers");
+        return type.number;
+    }
+
     /// `count` records of `width` numbers from the buffer view that `from` names.
     std::vector<double> stored(const Item& from, const NumberType& type, std::size_t count, std::size_t width) const {
         const Item view = item("bufferViews", whole(from, "bufferView"));
@@ -308,28 +360,30 @@ private:
 
     /// All numbers of an accessor.
     std::vector<double> read_accessor(const Item& accessor, const char* type, std::size_t width) const {
-        constexpr std::size_t most_zeros = 1u << 24; // a sparse accessor may start from nothing, within reason
-        if (member(accessor.value, "type") != type) fail(accessor, "is not of type " + std::string(type));
+        if (text_of(needed(accessor, "type")) != type) fail(accessor, "is not of type " + std::string(type));
         const ComponentType& component = component_type(accessor);
         const std::size_t count = whole(accessor, "count");
-        const bool has_data = !member(accessor.value, "bufferView").is_null();
-        if (!has_data && count > most_zeros) fail(accessor, "has " + std::to_string(count) + " records and no data");
-        std::vector<double> found(has_data ? 0 : count * width, 0.0);
+        const std::optional<Item> sparse = member(accessor, "sparse");
+        const bool has_data = member(accessor, "bufferView").has_value();
+        if (!has_data && !sparse) fail(accessor, "has neither a bufferView nor sparse records");
+        // Without data it starts from zeros. More than the file could ever replace are damage.
+        if (!has_data && count > bytes_) fail(accessor, "has more records than the file has bytes");
+        std::vector<double> found(has_data ? 0 : count * width);
         if (has_data) found = stored(accessor, component.number, count, width);
-        const Item sparse = member_of(accessor, "sparse");
-        if (!sparse.value.is_null()) {
-            const Item indices = member_of(sparse, "indices"), values = member_of(sparse, "values");
-            const std::size_t replaced = whole(sparse, "count");
-            const std::vector<double> where = stored(indices, component_type(indices).number, replaced, 1);
+        if (sparse) {
+            const Item indices = needed(*sparse, "indices"), values = needed(*sparse, "values");
+            const std::size_t replaced = whole(*sparse, "count");
+            if (replaced > count) fail(*sparse, "replaces more records than its accessor has");
+            const std::vector<double> where = stored(indices, index_type(indices), replaced, 1);
             const std::vector<double> with = stored(values, component.number, replaced, width);
             for (std::size_t i = 0; i < replaced; ++i) {
-                if (!(where[i] >= 0 && where[i] < static_cast<double>(count)))
-                    fail(sparse, "replaces a record that its accessor has not");
+                if (where[i] >= static_cast<double>(count))
+                    fail(*sparse, "replaces a record that its accessor has not");
                 for (std::size_t k = 0; k < width; ++k)
                     found[static_cast<std::size_t>(where[i]) * width + k] = with[i * width + k];
             }
         }
-        if (member(accessor.value, "normalized") == true && component.most > 0) {
+        if (flag(accessor, "normalized") && component.most > 0) {
             for (double& number : found) number = std::max(number / component.most, -1.0);
         }
         return found;
@@ -338,12 +392,14 @@ private:
     std::vector<std::uint32_t> corners(const Item& primitive, std::size_t vertices) const {
         std::vector<std::uint32_t> list(vertices);
         std::iota(list.begin(), list.end(), 0u);
-        if (member(primitive.value, "indices").is_null()) return list;
-        const Item accessor = item("accessors", whole(primitive, "indices"));
-        if (!component_type(accessor).number.whole) fail(accessor, "vertex indices must be whole numbers");
+        const std::optional<Item> indices = member(primitive, "indices");
+        if (!indices) return list;
+        const Item accessor = item("accessors", whole(*indices));
+        index_type(accessor);
+        if (flag(accessor, "normalized")) fail(accessor, "indices must not be normalized");
         list.clear();
         for (const double index : read_accessor(accessor, "SCALAR", 1)) {
-            if (!(index >= 0 && index < static_cast<double>(vertices))) {
+            if (index >= static_cast<double>(vertices)) {
                 fail(accessor, "record " + std::to_string(list.size()) + ": "
                                    + no_vertex(static_cast<std::int64_t>(index), vertices));
             }
@@ -355,15 +411,16 @@ private:
     void read_primitive(const Item& primitive, const std::string& node, const Placement& placement) {
         constexpr std::size_t triangles = 4, strip = 5, fan = 6;
         const std::size_t mode = whole(primitive, "mode", triangles);
-        if (mode < triangles || mode > fan) return;
-        const Item position = member_of(member_of(primitive, "attributes"), "POSITION");
-        if (position.value.is_null()) return; // allowed, and nothing to see
-        const Item accessor = item("accessors", whole(position));
+        if (mode > fan) fail(primitive, "mode " + std::to_string(mode) + " is not in 0 to 6");
+        const std::optional<Item> position = member(needed(primitive, "attributes"), "POSITION");
+        if (mode < triangles || !position) return; // allowed, and nothing to see
+        const Item accessor = item("accessors", whole(*position));
         const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
-        const std::vector<std::uint32_t> list = corners(primitive, points.size() / 3);
-
         const std::size_t base = mesh_.vertices.size();
-        if (base + points.size() / 3 >= 0xffffffffu) file_.fail("has too many vertices; split or reduce it");
+        if (base + points.size() / 3 > most_vertices) file_.fail("has too many vertices; split or reduce it");
+        const std::vector<std::uint32_t> list = corners(primitive, points.size() / 3);
+        const std::size_t more = mode == triangles ? list.size() / 3 : std::max<std::size_t>(list.size(), 2) - 2;
+        if (mesh_.triangles.size() + more > most_triangles) file_.fail("has too many triangles; split or reduce it");
         for (std::size_t i = 0; i < points.size(); i += 3) {
             mesh_.vertices.push_back(placement.placed({points[i], points[i + 1], points[i + 2]}));
             if (!is_finite(mesh_.vertices.back()))
@@ -387,8 +444,10 @@ private:
     const InputFile& file_;
     json json_;
     const Item root_{json_, "glTF"};
-    std::size_t after_json_ = std::string::npos; ///< where the second chunk of a GLB starts
-    std::vector<std::string> buffers_;
+    std::optional<std::size_t> after_json_;  ///< where the second chunk of a GLB starts
+    std::size_t bytes_ = file_.bytes.size(); ///< of the file and of all that its buffers fetched
+    std::deque<std::string> fetched_;        ///< never moved: buffers look into it
+    std::vector<std::string_view> buffers_;
     std::vector<Node> nodes_;
     Mesh mesh_;
 };
@@ -400,6 +459,8 @@ Mesh read_gltf(const InputFile& file) {
         return GltfReader(file).read();
     } catch (const json::parse_error& damage) {
         file.fail("is no sound glTF file: its JSON is damaged at byte " + std::to_string(damage.byte));
+    } catch (const json::exception&) {
+        file.fail("is no sound glTF file: a number of its JSON is too large");
     }
 }
 

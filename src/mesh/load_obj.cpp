@@ -36,6 +36,7 @@ public:
             } else if (!statement.empty() && std::ranges::find(other_statements, statement) == other_statements.end()) {
                 scanner_.fail(in_quotes(statement) + " is no OBJ statement; the file is damaged or of another format");
             }
+            while (!scanner_.word_on_line().empty()) continue; // a statement may go on on the next line
         } while (scanner_.next_line());
         for (const auto& [vertex, line] : forward_) {
             if (vertex >= mesh_.vertices.size()) {

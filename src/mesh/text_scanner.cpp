@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <clocale>
 #include <cmath>
 #include <cstdlib>
 #include <system_error>
@@ -78,8 +79,10 @@ std::string_view TextScanner::word() {
 double TextScanner::number(std::string_view word, const char* what) const {
     double value = 0;
     // Out of range is either too large, refused below, or so small that it rounds to (nearly) zero.
-    if (parse(*this, word, what, "number", value) == std::errc::result_out_of_range)
-        value = std::strtod(std::string(word).c_str(), nullptr);
+    if (parse(*this, word, what, "number", value) == std::errc::result_out_of_range) {
+        static const locale_t with_points = newlocale(LC_ALL_MASK, "C", nullptr); // the program's may have commas
+        value = strtod_l(std::string(word).c_str(), nullptr, with_points);
+    }
     if (!std::isfinite(value)) fail(std::string(what) + " " + in_quotes(word) + " is not finite");
     return value;
 }

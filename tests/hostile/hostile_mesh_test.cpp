@@ -290,6 +290,83 @@ TEST(HostileMesh, Gltf) {
     refused(folder.write("deeper.gltf", R"({"asset":{"version":"2.0","extras":)" + std::string(50000, '[')));
 }
 
+TEST(HostileMesh, GltfErrorsSayWhatIsWrongAndWhere) {
+    struct Case {
+        const char *old, *with, *words;
+    };
+    const std::vector<Case> cases{
+        {R"({"asset")", R"({"x":1e999,"asset")", "a number of its JSON is too large"},
+        // A null is not taken for a missing value.
+        {R"("indices":1)", R"("indices":null)", "meshes[0].primitives[0].indices: is not a whole number"},
+        {R"("byteOffset":0)", R"("byteOffset":null)", "bufferViews[0].byteOffset: is not a whole number"},
+        {R"("bufferView":0)", R"("bufferView":null)", "accessors[0].bufferView: is not a whole number"},
+        {R"("POSITION":0)", R"("POSITION":null)", "primitives[0].attributes.POSITION: is not a whole number"},
+        {R"([{"mesh":0}])", R"([{"mesh":0},{"mesh":null}])", "nodes[1].mesh: is not a whole number"},
+        {R"([{"mesh":0}])", R"([{"mesh":0,"scale":null}])", "nodes[0].scale: is no list"},
+        {R"([{"mesh":0}])", R"([{"mesh":0,"scale":[]}])", "nodes[0]: scale has not 3 numbers"},
+        {R"("scene":0)", R"("scene":null)", "scene: is not a whole number"},
+        {R"("scene":0,"scenes":[{"nodes":[0]}])", R"("scene":0)", "scenes[0] does not exist"},
+        // Indices.
+        {R"("count":144)", R"("count":144,"normalized":true)", "accessors[1]: indices must not be normalized"},
+        {R"("componentType":5125)", R"("componentType":5120)", "accessors[1]: component type 5120: indices must be"},
+        {R"("componentType":5125)", R"("componentType":5122)", "accessors[1]: component type 5122: indices must be"},
+        {R"("componentType":5125)", R"("componentType":5126)", "accessors[1]: component type 5126: indices must be"},
+        // Records without data.
+        {R"("bufferView":1,)", "", "accessors[1]: has neither a bufferView nor sparse records"},
+        {R"("bufferView":0,)", "", "accessors[0]: has neither a bufferView nor sparse records"},
+        {R"("bufferView":0,"componentType":5126,"count":24)",
+         R"("sparse":{"count":0,"indices":{"bufferView":1,"componentType":5125},"values":{"bufferView":0}},)"
+         R"("componentType":5126,"count":16000000)",
+         "accessors[0]: has more records than the file has bytes"},
+        {R"("count":24)",
+         R"("sparse":{"count":25,"indices":{"bufferView":1,"componentType":5125},"values":{"bufferView":1}},)"
+         R"("count":24)",
+         "accessors[0].sparse: replaces more records than its accessor has"},
+        {R"("count":24)",
+         R"("sparse":{"count":1,"indices":{"bufferView":1,"componentType":5126},"values":{"bufferView":0}},)"
+         R"("count":24)",
+         "accessors[0].sparse.indices: component type 5126: indices must be"},
+        {R"("count":24)", R"("count":24,"sparse":[])", "accessors[0].sparse: is no object"},
+        // Values of the wrong kind.
+        {R"([{"mesh":0}])", R"([{"mesh":0},7])", "nodes[1]: is no object"},
+        {R"("meshes":[)", R"("meshes":[{"primitives":[]},[],)", "meshes[1]: is no object"},
+        {R"("indices":1})", R"("indices":1},5)", "meshes[0].primitives[1]: is no object"},
+        {R"("indices":1})", R"("indices":1},{})", "meshes[0].primitives[1]: has no attributes"},
+        {R"({"POSITION":0})", "[0]", "meshes[0].primitives[0].attributes: is no object"},
+        {R"("indices":1)", R"("indices":1,"mode":9)", "meshes[0].primitives[0]: mode 9 is not in 0 to 6"},
+        {R"("count":24)", R"("count":24,"normalized":1)", "accessors[0].normalized: is neither true nor false"},
+        {R"("count":24,"type":"VEC3")", R"("count":24,"type":3)", "accessors[0].type: is no text"},
+        {R"("count":24,)", "", "accessors[0]: has no count"},
+        {R"({"byteLength":864)", R"({"uri":7,"byteLength":864)", "buffers[0].uri: is no text"},
+        {R"([{"byteLength":864})", R"([{"byteLength":864},{"byteLength":0})", "buffers[1] has no uri"},
+        {R"({"byteLength":864)", R"({"uri":"data:,AAAA","byteLength":864)", "'data:,AAAA' is no base64"},
+        {R"({"byteLength":864)", R"({"uri":"data:;base64","byteLength":864)", "'data:;base64' is no base64"},
+        {R"({"byteLength":864)", R"({"uri":"data:;base64,AAAA","byteLength":864)", "buffers[0]: has 3 bytes of 864"}};
+    const TempFolder folder;
+    const std::string json = gltf_json(sound(), R"([{"mesh":0}])", ""), buffer = gltf_buffer(sound());
+    const auto expect = [](const std::string& error, const std::string& words) {
+        EXPECT_NE(error.find(words), std::string::npos) << error << "\nlacks: " << words;
+    };
+    for (const auto& [old, with, words] : cases)
+        expect(refused(folder.write("t.glb", glb(replaced(json, old, with), buffer))), words);
+    expect(refused(folder.write("t.gltf", json)), "buffers[0] has no uri");
+    expect(refused(folder.write("t.glb", as_glb(sound()).replace(4, 1, "\1"))), "is not of GLB version 2");
+    expect(refused(folder.write("t.glb", as_glb(sound()).replace(10, 1, "\1"))),
+           "fewer bytes than its GLB header says");
+    expect(refused(folder.write("t.glb", "glTF")), "fewer bytes than its GLB header says");
+}
+
+TEST(HostileMesh, ManyPrimitivesInManyNodesAreNoLongWait) {
+    const TempFolder folder;
+    std::string nodes = R"({"mesh":0})", primitives = R"({"attributes":{}})";
+    for (int i = 1; i < 45000; ++i) nodes += R"(,{"mesh":0})";
+    for (int i = 1; i < 166000; ++i) primitives += R"(,{"attributes":{}})";
+    const std::string error =
+        refused(folder.write("many.gltf", R"({"asset":{"version":"2.0"},"nodes":[)" + nodes
+                                              + R"(],"meshes":[{"primitives":[)" + primitives + "]}]}"));
+    EXPECT_NE(error.find("places too many primitives"), std::string::npos) << error;
+}
+
 TEST(HostileMesh, DeepChainOfNodesIsNoLongWait) {
     const TempFolder folder;
     std::string nodes = "[";

@@ -39,6 +39,16 @@ TEST(LoadGltf, BufferInsideAndBeside) {
     }
 }
 
+TEST(LoadGltf, BufferFileMayBeLongerThanItsBuffer) {
+    const TempFolder folder;
+    const Mesh made = quad();
+    const std::filesystem::path buffer = folder.write("m.bin", gltf_buffer(made));
+    std::filesystem::resize_file(buffer, std::uintmax_t{1} << 40); // more than fits memory, and nearly all of it a hole
+    const Mesh mesh = load_mesh(folder.write("m.gltf", gltf_json(made, R"([{"mesh":0}])", "m.bin")));
+    EXPECT_EQ(mesh.vertices, made.vertices);
+    EXPECT_EQ(mesh.triangles, made.triangles);
+}
+
 TEST(LoadGltf, BufferInBase64) {
     const TempFolder folder;
     // (0 0 0), (1 0 0), (0 1 0); then 0 1 2 in 16 bits: 42 bytes.

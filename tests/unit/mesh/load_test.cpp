@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 #include <tiny_obj_loader.h>
 
+#include <clocale>
+#include <cstdlib>
+
 using namespace raycontact;
 using namespace raycontact::test;
 
@@ -83,6 +86,25 @@ TEST(Load, ObjFacesOfEveryKind) {
     EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 1, 4}}));
     EXPECT_EQ(mesh.vertices.size(), 5u);
     EXPECT_EQ(mesh.vertices[4], (Vec3{0, 0, 0}));
+}
+
+TEST(Load, ObjStatementsThatAreNotReadMayContinueOnTheNextLine) {
+    const TempFolder folder;
+    const Mesh mesh =
+        load_mesh(folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 \\\n3\ng a \\\r\nb\n# no end \\\nf 1 2 3\n"));
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}}));
+}
+
+TEST(Load, NumbersHaveAPointInEveryLocale) {
+    const TempFolder folder;
+    const std::string made = "localedef -i de_DE -f UTF-8 " + (folder.path() / "comma").string() + " 2> /dev/null";
+    if (std::system(made.c_str()) != 0) GTEST_SKIP() << "localedef cannot make de_DE";
+    ::setenv("LOCPATH", folder.path().c_str(), 1);
+    ASSERT_NE(std::setlocale(LC_NUMERIC, "comma"), nullptr);
+    const Mesh mesh = load_mesh(folder.write("m.obj", "v 1.5e-400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    std::setlocale(LC_NUMERIC, "C");
+    ::unsetenv("LOCPATH");
+    EXPECT_EQ(mesh.vertices[0], (Vec3{0, 0, 0}));
 }
 
 TEST(Load, LinesMayEndInCarriageReturnAlone) {
