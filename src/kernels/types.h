@@ -145,8 +145,8 @@ STRUCT(Candidate) {
 };
 WIRE_SIZE(Candidate, 8);
 
-// How a pair's rays ended. kept: candidates for the next step; predictions: those of them without contact. walks; lost:
-// those that ended nowhere; cast: those of the lost that were cast in full.
+// How a pair's rays ended. kept: candidates for the next step; predictions: those of them without contact. lost: walks
+// that ended nowhere. cast: rays cast in full, after such a walk or in a full look.
 STRUCT(Followed) {
     uint kept;
     uint predictions;
