@@ -38,17 +38,10 @@ struct Prototype;
 #undef RAYCONTACT_KERNEL
 #undef RAYCONTACT_CPU_KERNEL
 
-/// How many items a GPU makes of one of the host's: these kernels' are blocks of vertices.
-constexpr kernels::uint vertices_each(KernelId kernel) {
-    switch (kernel) {
-    case KernelId::count_rays:
-    case KernelId::write_rays:
-    case KernelId::count_near_rays:
-    case KernelId::write_near_rays:
-        return VERTEX_LANES;
-    default:
-        return 1;
-    }
+/// Whether the kernel's items are blocks of vertices (FOR_EACH_VERTICES), which a GPU takes apart.
+constexpr bool is_over_vertices(KernelId kernel) {
+    return kernel == KernelId::count_rays || kernel == KernelId::write_rays || kernel == KernelId::count_near_rays
+           || kernel == KernelId::write_near_rays;
 }
 
 } // namespace raycontact

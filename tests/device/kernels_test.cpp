@@ -67,12 +67,7 @@ TEST(opencl, every_exact_device_leaves_the_same_bytes) {
 
 // A CPU's driver is given a block of vertices an item; a GPU's items are single vertices.
 TEST(opencl, a_vertex_an_item_leaves_the_same_bytes) {
-    const auto single = [](opencl::Source& source) {
-        const std::string_view many = "VERTICES_AT_ONCE=16";
-        const auto at = source.options.find(many);
-        ASSERT_NE(at, std::string::npos) << "not a CPU's driver: every other test has single vertices";
-        source.options.replace(at, many.size(), "VERTICES_AT_ONCE=1");
-    };
+    const auto single = [](opencl::Source& source) { source.vertices_at_once = 1; };
     const Outcome outcome =
         run_work({std::make_unique<Executor>(1), opencl::open("opencl:0", false, single)}, work(), every_way());
     EXPECT_EQ(first_difference(expected().trace, outcome.trace), "");

@@ -33,7 +33,8 @@ class DriverDevice : public Device, private Queue {
 public:
     DriverDevice(const Listed& listed, const Source& source)
         : info_(listed.info), context_(make_context(listed.id)), program_(context_.get(), listed.id, source),
-          launcher_(context_.get(), listed.id), scan_(program_, context_.get(), listed.id) {
+          block_items_(VERTEX_LANES / source.vertices_at_once), launcher_(context_.get(), listed.id),
+          scan_(program_, context_.get(), listed.id) {
         const Probed probed = probe(launcher_, program_, source, context_.get());
         if (info_.exact && !probed.differs.empty()) {
             info_.exact = info_.usable = false;
@@ -98,7 +99,8 @@ private:
             else
                 set_argument(kernel, at++, memory_of(argument.buffer));
         }
-        launcher_.over_items(kernel, Program::name_of(id), std::size_t{vertices_each(id)} * count.most);
+        launcher_.over_items(kernel, Program::name_of(id),
+                             std::size_t{count.most} * (is_over_vertices(id) ? block_items_ : 1));
     }
     kernels::uint scan(const ScanOf& scan) override {
         return scan_.run(launcher_, scan);
@@ -115,6 +117,7 @@ private:
     DeviceTraits traits_;
     Context context_;
     Program program_;
+    std::size_t block_items_; ///< of a block of vertices, in the kernels over vertices
     Launcher launcher_;
     Scan scan_;
 };

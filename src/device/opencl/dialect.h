@@ -13,9 +13,7 @@
 #define ALL(n) (n##_counts ? n##_counts[n##_value] : n##_value)
 #define FOR_EACH(i, n)                                                                                                 \
     for (uint i = (uint)get_global_id(0), i##_end = ALL(n); i < i##_end; i += (uint)get_global_size(0))
-#ifndef VERTICES_AT_ONCE // a build option: 16 for a CPU
-#define VERTICES_AT_ONCE 1
-#endif
+// VERTICES_AT_ONCE is a build option (Source::vertices_at_once).
 #define BLOCK_ITEMS (VERTEX_LANES / VERTICES_AT_ONCE)
 #define FOR_EACH_VERTICES(i, first, n)                                                                                 \
     for (uint v = (uint)get_global_id(0), v_end = BLOCK_ITEMS * ALL(n), i = v / BLOCK_ITEMS,                           \

@@ -37,8 +37,9 @@ Source exact_source(cl_device_id device) {
     const bool has_double = claims_double(device);
     std::string options = "-cl-std=CL1.2";
     if (rounds) options += " -cl-fp32-correctly-rounded-divide-sqrt";
-    if (is_cpu(device)) options += " -D VERTICES_AT_ONCE=16"; // with one vertex an item a step takes twice as long
-    return {kernel_text(opencl_pieces, has_double), options, has_double};
+    // With a vertex an item, a step takes PoCL twice the time.
+    const kernels::uint vertices_at_once = is_cpu(device) ? VERTEX_LANES : 1;
+    return {kernel_text(opencl_pieces, has_double), options, has_double, vertices_at_once};
 }
 
 Program::Program(cl_context context, cl_device_id device, const Source& source) {
@@ -46,7 +47,8 @@ Program::Program(cl_context context, cl_device_id device, const Source& source) 
     const char* text = source.text.c_str();
     program_.reset(clCreateProgramWithSource(context, 1, &text, nullptr, &status));
     check(status, "clCreateProgramWithSource");
-    status = clBuildProgram(program_.get(), 1, &device, source.options.c_str(), nullptr, nullptr);
+    const std::string options = source.options + " -D VERTICES_AT_ONCE=" + std::to_string(source.vertices_at_once);
+    status = clBuildProgram(program_.get(), 1, &device, options.c_str(), nullptr, nullptr);
     if (status != CL_SUCCESS) {
         std::size_t size = 0;
         clGetProgramBuildInfo(program_.get(), device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);

@@ -11,7 +11,8 @@ namespace raycontact::opencl {
 /// The text that is built, and its build options.
 struct Source {
     std::string text, options;
-    bool has_double = true; ///< it contains the kernels that compute in double
+    bool has_double = true;             ///< it contains the kernels that compute in double
+    kernels::uint vertices_at_once = 1; ///< that an item handles in the kernels over vertices; VERTEX_LANES for a CPU
 };
 
 /// The kernels, with the build options that give our bits on this device.
