@@ -80,7 +80,7 @@ DEVICE void test_caps(HeldGroup* group) {
 }
 
 // Rays that missed their triangle go on to the neighbour across the edge `beyond`. Returns how many did.
-DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
+DEVICE uint step_over(const RayArrays* arrays, READS(Face) faces, HeldGroup* group) {
     uint stepped = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) {
         if (group->beyond[r] == 0u) continue;
@@ -97,11 +97,11 @@ DEVICE uint step_over(const Arrays* arrays, READS(Face) faces, HeldGroup* group)
 }
 
 // Decides rays by their tubes, and the others by their caps.
-DEVICE void test_tubes_and_caps(const Arrays* arrays, READS(Face) faces, HeldGroup* group) {
+DEVICE void test_tubes_and_caps(const RayArrays* arrays, READS(Face) faces, HeldGroup* group) {
     test_held(group);
-    uint asks = 0u;
-    for (uint r = 0u; r < group->rays.count; ++r) asks |= group->tests_cap[r] & (group->is_known[r] ^ 1u);
-    if (asks == 0u) return;
+    uint undecided = 0u;
+    for (uint r = 0u; r < group->rays.count; ++r) undecided |= group->tests_cap[r] & (group->is_known[r] ^ 1u);
+    if (undecided == 0u) return;
     test_caps(group);
     for (uint step = 0u; step < MOST_STEPS && step_over(arrays, faces, group) != 0u; ++step) {
         test_held(group);

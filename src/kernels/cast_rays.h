@@ -15,7 +15,7 @@ DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
 
 // The shape arrays that casting kernels read, and the results that they write. Columns of outcomes: the ray is a
 // contact; its side tests; it was cast in full.
-STRUCT(Arrays) {
+STRUCT(RayArrays) {
     READS(ShapeHeader) shapes;
     READS(Node) nodes;
     READS(TriangleBlock) blocks;
@@ -25,7 +25,7 @@ STRUCT(Arrays) {
     WRITES(uint) outcomes;
 };
 
-DEVICE Closest traverse(const Arrays* arrays, const uint caster, const RayFrame* ray, float reach,
+DEVICE Closest traverse(const RayArrays* arrays, const uint caster, const RayFrame* ray, float reach,
                         READS(ShapeHeader) shape) {
     if (caster == CASTER_BVH) return traverse_bvh(ray, reach, shape, arrays->nodes, arrays->blocks);
     Closest closest = nothing_hit(reach, shape->tolerance);
@@ -35,7 +35,7 @@ DEVICE Closest traverse(const Arrays* arrays, const uint caster, const RayFrame*
 
 // The closest hits of a group's rays, or of the opposite rays, by the BVH. A group of several rays is cast together,
 // each as far as its `length`; a hit so near is the closest of all. The other rays are cast one by one.
-DEVICE void find_group(const Arrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
+DEVICE void find_group(const RayArrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
     frame_group(group, opposite);
     const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->nodes, arrays->blocks) : 1u;
     for (uint r = 0u; r < group->count; ++r) {
@@ -52,8 +52,8 @@ DEVICE Hit no_contact(uint sides) {
 }
 
 // The hit of a ray that meets the triangle from inside.
-DEVICE Hit hit_of(const Arrays* arrays, const SourceRay* ray, READS(ShapeHeader) shape, uint triangle, float distance,
-                  uint sides) {
+DEVICE Hit hit_of(const RayArrays* arrays, const SourceRay* ray, READS(ShapeHeader) shape, uint triangle,
+                  float distance, uint sides) {
     const Packed3 n = arrays->normals[shape->normal_first + triangle];
     const float facing = (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
     const Hit hit = {triangle, distance, facing, sides};
@@ -65,7 +65,7 @@ DEVICE uint is_contact(const Hit hit) {
     return (uint)(hit.triangle != NONE) & (uint)(hit.distance * hit.facing > 0.0f);
 }
 
-DEVICE void record_hit(const Arrays* arrays, uint at, const Hit hit, uint was_cast) {
+DEVICE void record_hit(const RayArrays* arrays, uint at, const Hit hit, uint was_cast) {
     arrays->hits[at] = hit;
     arrays->outcomes[at] = is_contact(hit);
     arrays->outcomes[arrays->stride + at] = hit.sides;
@@ -76,7 +76,7 @@ DEVICE void record_hit(const Arrays* arrays, uint at, const Hit hit, uint was_ca
 // back faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent
 // a contact a body size away. Then other directions from the same point decide whether it is inside a closed mesh. An
 // open mesh has no inside: there such a ray is no contact.
-DEVICE Hit decide(const Arrays* arrays, const uint caster, const SourceRay* ray, const Closest* own,
+DEVICE Hit decide(const RayArrays* arrays, const uint caster, const SourceRay* ray, const Closest* own,
                   READS(ShapeHeader) shape) {
     int decided = verdict(own, ray->reach, shape->tolerance);
     uint sides = 0u;
@@ -95,7 +95,7 @@ DEVICE Hit decide(const Arrays* arrays, const uint caster, const SourceRay* ray,
 }
 
 // Casts the rays of a group, decides each of them and records its hit.
-DEVICE void cast_group(const Arrays* arrays, Closest* own, RayGroup* group) {
+DEVICE void cast_group(const RayArrays* arrays, Closest* own, RayGroup* group) {
     READS(ShapeHeader) shapes = arrays->shapes;
     find_group(arrays, own, group, false);
     for (uint r = 0u; r < group->count; ++r)
@@ -111,7 +111,7 @@ DEVICE void cast_group(const Arrays* arrays, Closest* own, RayGroup* group) {
 KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                           READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                           READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
-    const Arrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+    const RayArrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         RayGroup group;
         Closest own[RAYS_IN_GROUP];
@@ -130,7 +130,7 @@ KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, 
 KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                             READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                             READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
-    const Arrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+    const RayArrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     FOR_EACH_FEW(i, few, RAYS_AT_ONCE, count) {
         SourceRay source[RAYS_AT_ONCE];
         RayFrame frame[RAYS_AT_ONCE];

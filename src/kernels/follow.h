@@ -19,7 +19,7 @@ STRUCT(Outcome) {
 
 // The arguments of a kernel that follows rays.
 STRUCT(Follow) {
-    Arrays all;
+    RayArrays all;
     READS(Face) faces;
     READS(DirectedPair) pairs;
     READS(float) cullings; // by pair, metres; below 0: no predictive rays
@@ -217,7 +217,7 @@ DEVICE_BATCH void cast_ahead(const Follow* follow, RayGroup* ahead) {
 }
 
 // Casts rays in full. If one is no contact, its predictive ray is cast next.
-DEVICE_BATCH void cast_casting(const Follow* follow, RayGroup* casting, RayGroup* ahead) {
+DEVICE_BATCH void cast_group_in_full(const Follow* follow, RayGroup* casting, RayGroup* ahead) {
     Closest met[RAYS_IN_GROUP];
     cast_group(&follow->all, met, casting);
     for (uint r = 0u; r < casting->count; ++r) {
@@ -237,7 +237,7 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
                             READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                             READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
                             WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
-    const Arrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+    const RayArrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     const Follow follow = {all,    faces, pairs, cullings,       vertices,   rays,
                            starts, nexts, hows,  max_iterations, predictive, cast_lost};
     RayGroup casting, ahead;
@@ -250,14 +250,14 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
         if ((end.how & CAST) == 0u) continue;
         if (ray.inside != 0u) {
             add_ray(&casting, i, &ray.own, ray.own.reach, ray.pair, ray.target, shapes);
-            if (is_full(&casting)) cast_casting(&follow, &casting, &ahead);
+            if (is_full(&casting)) cast_group_in_full(&follow, &casting, &ahead);
         } else if (predictive != 0u && end.next == NONE && ray.culling >= 0.0f) {
             add_ray(&ahead, i, &ray.own, ray.culling, ray.pair, ray.target, shapes);
             if (is_full(&ahead)) cast_ahead(&follow, &ahead);
         }
     }
     if (RAYS_IN_GROUP > 1) {
-        cast_casting(&follow, &casting, &ahead);
+        cast_group_in_full(&follow, &casting, &ahead);
         cast_ahead(&follow, &ahead);
     }
 }
@@ -267,7 +267,7 @@ KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive
                               READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
                               READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
                               WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
-    const Arrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+    const RayArrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
     const Follow follow = {all,    faces, pairs, cullings,       vertices,   rays,
                            starts, nexts, hows,  max_iterations, predictive, cast_lost};
     FOR_EACH(i, count) {

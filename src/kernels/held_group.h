@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests whether what is kept of a ray (Held) still decides it (docs/certified.md), for a group of rays, one in each
-// lane. Nearly every ray at rest is decided so. On a GPU a group is one ray.
+// lane. Nearly every ray at rest is decided so.
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f
@@ -32,7 +32,7 @@ DEVICE void prefetch_triangle(READS(TriangleBlock) block, uint lane) {
     for (int k = 0; k < 9; ++k) PREFETCH(block->corner[0], TRIANGLE_LANES * k + lane);
 }
 
-DEVICE void add_held(const Arrays* arrays, HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
+DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
                      READS(HeldRange) held_range, uint pair, uint target) {
     const uint r = group->rays.count;
     add_ray(&group->rays, at, ray, ray->reach, pair, target, arrays->shapes);
@@ -52,7 +52,7 @@ DEVICE void add_held(const Arrays* arrays, HeldGroup* group, uint at, const Sour
     if (held_range->tests_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
 }
 
-DEVICE void fetch_triangle(const Arrays* arrays, HeldGroup* group, uint r) {
+DEVICE void fetch_triangle(const RayArrays* arrays, HeldGroup* group, uint r) {
     const uint triangle_lane = group->triangle_lane[r], lane = triangle_lane % TRIANGLE_LANES;
     READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + triangle_lane / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
@@ -62,7 +62,7 @@ DEVICE void fetch_triangle(const Arrays* arrays, HeldGroup* group, uint r) {
 }
 
 // Loads what add_held() has prefetched.
-DEVICE void fetch_triangles(const Arrays* arrays, HeldGroup* group) {
+DEVICE void fetch_triangles(const RayArrays* arrays, HeldGroup* group) {
     for (uint r = 0u; r < group->rays.count; ++r)
         if (group->triangle_lane[r] != NONE) fetch_triangle(arrays, group, r);
 }
@@ -130,7 +130,7 @@ DEVICE void test_held(HeldGroup* group) {
 }
 
 // The result of decide(). A single triangle cannot be confused with another, so no other direction is cast.
-DEVICE Hit held_hit(const Arrays* arrays, const HeldGroup* group, uint r) {
+DEVICE Hit held_hit(const RayArrays* arrays, const HeldGroup* group, uint r) {
     const SourceRay ray = ray_of(&group->rays, r);
     return group->is_hit[r] != 0u ? hit_of(arrays, &ray, arrays->shapes + group->rays.target[r], group->triangle[r],
                                            group->distance[r], 0u)

@@ -31,8 +31,8 @@ DEVICE bool is_idle(READS(HeldRange) held_range) {
 }
 
 // Searches a tube around a ray that was cast. Returns what is kept of the ray.
-DEVICE_BATCH Held seek_tube(const Arrays* arrays, const SourceRay* ray, const Closest* own, READS(HeldRange) held_range,
-                            READS(ShapeHeader) shape) {
+DEVICE_BATCH Held seek_tube(const RayArrays* arrays, const SourceRay* ray, const Closest* own,
+                            READS(HeldRange) held_range, READS(ShapeHeader) shape) {
     Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
@@ -56,7 +56,7 @@ DEVICE_BATCH Held seek_tube(const Arrays* arrays, const SourceRay* ray, const Cl
 
 // before, after: what was kept of rays in the last step, and what is kept in this one; not written for idle pairs.
 STRUCT(Holding) {
-    Arrays all;
+    RayArrays all;
     READS(Face) faces;
     READS(HeldRange) held_ranges; // by pair
     READS(Held) before;

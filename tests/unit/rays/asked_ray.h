@@ -50,8 +50,8 @@ struct Said {
 };
 
 /// What kernels read of a shape alone.
-inline kernels::prototype::Arrays arrays_of(const ShapeData& shape) {
-    kernels::prototype::Arrays arrays{};
+inline kernels::prototype::RayArrays arrays_of(const ShapeData& shape) {
+    kernels::prototype::RayArrays arrays{};
     arrays.shapes = &shape.header;
     arrays.nodes = shape.nodes.data();
     arrays.blocks = shape.triangle_blocks.data();
@@ -60,8 +60,8 @@ inline kernels::prototype::Arrays arrays_of(const ShapeData& shape) {
 }
 
 /// Of the ray in that lane of a group that has been asked; nothing, where the ray is not known.
-inline std::optional<Said> said_of(const kernels::prototype::Arrays& arrays, const kernels::prototype::HeldGroup& group,
-                                   std::uint32_t lane) {
+inline std::optional<Said> said_of(const kernels::prototype::RayArrays& arrays,
+                                   const kernels::prototype::HeldGroup& group, std::uint32_t lane) {
     if (group.is_known[lane] == 0) return std::nullopt;
     return Said{kernels::prototype::held_hit(&arrays, &group, lane), group.triangle_lane[lane]};
 }
@@ -70,7 +70,7 @@ inline std::optional<Said> said_of(const kernels::prototype::Arrays& arrays, con
 inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const kernels::Held& held,
                                const ShapeData& target, const kernels::HeldRange& held_range, std::uint32_t lane) {
     using namespace kernels::prototype;
-    const Arrays arrays = arrays_of(target);
+    const RayArrays arrays = arrays_of(target);
     HeldGroup group{};
     for (std::uint32_t i = 0; i <= lane; ++i) add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, 0);
     fetch_triangles(&arrays, &group);
@@ -86,7 +86,7 @@ inline kernels::prototype::Closest closest(const kernels::prototype::SourceRay& 
 
 inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
     const kernels::prototype::Closest met = closest(ray, target);
-    const kernels::prototype::Arrays arrays = arrays_of(target);
+    const kernels::prototype::RayArrays arrays = arrays_of(target);
     return kernels::prototype::decide(&arrays, CASTER_BVH, &ray, &met, &target.header);
 }
 
@@ -94,7 +94,7 @@ inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeDa
 inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, const ShapeData& target,
                                      const kernels::HeldRange& held_range) {
     const kernels::prototype::Closest met = closest(ray, target);
-    const kernels::prototype::Arrays arrays = arrays_of(target);
+    const kernels::prototype::RayArrays arrays = arrays_of(target);
     return kernels::prototype::seek_tube(&arrays, &ray, &met, &held_range, &target.header);
 }
 

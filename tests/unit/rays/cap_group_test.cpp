@@ -30,8 +30,8 @@ struct Ground {
         }
     }
 
-    kernels::prototype::Arrays arrays() const {
-        kernels::prototype::Arrays arrays{};
+    kernels::prototype::RayArrays arrays() const {
+        kernels::prototype::RayArrays arrays{};
         arrays.shapes = headers.data();
         arrays.blocks = blocks.data();
         arrays.normals = normals.data();
@@ -80,7 +80,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
     std::vector<std::shared_ptr<const Shape>> shapes = crowd_shapes(Kind::concave, 1);
     for (const char* kind : {"sphere", "knot"}) shapes.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
     const Ground ground(shapes);
-    const kernels::prototype::Arrays arrays = ground.arrays();
+    const kernels::prototype::RayArrays arrays = ground.arrays();
     Random random(14);
     kernels::prototype::HeldGroup group{};
     std::uint64_t rays = 0, by_tube = 0, by_cap = 0, stepped = 0, differing = 0;

@@ -21,8 +21,8 @@ using reference::Random;
 constexpr std::uint32_t blocks_of_shape = 3;
 
 struct Ground {
-    Arrays arrays() const {
-        Arrays arrays{};
+    RayArrays arrays() const {
+        RayArrays arrays{};
         arrays.shapes = shapes.data();
         arrays.blocks = blocks.data();
         arrays.normals = normals.data();
@@ -142,7 +142,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     if (!known) return;
     ++counts.known;
     // Of one triangle there is nothing to tell apart: decide() casts no other ray, and needs no tree.
-    const Arrays arrays = ground.arrays();
+    const RayArrays arrays = ground.arrays();
     const kernels::Hit truth = decide(&arrays, CASTER_BVH, &asked.ray, &closest, &shape);
     const kernels::Hit said = held_hit(&arrays, &group, lane);
     counts.hits += truth.triangle != NONE;
@@ -161,7 +161,7 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
         HeldGroup group{};
         for (int round = 0; round < 12000; ++round) {
             const Ground ground = any_ground(kind, random);
-            const Arrays arrays = ground.arrays();
+            const RayArrays arrays = ground.arrays();
             for (int again = 0; again < 4; ++again) {
                 const std::uint32_t count = 1 + random.below(RAYS_IN_GROUP);
                 std::vector<Asked> all;
