@@ -72,7 +72,8 @@ void check_mesh(const Mesh& mesh, const std::string& name) {
     const auto fail = [&](const std::string& what) { throw InputError(name + ": " + what); };
     if (mesh.triangles.empty()) fail("has no triangles; export a triangle mesh");
     if (mesh.triangles.size() > most_triangles || mesh.vertices.size() > most_vertices)
-        fail("has more than " + std::to_string(most_triangles) + " triangles; split or reduce it");
+        fail("has more than " + std::to_string(most_triangles) + " triangles or " + std::to_string(most_vertices)
+             + " vertices; split or reduce it");
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (!is_finite(mesh.vertices[i])) fail("vertex " + std::to_string(i) + " is not finite");
     }

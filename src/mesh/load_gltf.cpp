@@ -459,8 +459,10 @@ Mesh read_gltf(const InputFile& file) {
         return GltfReader(file).read();
     } catch (const json::parse_error& damage) {
         file.fail("is no sound glTF file: its JSON is damaged at byte " + std::to_string(damage.byte));
-    } catch (const json::exception&) {
+    } catch (const json::out_of_range&) {
         file.fail("is no sound glTF file: a number of its JSON is too large");
+    } catch (const json::exception& error) {
+        file.fail("is no sound glTF file: " + printable(error.what()));
     }
 }
 

@@ -28,7 +28,7 @@ void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
         ++found->second.users;
         return;
     }
-    // Entered last, so that a shape too large for the device's memory leaves nothing behind.
+    // Entered last: a shape too large for the device has no entry, and leaves at most unused elements in the arrays.
     Entry entry{shape, 0, 1};
     upload(entry);
     order_.reserve(order_.size() + 1);
