@@ -3,7 +3,13 @@
 
 #include "shape/shape_data.h"
 
+#include <algorithm>
+
 namespace raycontact {
+
+double smaller_size(const PlacedBody& a, const PlacedBody& b) {
+    return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
+}
 
 void place_source(const PlacedBody& source, const PlacedBody& target, kernels::DirectedPair& placed) {
     place_source(source, target, relative_pose(target.centred, source.centred), placed);

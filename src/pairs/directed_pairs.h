@@ -25,6 +25,9 @@ inline Pose centred_pose(const Shape& shape, const Pose& pose) {
     return {pose.rotation, transform_point(pose, shape.centre())};
 }
 
+/// The box diagonal of the smaller body, metres: the size of the pair.
+double smaller_size(const PlacedBody& a, const PlacedBody& b);
+
 /// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
 /// against b, + 1 for vertices of b against a (docs/design.md).
 struct DirectedBodies {

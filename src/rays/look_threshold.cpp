@@ -16,15 +16,11 @@ constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
 // Share of the smaller body's diagonal: a pair that moves farther than this in a step is not worth following.
 constexpr double farthest = 0.015;
 
-double size_of(const PlacedBody& a, const PlacedBody& b) {
-    return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-}
-
 } // namespace
 
 double next_threshold(const PlacedBody& a, const PlacedBody& b, double speed, double last, double look_cost,
                       double follows, bool predictive) {
-    const double least = 0.001 * size_of(a, b), most = farthest * size_of(a, b);
+    const double least = 0.001 * smaller_size(a, b), most = farthest * smaller_size(a, b);
     // Too fast to be followed: a full look in every step. (With `predictive` such pairs do not come here.)
     if (speed > most) return 0.2 * least;
     double threshold = 4 * speed;
@@ -37,7 +33,7 @@ double next_threshold(const PlacedBody& a, const PlacedBody& b, double speed, do
 
 bool is_too_fast_to_predict(const PlacedBody& a, const PlacedBody& b, double speed) {
     const double grain = std::min(a.shape->data().grain, b.shape->data().grain);
-    return speed > std::min(farthest * size_of(a, b), 0.125 * grain);
+    return speed > std::min(farthest * smaller_size(a, b), 0.125 * grain);
 }
 
 } // namespace raycontact

@@ -19,10 +19,6 @@ constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to 
 // Share of the tube's radius a step: faster pairs seek no tubes.
 constexpr double slow = 0.15;
 
-double size_of(const PlacedBody& a, const PlacedBody& b) {
-    return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
-}
-
 // How far beyond the bounds a new list reaches: the way of some steps, between the lengths that `bench sweep` found
 // best for a pile and for fast bodies.
 double look_ahead(double size, double speed) {
@@ -50,7 +46,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     WatchedPair& state = table.state(i);
     Slack& slack = table.hot(i);
     const PlacedBody* body[2] = {&update.bodies[pair.first], &update.bodies[pair.second]};
-    const double size = size_of(*body[0], *body[1]);
+    const double size = smaller_size(*body[0], *body[1]);
     const bool fresh = state.directions[0].expiry < 0;
     const PairPlace now = place_pair(body[0]->centred, body[1]->centred, update.motion.pair_shear(pair));
     std::array<double, 2> moved{0, 0};
@@ -108,7 +104,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const SlotPair& pair = update.pairs[i];
         const double speed = update.motion.pair_speed(pair);
         if (!update.settings.displacement_threshold
-            && speed > fastest * size_of(update.bodies[pair.first], update.bodies[pair.second]))
+            && speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]))
             slice.fast.push_back(i);
         else
             wake_pair(update, table, i, speed, slice);
