@@ -10,7 +10,7 @@ packages_build=(
     libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev zlib1g-dev # the program, its scenes and report
 )
 packages_demo=(glmark2-data) # the Stanford bunny
-packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd
+packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd locales
     python3-pip) # brings the CUDA compiler that the kernels are checked with
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact bench peers`, both optional
 packages_all=(clang clang-tidy oclgrind valgrind)

@@ -29,6 +29,19 @@ std::uint64_t median(std::vector<std::uint64_t> values) {
     return *middle;
 }
 
+// Bodies of all kinds in a ball.
+std::vector<Pose> add_crowd(Scene& scene, Random& random, std::uint32_t count, double radius) {
+    const auto& subjects = closed_subjects();
+    std::vector<Pose> poses;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Pose pose = random.rotation();
+        pose.translation = radius * random.in_ball();
+        scene.add(subjects[i % subjects.size()].shape, pose);
+        poses.push_back(pose);
+    }
+    return poses;
+}
+
 // A crowd in which most bodies creep, some are fast, and pairs come and go in every step.
 TEST(ceilings, launches_and_reads_of_a_step) {
     for (const Ceiling& ceiling : ceilings) {
@@ -38,14 +51,7 @@ TEST(ceilings, launches_and_reads_of_a_step) {
         settings.threads = 1;
         Scene scene(settings);
         Random random(21);
-        std::vector<Pose> poses;
-        for (std::uint32_t i = 0; i < 60; ++i) {
-            const auto& subjects = closed_subjects();
-            Pose pose = random.rotation();
-            pose.translation = 1.9 * random.in_ball();
-            scene.add(subjects[i % subjects.size()].shape, pose);
-            poses.push_back(pose);
-        }
+        std::vector<Pose> poses = add_crowd(scene, random, 60, 1.9);
         std::vector<std::uint64_t> launches, reads;
         for (int step = 0; step < 60; ++step) {
             EXPECT_GT(scene.step().size(), 100u);
@@ -75,14 +81,7 @@ TEST(ceilings, a_growing_heap_seldom_repeats_a_step) {
     settings.threads = 1;
     Scene scene(settings);
     Random random(22);
-    std::vector<Pose> poses;
-    for (std::uint32_t i = 0; i < 400; ++i) {
-        const auto& subjects = closed_subjects();
-        Pose pose = random.rotation();
-        pose.translation = 6.0 * random.in_ball();
-        scene.add(subjects[i % subjects.size()].shape, pose);
-        poses.push_back(pose);
-    }
+    std::vector<Pose> poses = add_crowd(scene, random, 400, 6.0);
     std::vector<std::uint64_t> reads;
     for (int step = 0; step < 40; ++step) {
         scene.step();
@@ -93,7 +92,7 @@ TEST(ceilings, a_growing_heap_seldom_repeats_a_step) {
         }
     }
     EXPECT_GT(scene.stats().vertices, 4 * 16 * 4096u); // the first room has been outgrown
-    EXPECT_EQ(median(reads), 1u); // one more for each repetition
+    EXPECT_EQ(median(reads), 1u);                      // one more for each repetition
 }
 
 } // namespace
