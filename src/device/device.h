@@ -9,9 +9,17 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 namespace raycontact {
+
+/// A device failed: it ran out of memory, was lost, or its driver stopped a kernel. Nothing on it can be relied on
+/// any more.
+class DeviceError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
 
 /// Device memory. Freed with its last owner.
 class Buffer {

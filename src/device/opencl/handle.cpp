@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/handle.h"
 
-#include <stdexcept>
-
 namespace raycontact::opencl {
 
 namespace {
@@ -31,8 +29,8 @@ std::string status_text(cl_int status) {
 
 void check(cl_int status, std::string_view what) {
     if (status != CL_SUCCESS)
-        throw std::runtime_error(std::string(what) + ": " + status_text(status) + " (OpenCL status "
-                                 + std::to_string(status) + ")");
+        throw DeviceError(std::string(what) + ": " + status_text(status) + " (OpenCL status " + std::to_string(status)
+                          + ")");
 }
 
 std::string text_of(cl_device_id device, cl_device_info what) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/device.h"
+
 #include <CL/cl.h>
 
 #include <memory>
@@ -10,7 +12,7 @@
 
 namespace raycontact::opencl {
 
-/// Throws std::runtime_error that names what failed, and how.
+/// Throws DeviceError that names what failed, and how.
 void check(cl_int status, std::string_view what);
 
 template <auto release>
