@@ -18,53 +18,9 @@ using raycontact::InputError;
 
 namespace {
 
-/// One DEV of the list: "cpu", "cpu/1", "opencl:0", "opencl:0/1", ...
-struct DeviceName {
-    std::string whole; ///< without the part
-    bool is_part = false;
-    std::uint32_t part = 0;
-    friend bool operator==(const DeviceName&, const DeviceName&) = default;
-};
-
 bool read_number(std::string_view text, std::uint32_t& number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     return error == std::errc{} && end == text.data() + text.size();
-}
-
-DeviceName read_device(std::string_view word) {
-    const auto malformed = [&] {
-        return InputError("--devices: \"" + std::string(word)
-                          + "\" is not a device: give auto, all, or a list of cpu[/k], opencl:i[/k], cuda:i");
-    };
-    DeviceName device;
-    std::string_view whole = word;
-    if (const auto slash = word.find('/'); slash != std::string_view::npos) {
-        whole = word.substr(0, slash);
-        device.is_part = true;
-        if (!read_number(word.substr(slash + 1), device.part)) throw malformed();
-    }
-    device.whole = whole;
-    if (whole == "cpu") return device;
-    std::uint32_t index = 0;
-    const auto colon = whole.find(':');
-    if (colon == std::string_view::npos || !read_number(whole.substr(colon + 1), index)) throw malformed();
-    const std::string_view kind = whole.substr(0, colon);
-    if (kind != "opencl" && !(kind == "cuda" && !device.is_part)) throw malformed();
-    device.whole = std::string(kind) + ":" + std::to_string(index);
-    return device;
-}
-
-/// Every GPU this version can use, each card once, or the CPU where there is none. CUDA devices are listed first.
-std::string every_gpu() {
-    std::string list;
-    std::vector<std::string> cards;
-    for (const auto& device : raycontact::list_devices()) {
-        if (!device.usable || device.type != "gpu") continue;
-        if (!device.bus.empty() && std::find(cards.begin(), cards.end(), device.bus) != cards.end()) continue;
-        cards.push_back(device.bus);
-        list += (list.empty() ? "" : ",") + device.id;
-    }
-    return list.empty() ? "cpu" : list;
 }
 
 /// As check_settings names them, and as a user does.
@@ -134,34 +90,6 @@ void add_length(CLI::App& command, raycontact::Settings& settings, std::optional
 
 } // namespace
 
-std::string device_from_list(std::string_view list) {
-    if (list == "auto") return "auto";
-    if (list == "all") return device_from_list(every_gpu());
-    std::vector<DeviceName> devices;
-    for (std::size_t begin = 0; begin <= list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        devices.push_back(read_device(list.substr(begin, end - begin)));
-        begin = end + 1;
-    }
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (devices[i] == devices[j]) {
-                throw InputError("--devices: \"" + std::string(list) + "\" names a device twice; name each once");
-            }
-            if (devices[i].whole == devices[j].whole && devices[i].is_part != devices[j].is_part) {
-                throw InputError("--devices: \"" + std::string(list) + "\" names a part beside its whole ("
-                                 + devices[i].whole + "); name one or the other");
-            }
-        }
-    }
-    if (devices.size() > 1) {
-        throw InputError("--devices: \"" + std::string(list)
-                         + "\" names several devices; several at a time come later, name one");
-    }
-    const DeviceName& one = devices.front();
-    return one.is_part ? one.whole + "/" + std::to_string(one.part) : one.whole;
-}
-
 void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     using namespace raycontact;
     add_word(command, "--method",
@@ -200,9 +128,19 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
                      "predictive: cast a ray in full (the default) or give it up where following it ends "
                      "nowhere");
     add_word(command, "--devices",
-             "auto, all (every GPU), or a device as `raycontact devices` lists it; cpu/k and opencl:i/k are its k-th "
-             "core alone",
-             "LIST", settings.device, [&](const std::string& word) { settings.device = device_from_list(word); });
+             "auto, all (every GPU), or a list of devices as `raycontact devices` names them, which share the pairs; "
+             "cpu/k and opencl:i/k are one core alone",
+             "LIST", settings.devices, [&](const std::string& word) {
+                 Settings alone;
+                 alone.devices = word;
+                 chosen_devices(alone); // refuses a faulty list
+                 settings.devices = word;
+             });
+    add_word(command, "--schedule",
+             "with several devices: balanced (pairs move where one has too much to do), sticky (a pair stays where it "
+             "came first), counted (balanced by counts alone, without a clock)",
+             "WORD", std::string(to_string(settings.schedule)),
+             [&](const std::string& word) { settings.schedule = schedule_from(word); });
     command.add_flag("--inexact", settings.inexact,
                      "also use a device that rounds otherwise, whose contacts may differ from all others'");
     command.add_option("--threads", settings.threads, "threads of the host, 0: one per core; changes no result")

@@ -20,7 +20,3 @@ void check_common_options(const raycontact::Settings& settings);
 /// Throws InputError when the two together make no sense.
 raycontact::Settings recorded_unless_given(const CLI::App& command, const raycontact::Settings& given,
                                            const raycontact::Settings& recorded);
-
-/// What `--devices` asks for, as Settings::device wants it. Throws InputError for a list that is malformed, names a
-/// device twice or beside its own part, or needs more than this version has.
-std::string device_from_list(std::string_view list);

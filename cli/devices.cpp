@@ -2,6 +2,7 @@
 #include "cli/devices.h"
 
 #include <raycontact/device.h>
+#include <raycontact/settings.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,20 @@ void print_table(const std::vector<raycontact::DeviceInfo>& devices) {
     }
 }
 
+std::string chosen(const char* devices, raycontact::Method method) {
+    raycontact::Settings settings;
+    settings.devices = devices;
+    settings.method = method;
+    return fmt::format("{}", fmt::join(raycontact::chosen_devices(settings), ","));
+}
+
+void print_choices() {
+    using raycontact::Method;
+    std::cout << fmt::format("--devices auto is {} with --method certified and {} with the others; all is {}\n",
+                             chosen("auto", Method::certified), chosen("auto", Method::standard),
+                             chosen("all", Method::standard));
+}
+
 } // namespace
 
 void add_devices(CLI::App& app) {
@@ -49,6 +64,8 @@ void add_devices(CLI::App& app) {
     command->add_flag("--json", *json, "print one JSON array on stdout");
     command->callback([json] {
         const auto devices = raycontact::list_devices();
-        *json ? print_json(devices) : print_table(devices);
+        if (*json) return print_json(devices);
+        print_table(devices);
+        print_choices();
     });
 }

@@ -62,7 +62,8 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
         {"method", to_string(options.settings.method)},
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
-        {"devices", Json::array({options.settings.device == "auto" ? "cpu" : options.settings.device})},
+        {"devices", chosen_devices(options.settings)},
+        {"schedule", to_string(options.settings.schedule)},
         {"work", work_of_devices(log.rows)},
         {"hash", scene.hash()},
         {"mesh_source", log.mesh_source},
@@ -140,6 +141,7 @@ void run(const RunOptions& options) {
     recorder.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
+    print_warnings(scene.log().rows);
     const Json result = summary(options, scene, wall.count());
     if (!options.out.empty()) {
         RunLog log = scene.log();

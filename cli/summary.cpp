@@ -20,6 +20,8 @@ constexpr Count counts[] = {
     {"predictions", &StepStats::predictions},   {"pairs_full", &StepStats::pairs_full},
     {"pairs_asleep", &StepStats::pairs_asleep}, {"pair_bytes", &StepStats::pair_bytes},
     {"contacts_new", &StepStats::contacts_new}, {"contacts_lost", &StepStats::contacts_lost},
+    {"pairs_moved", &StepStats::pairs_moved},   {"bytes_moved", &StepStats::bytes_moved},
+    {"devices_lost", &StepStats::devices_lost},
 };
 
 bool is_memory(const Count& count) {
@@ -70,10 +72,11 @@ std::string devices_for_a_person(const Json& list) {
     std::string text;
     for (const Json& entry : list) {
         const auto median = [&](const char* key) { return entry.at(key).at("median").get<double>(); };
-        text += fmt::format("device     {}: {:.0f} launches, {:.0f} reads, {:.3g} kB up and {:.3g} kB down, busy for "
-                            "{:.2f} ms a step (medians)\n",
-                            entry.at("device").get<std::string>(), median("launches"), median("reads"),
-                            median("bytes_up") / 1e3, median("bytes_down") / 1e3, median("busy_ms"));
+        text += fmt::format("device     {}: {:.0f} pairs, load {:.0f}, {:.0f} launches, {:.0f} reads, {:.3g} kB up and "
+                            "{:.3g} kB down, busy for {:.2f} ms of {:.2f} a step (medians)\n",
+                            entry.at("device").get<std::string>(), median("pairs"), median("load"), median("launches"),
+                            median("reads"), median("bytes_up") / 1e3, median("bytes_down") / 1e3, median("busy_ms"),
+                            median("ms"));
     }
     return text;
 }

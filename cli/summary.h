@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -60,9 +61,19 @@ nlohmann::ordered_json work_of_devices(const std::vector<Row>& rows) {
         put("bytes_up", &raycontact::DeviceWork::bytes_up);
         put("bytes_down", &raycontact::DeviceWork::bytes_down);
         put("busy_ms", &raycontact::DeviceWork::busy_ms);
+        put("load", &raycontact::DeviceWork::load);
+        put("ms", &raycontact::DeviceWork::ms);
         list.push_back(std::move(entry));
     }
     return list;
+}
+
+/// What went wrong in a step though its contacts are complete, on stderr, a line each.
+template <class Row>
+void print_warnings(const std::vector<Row>& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (const std::string& warning : rows[i].warnings)
+            std::cerr << "raycontact: warning: step " << i << ": " << warning << '\n';
 }
 
 /// A line for each entry of that list.

@@ -45,7 +45,7 @@ Settings read_settings(const Json& document) {
     } catch (const InputError& error) {
         throw UnknownSetting(error.what());
     }
-    settings.device = document.at("device").get<std::string>();
+    settings.devices = document.at("device").get<std::string>();
     settings.threads = document.at("threads").get<std::uint32_t>();
     // Recordings from before these settings existed lack them; none of theirs depends on one (method standard).
     read_if_there(document, "displacement_threshold", settings.displacement_threshold);
@@ -114,7 +114,7 @@ Bytes encode_info(const Info& info) {
                      {"method", to_string(info.settings.method)},
                      {"caster", to_string(info.settings.caster)},
                      {"direction", to_string(info.settings.direction)},
-                     {"device", info.settings.device},
+                     {"device", info.settings.devices},
                      {"threads", info.settings.threads},
                      {"displacement_threshold", length(info.settings.displacement_threshold)},
                      {"confidence", info.settings.confidence},

@@ -100,6 +100,19 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          "Half of the moving bodies are slower than this at the end of the step.",
          {line(log, "speed", [](const StepRow& r) { return r.median_speed; })}},
     };
+    const std::size_t devices = log.rows.empty() ? 0 : log.rows.front().work.size();
+    if (devices > 1) {
+        Plot load{
+            "Load of devices", "pairs at rest", "What each device had to do, counted: pairs, vertices and rays.", {}};
+        Plot time{"Time of devices", "ms", "Wall clock of each device's part of a step; they work side by side.", {}};
+        for (std::size_t d = 0; d < devices; ++d) {
+            const char* id = log.rows.front().work[d].device.c_str();
+            load.lines.push_back(line(log, id, [d](const StepRow& r) { return r.work[d].load; }));
+            time.lines.push_back(line(log, id, [d](const StepRow& r) { return r.work[d].ms; }));
+        }
+        plots.push_back(load);
+        plots.push_back(time);
+    }
     for (Plot& plot : plots) plot.over = over_steps(log.dt);
     return plots;
 }

@@ -66,12 +66,15 @@ constexpr Known known[] = {
     {"max_iterations", "Triangles of a walk", "", "a ray may visit so many when it is followed"},
     {"cast_lost_walks", "Lost walks are cast", "", "in full, where following a ray ended nowhere"},
     {"devices", "Devices", "", "that cast the rays"},
+    {"schedule", "Schedule", "", "which device a pair is on"},
     {"hash", "Hash", "", "XXH64 over every contact of every step: the same on every device and thread count"},
 };
 
 /// The same of an entry of "work", of which the median step is shown.
 constexpr Known device_known[] = {
     {"pairs", "Pairs", "pairs", "of this device, median step"},
+    {"load", "Load", "pairs at rest", "what it had to do, counted, median step"},
+    {"ms", "Time", "ms", "of its part of a step, with the host's share, median step"},
     {"launches", "Launches", "", "kernels started, median step"},
     {"reads", "Reads", "", "times the host waited for the device, median step"},
     {"bytes_up", "Copied to the device", "kB", "median step", 1e-3},

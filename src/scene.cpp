@@ -54,14 +54,14 @@ struct Scene::State {
 
     /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
     void call_threads(std::size_t pair_count) {
-        if (pair_count > 256) narrow.executor().wake();
+        if (pair_count > 256) narrow.parts().wake();
     }
 
     void place_bodies() {
-        const bool packed = narrow.shapes().pack();
+        const bool packed = narrow.parts().pack_shapes();
         for (PlacedBody& body : bodies) {
             if (body.shape == nullptr) continue;
-            if (packed) body.shape_index = narrow.shapes().index_of(body.shape);
+            if (packed) body.shape_index = narrow.parts().index_of(body.shape);
             body.centred = centred_pose(*body.shape, body.pose);
         }
     }
@@ -150,15 +150,15 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
-    s.narrow.shapes().add(shape);
-    s.bodies[slot] = {shape.get(), s.narrow.shapes().index_of(shape.get()), generation_of(id), pose, pose};
+    s.narrow.parts().add_shape(shape);
+    s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose};
     return s.slots.give();
 }
 
 void Scene::remove(BodyId body) {
     State& s = *state_;
     PlacedBody& gone = s.existing(body, "Scene::remove");
-    s.narrow.shapes().remove(gone.shape);
+    s.narrow.parts().remove_shape(gone.shape);
     gone.shape = nullptr;
     s.pairs_stand = false;
     s.slots.take_back(slot_of(body));
@@ -177,8 +177,8 @@ const Pose& Scene::pose(BodyId body) const {
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
     const Settings& old = state_->narrow.settings();
-    if (settings.device != old.device || settings.threads != old.threads)
-        throw InputError("device and threads are fixed when a scene is made; make another scene for others");
+    if (settings.devices != old.devices || settings.schedule != old.schedule || settings.threads != old.threads)
+        throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
 }
 const Settings& Scene::settings() const {

@@ -19,6 +19,9 @@ constexpr std::array casters{std::pair{Caster::basic, std::string_view("basic")}
                              std::pair{Caster::bvh, std::string_view("bvh")}};
 constexpr std::array directions{std::pair{Direction::ray, std::string_view("ray")},
                                 std::pair{Direction::reprojected, std::string_view("reprojected")}};
+constexpr std::array schedules{std::pair{Schedule::balanced, std::string_view("balanced")},
+                               std::pair{Schedule::sticky, std::string_view("sticky")},
+                               std::pair{Schedule::counted, std::string_view("counted")}};
 
 template <typename Table>
 auto find(const Table& table, std::string_view word, const char* what) {
@@ -52,7 +55,8 @@ void check_settings(const Settings& settings) {
     need_length("culling_distance", settings.culling_distance, true);
     need_length("distance_extension", settings.distance_extension, true);
     if (!(std::isfinite(settings.confidence) && settings.confidence >= 1))
-        throw InputError("confidence must be at least 1 (paper equation 1), not " + std::to_string(settings.confidence));
+        throw InputError("confidence must be at least 1 (paper equation 1), not "
+                         + std::to_string(settings.confidence));
     if (settings.max_iterations == 0)
         throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
     if (settings.displacement_threshold && settings.distance_extension
@@ -72,6 +76,9 @@ Caster caster_from(std::string_view word) {
 Direction direction_from(std::string_view word) {
     return find(directions, word, "direction");
 }
+Schedule schedule_from(std::string_view word) {
+    return find(schedules, word, "schedule");
+}
 std::string_view to_string(Method method) {
     return name_of(methods, method);
 }
@@ -80,6 +87,9 @@ std::string_view to_string(Caster caster) {
 }
 std::string_view to_string(Direction direction) {
     return name_of(directions, direction);
+}
+std::string_view to_string(Schedule schedule) {
+    return name_of(schedules, schedule);
 }
 
 } // namespace raycontact

@@ -1,39 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step.h"
 
+#include "device/device_list.h"
+#include "schedule/moving_pairs.h"
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 namespace raycontact {
 
-NarrowPhase::NarrowPhase(const Settings& settings)
-    : settings_(settings), part_(open_device(settings.device, settings.threads, settings.inexact)) {}
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Until a unit of load has been measured on each device: its cores stand for its speed.
+std::vector<double> costs_of(Parts& parts) {
+    std::vector<double> costs;
+    for (std::size_t i = 0; i < parts.size(); ++i) costs.push_back(1.0 / std::max(1u, parts[i].device().cores));
+    return costs;
+}
+
+SlotPair pair_of(const Contact& contact) {
+    return {contact.body_a, contact.body_b};
+}
+
+} // namespace
+
+NarrowPhase::NarrowPhase(const Settings& settings) : NarrowPhase(settings, open_devices(settings)) {}
+
+NarrowPhase::NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened)
+    : settings_(settings), parts_(std::move(opened)), balance_(settings.schedule, costs_of(parts_)),
+      assignment_(parts_.size()), found_(parts_.size()) {}
 
 void NarrowPhase::set_settings(const Settings& settings) {
     settings_ = settings;
-    part_.forget();
+    parts_.forget();
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                        std::vector<Contact>& contacts, StepStats& stats) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     std::vector<DeviceWork> work = std::move(stats.work); // to reuse its memory
     stats = {};
+    stats.work = std::move(work);
     try {
-        schedule_.assign(pairs);
-        part_.begin(bodies, schedule_.pairs_of(0), settings_);
-        placer_.run(executor(), settings_.direction, bodies, schedule_.pairs_of(0), part_.end(), contacts);
+        if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
+        assignment_.assign(pairs, balance_);
+        if (const auto move = balance_.next_move()) move_pairs(*move, bodies, stats);
+        const bool alone = parts_.left() == 1;
+        auto failed =
+            parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
+        while (!failed.empty()) failed = replace(failed, bodies, stats);
+        if (!alone) merge(pairs, contacts);
         changes_.mark(contacts);
     } catch (...) {
-        part_.forget(); // the step failed half-way: what it kept may be wrong
+        parts_.forget(); // the step failed half-way: what it kept may be wrong
         contacts.clear();
         throw;
     }
 
-    part_.count(stats);
-    work.assign(1, part_.work());
-    stats.work = std::move(work);
+    count(pairs.size(), stats);
     stats.contacts = contacts.size();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();
@@ -41,7 +71,88 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         stats.ray_length += double(contact.ray_length);
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     }
-    stats.narrow_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    stats.narrow_ms = milliseconds_since(start);
+}
+
+void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts) {
+    const auto start = Clock::now();
+    Part& part = parts_[number];
+    const Pin pin(part.executor().core());
+    const auto pairs = assignment_.pairs_of(number);
+    part.begin(bodies, pairs, settings_);
+    found_[number].placer.run(part.executor(), settings_.direction, bodies, pairs, part.end(), contacts);
+    found_[number].ms = milliseconds_since(start);
+}
+
+// The others cast the pairs of failed parts in full. Returns the parts that failed in doing so.
+std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& failed,
+                                              std::span<const PlacedBody> bodies, StepStats& stats) {
+    const auto given = give_away(failed, stats);
+    return parts_.run([&](std::size_t number) {
+        if (given[number].empty()) return;
+        Found& found = found_[number];
+        Part& part = parts_[number];
+        std::vector<Contact> more;
+        found.placer.run(part.executor(), settings_.direction, bodies, given[number], part.adopt(given[number]), more);
+        const auto old = static_cast<std::ptrdiff_t>(found.contacts.size());
+        found.contacts.insert(found.contacts.end(), more.begin(), more.end());
+        std::ranges::inplace_merge(found.contacts, found.contacts.begin() + old, {}, pair_of);
+    });
+}
+
+std::vector<std::vector<SlotPair>> NarrowPhase::give_away(const std::vector<std::size_t>& failed, StepStats& stats) {
+    stats.devices_lost += failed.size();
+    for (const std::size_t part : failed) balance_.drop(part);
+    return assignment_.give_away(failed, balance_);
+}
+
+// A part that fails here has failed before the step: its pairs are new to the others.
+void NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats) {
+    const auto start = Clock::now();
+    const auto moving = choose_moving(assignment_.pairs_of(move.from), found_[move.from].contacts, move.share);
+    std::vector<std::byte> state;
+    auto failed = parts_.only(move.from, [&] { state = parts_[move.from].take_out(bodies, moving.pairs); });
+    if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].put_in(bodies, state); });
+    if (failed.empty()) {
+        assignment_.move(moving.pairs, move.to);
+        stats.pairs_moved = moving.pairs.size();
+        stats.bytes_moved = state.size();
+        balance_.record_move({move.from, move.to, moving.share}, milliseconds_since(start));
+    } else {
+        give_away(failed, stats);
+    }
+    assignment_.make_lists();
+}
+
+// Each part has the contacts of its own pairs, in order.
+void NarrowPhase::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+    contacts.clear();
+    next_.assign(found_.size(), 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const std::size_t part = assignment_.part_of(i);
+        const std::vector<Contact>& own = found_[part].contacts;
+        std::size_t& next = next_[part];
+        while (next < own.size() && pair_of(own[next]) == pairs[i]) contacts.push_back(own[next++]);
+    }
+}
+
+void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
+    stats.work.resize(parts_.size());
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        DeviceWork& work = stats.work[i];
+        if (!parts_.has(i)) {
+            work = {.device = parts_.device(i)};
+            continue;
+        }
+        const double before = load_of(stats);
+        parts_[i].count(stats);
+        work = parts_[i].take_work();
+        work.load = load_of(stats) - before;
+        work.ms = found_[i].ms;
+        balance_.record(i, work.load, work.ms);
+    }
+    balance_.end_step(pair_count);
+    stats.warnings = parts_.take_warnings();
 }
 
 } // namespace raycontact

@@ -3,8 +3,8 @@
 
 #include "contacts/changes.h"
 #include "contacts/place.h"
-#include "part/part.h"
-#include "schedule/schedule.h"
+#include "part/parts.h"
+#include "schedule/assignment.h"
 
 namespace raycontact {
 
@@ -12,9 +12,11 @@ namespace raycontact {
 class NarrowPhase {
 public:
     explicit NarrowPhase(const Settings& settings);
+    /// opened: what settings.devices names, or what stands for it in a test.
+    NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened);
 
-    Executor& executor() { return part_.executor(); }
-    ShapeStore& shapes() { return part_.shapes(); }
+    Parts& parts() { return parts_; }
+    const Assignment& assignment() const { return assignment_; }
     const Settings& settings() const { return settings_; }
     /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
@@ -25,10 +27,26 @@ public:
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
 
 private:
+    /// What a part found in a step.
+    struct Found {
+        std::vector<Contact> contacts;
+        Placer placer;
+        double ms = 0;
+    };
+    void move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
+    void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
+    std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
+                                     StepStats& stats);
+    std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
+    void merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
+    void count(std::size_t pair_count, StepStats& stats);
+
     Settings settings_;
-    Part part_;
-    Schedule schedule_;
-    Placer placer_;
+    Parts parts_;
+    Balance balance_;
+    Assignment assignment_;
+    std::vector<Found> found_;      ///< by part, as next_
+    std::vector<std::size_t> next_; ///< contact to be merged
     Changes changes_;
 };
 

@@ -16,16 +16,16 @@ enum class VertexBody : std::uint32_t { a = 0, b = 1 };
 /// A vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008; Lehericey et al.
 /// 2013, sections 2.1 and 3.2).
 struct Contact {
-    std::uint32_t body_a = 0;           ///< its slot, slot_of(id); body_a < body_b
+    std::uint32_t body_a = 0; ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
-    std::uint32_t vertex = 0;           ///< source vertex, index of its file
-    std::uint32_t triangle = 0;         ///< triangle of the other body that was hit, index of its file
-    Vec3 point;                         ///< the source vertex, world frame, metres
-    std::array<float, 3> normal{};      ///< unit, world frame, from A to B
-    float depth = 0;                    ///< > 0, metres along the normal (section 3.2: r . n)
-    float ray_length = 0;               ///< |r|, metres from the vertex to the hit
-    bool is_new = true;                 ///< the last step had no contact with this key in this pair
+    std::uint32_t vertex = 0;      ///< source vertex, index of its file
+    std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file
+    Vec3 point;                    ///< the source vertex, world frame, metres
+    std::array<float, 3> normal{}; ///< unit, world frame, from A to B
+    float depth = 0;               ///< > 0, metres along the normal (section 3.2: r . n)
+    float ray_length = 0;          ///< |r|, metres from the vertex to the hit
+    bool is_new = true;            ///< the last step had no contact with this key in this pair
 };
 
 /// A contact that the last step had and this step does not have. Read it before the next add(), which may give the slot

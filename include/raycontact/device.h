@@ -33,7 +33,15 @@ struct DeviceWork {
     std::uint64_t bytes_up = 0;   ///< copied to its memory; what it shares with the host is not copied
     std::uint64_t bytes_down = 0; ///< copied from its memory
     double busy_ms = 0;           ///< in which its kernels ran
+    double load = 0;              ///< what it had to do: counted, in units of a pair at rest
+    double ms = 0;                ///< it took for that, with the host's share; devices work side by side
 };
+
+struct Settings;
+
+/// The ids that Settings::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is malformed
+/// or names a device twice or beside its own part; does not open any.
+std::vector<std::string> chosen_devices(const Settings& settings);
 
 /// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.
 std::vector<DeviceInfo> list_devices();

@@ -14,9 +14,9 @@ namespace raycontact {
 /// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
 /// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order; polygons split as fans).
 struct Mesh {
-    std::string name;                                     ///< for messages; the file name when loaded
-    std::vector<Vec3> vertices;                           ///< metres, body frame
-    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+    std::string name;                                    ///< for messages; the file name when loaded
+    std::vector<Vec3> vertices;                          ///< metres, body frame
+    std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
 };
 
 /// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
@@ -30,9 +30,9 @@ struct MeshReport {
     std::uint64_t triangles = 0;      ///< kept
     std::uint64_t file_vertices = 0;  ///< as in the file
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
-    bool closed = false;              ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
-    bool manifold = false;            ///< no edge has more than two triangles, no vertex more than one fan
-    bool oriented = false;            ///< across every shared edge the two triangles wind the same way
+    bool closed = false;   ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
+    bool manifold = false; ///< no edge has more than two triangles, no vertex more than one fan
+    bool oriented = false; ///< across every shared edge the two triangles wind the same way
     bool self_intersecting = false;   ///< two triangles meet elsewhere than in their shared vertices or edge
     bool outward = false;             ///< closed and oriented, winding number 0 outside and 1 inside everywhere
     std::uint64_t components = 0;     ///< connected over shared vertices
@@ -44,7 +44,8 @@ struct MeshReport {
 
 /// Whether prepare_mesh may change anything beyond welding for connectivity.
 enum class Repair {
-    allowed, ///< drop degenerate triangles, make windings agree, turn components whose winding contradicts their nesting
+    allowed, ///< drop degenerate triangles, make windings agree, turn components whose winding contradicts their
+             ///< nesting
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 
@@ -53,8 +54,8 @@ struct PreparedMesh {
     std::string name;
     std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
-    std::vector<std::uint32_t> vertex_index;             ///< file index (the lowest, where several were welded) of each vertex
-    std::vector<std::uint32_t> triangle_index;           ///< file index of each triangle
+    std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex
+    std::vector<std::uint32_t> triangle_index; ///< file index of each triangle
     MeshReport report;
 };
 

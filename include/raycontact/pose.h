@@ -24,7 +24,8 @@ struct Pose {
 /// the library may rely on rotation^T being its inverse.
 Pose pose_from_matrix(std::span<const double, 16> row_major);
 
-/// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero or not finite.
+/// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero or not
+/// finite.
 Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y, double z);
 
 /// Throws InputError naming `who` unless every entry is finite and the rotation is orthonormal to 1e-4, unmirrored.

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,13 +40,17 @@ struct StepStats {
     std::uint64_t predictions = 0;  ///< vertices followed without contact (predictive)
     std::uint64_t pair_bytes = 0;   ///< memory kept for the open pairs
     std::uint64_t contacts = 0;
-    std::uint64_t contacts_new = 0;  ///< whose key the last step did not have
-    std::uint64_t contacts_lost = 0; ///< of the last step, whose key this step does not have
-    double ray_length = 0;           ///< sum of the contacts' ray lengths, metres (paper section 5.2)
-    double depth_max = 0;            ///< metres
-    double broad_ms = 0;             ///< our broad phase; 0 when pairs were given
-    double narrow_ms = 0;            ///< everything after the broad phase
-    std::vector<DeviceWork> work;    ///< one entry a device
+    std::uint64_t contacts_new = 0;    ///< whose key the last step did not have
+    std::uint64_t contacts_lost = 0;   ///< of the last step, whose key this step does not have
+    double ray_length = 0;             ///< sum of the contacts' ray lengths, metres (paper section 5.2)
+    double depth_max = 0;              ///< metres
+    double broad_ms = 0;               ///< our broad phase; 0 when pairs were given
+    double narrow_ms = 0;              ///< everything after the broad phase
+    std::uint64_t pairs_moved = 0;     ///< from one device to another
+    std::uint64_t bytes_moved = 0;     ///< of what was kept for them
+    std::uint64_t devices_lost = 0;    ///< that failed in this step; others cast their pairs in full
+    std::vector<DeviceWork> work;      ///< one entry a device, those lost included
+    std::vector<std::string> warnings; ///< in plain words, as of a device that failed; the contacts are complete
 };
 
 /// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.

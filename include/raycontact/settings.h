@@ -28,6 +28,13 @@ enum class Direction {
     reprojected, ///< along the normal of the face that was hit, depth = r . n (paper section 3.2, equation 2)
 };
 
+/// Which of several devices a pair is on.
+enum class Schedule {
+    balanced, ///< where it came first, unless devices are loaded unevenly for several steps: then pairs move
+    sticky,   ///< where it came first, as long as it is open (paper section 4)
+    counted,  ///< as balanced, but what a unit of load costs is set, not measured, so that a run repeats exactly
+};
+
 struct Settings {
     Method method = Method::certified;
     Caster caster = Caster::bvh;
@@ -53,9 +60,11 @@ struct Settings {
     /// `standard` with caster bvh casts no ray for a vertex that a grid of the mesh knows to be outside
     /// (docs/design.md). No contact depends on it; off, every ray is cast.
     bool skip_outside = true;
-    /// "auto", or an id of list_devices(). "cpu/k", and "ID/k" where the driver divides the device: its k-th core
-    /// alone.
-    std::string device = "auto";
+    /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
+    /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
+    /// where the driver divides the device, is its k-th core alone.
+    std::string devices = "auto";
+    Schedule schedule = Schedule::balanced; ///< no result depends on it
     /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;
     std::uint32_t threads = 0; ///< of the host; 0: one per core. No count changes a bit of the result
@@ -68,8 +77,10 @@ void check_settings(const Settings& settings);
 Method method_from(std::string_view word);
 Caster caster_from(std::string_view word);
 Direction direction_from(std::string_view word);
+Schedule schedule_from(std::string_view word);
 std::string_view to_string(Method);
 std::string_view to_string(Caster);
 std::string_view to_string(Direction);
+std::string_view to_string(Schedule);
 
 } // namespace raycontact

@@ -27,8 +27,8 @@ public:
     const std::string& name() const;
     const MeshReport& report() const;
 
-    /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far from
-    /// their origin lose nothing; these positions are centre + float32 offset, in double.
+    /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far
+    /// from their origin lose nothing; these positions are centre + float32 offset, in double.
     std::span<const Vec3> vertices() const;
     std::span<const std::array<std::uint32_t, 3>> triangles() const;
     std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex
@@ -38,13 +38,14 @@ public:
     Vec3 box_max() const;
     double radius() const; ///< largest distance of a vertex from the body origin, metres
 
-    /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero where
-    /// the triangles around a vertex cancel out: such a vertex casts no ray.
+    /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero
+    /// where the triangles around a vertex cancel out: such a vertex casts no ray.
     std::span<const Vec3> vertex_normals() const;
     /// How far the ray from a vertex along its inward normal travels inside its own mesh, metres: t_max of its rays.
     /// +inf where it never leaves, 0 where it points out of the mesh at once.
     std::span<const float> exit_distances() const;
-    /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several meet.
+    /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several
+    /// meet.
     std::span<const std::array<std::uint32_t, 3>> neighbours() const;
     static constexpr std::uint32_t no_triangle = 0xffffffffu;
 

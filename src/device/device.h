@@ -106,7 +106,7 @@ struct OpenDevice {
     std::unique_ptr<Device> device;
 };
 
-/// Opens the device that `--devices` names. Throws InputError for a device that is unknown or that this version cannot
+/// Opens one device of chosen_devices(). Throws InputError for a device that is unknown or that this version cannot
 /// use. threads: of the host, 0 for one per core. inexact: also opens a device whose bits differ from the others'.
 OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
 

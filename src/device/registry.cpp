@@ -43,10 +43,10 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
     if (threads > 1024) throw InputError("threads: " + std::to_string(threads) + " is too many; give at most 1024");
     const auto on_cpu = [&](int core) {
         auto executor = std::make_unique<Executor>(threads, core);
-        auto device = cpu::open(*executor, instruction_set);
+        auto device = cpu::open(*executor, instruction_set, name);
         return OpenDevice{std::move(executor), std::move(device)};
     };
-    if (name == "auto" || name == "all" || name == "cpu") return on_cpu(-1);
+    if (name == "cpu") return on_cpu(-1);
     if (name.starts_with("cpu/")) {
         const std::string_view part = name.substr(4);
         std::uint32_t core = 0;
@@ -61,7 +61,7 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
         return {std::make_unique<Executor>(threads), std::move(device)};
     }
     throw InputError("device '" + std::string(name)
-                     + "' is unknown or not usable in this version; use auto, cpu, cpu/k, opencl:i or opencl:i/k "
+                     + "' is unknown or not usable in this version; use cpu, cpu/k, opencl:i or opencl:i/k "
                        "(`raycontact devices` lists them)");
 }
 

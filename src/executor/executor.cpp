@@ -3,35 +3,29 @@
 #include "executor/float_environment.h"
 
 #include <algorithm>
-#include <sched.h>
 #include <thread>
+#include <utility>
 
 namespace raycontact {
 
 namespace {
-
-// Binds the calling thread to one core, if that is >= 0, for as long as it lives.
-class Pin {
-public:
-    explicit Pin(int core) {
-        if (core < 0 || sched_getaffinity(0, sizeof before_, &before_) != 0) return;
-        cpu_set_t one;
-        CPU_ZERO(&one);
-        CPU_SET(core, &one);
-        pinned_ = sched_setaffinity(0, sizeof one, &one) == 0;
-    }
-    ~Pin() {
-        if (pinned_) sched_setaffinity(0, sizeof before_, &before_);
-    }
-    Pin(const Pin&) = delete;
-    Pin& operator=(const Pin&) = delete;
-
-private:
-    cpu_set_t before_;
-    bool pinned_ = false;
-};
-
+thread_local int pinned_to = -1;
 } // namespace
+
+Pin::Pin(int core) {
+    if (core < 0 || core == pinned_to || sched_getaffinity(0, sizeof before_, &before_) != 0) return;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    pinned_ = sched_setaffinity(0, sizeof one, &one) == 0;
+    if (pinned_) outer_ = std::exchange(pinned_to, core);
+}
+
+Pin::~Pin() {
+    if (!pinned_) return;
+    sched_setaffinity(0, sizeof before_, &before_);
+    pinned_to = outer_;
+}
 
 void SliceReference::operator()(std::uint32_t begin, std::uint32_t end) const {
     const FloatEnvironment environment;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <sched.h>
 #include <type_traits>
 
 namespace raycontact {
@@ -24,6 +25,21 @@ public:
 };
 std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads);
 
+/// Binds the calling thread to one core, if that is >= 0, for as long as it lives. A second one for the same core costs
+/// nothing.
+class Pin {
+public:
+    explicit Pin(int core);
+    ~Pin();
+    Pin(const Pin&) = delete;
+    Pin& operator=(const Pin&) = delete;
+
+private:
+    cpu_set_t before_;
+    int outer_ = -1;
+    bool pinned_ = false;
+};
+
 /// Runs slices of an index range on a fixed number of threads. Which thread takes a slice never decides a result.
 class Executor {
 public:
@@ -32,6 +48,8 @@ public:
     explicit Executor(std::uint32_t threads, int core = -1);
 
     std::uint32_t threads() const { return threads_; }
+    /// The one that all work is pinned to; -1: none.
+    int core() const { return core_; }
     /// Begins to wake the threads, which takes a while, and does not wait for them: work is about to come.
     void wake() {
         if (pool_) pool_->wake();

@@ -39,6 +39,7 @@ TEST_F(Run, HasItsKeys) {
                             "caster",
                             "direction",
                             "devices",
+                            "schedule",
                             "hash",
                             "rays_cast",
                             "walks",

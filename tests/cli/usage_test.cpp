@@ -80,7 +80,7 @@ TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
 }
 
 TEST_F(Usage, UnknownWordsNameTheOption) {
-    for (const char* option : {"--method", "--caster", "--direction", "--devices"}) {
+    for (const char* option : {"--method", "--caster", "--direction", "--devices", "--schedule"}) {
         expect_refused(run({"collide", "cube.obj", "cube.obj", option, "quick"}), option);
     }
 }
@@ -159,6 +159,7 @@ TEST_F(Usage, DevicesHaveTheirKeys) {
     }
     EXPECT_TRUE(cpu);
     EXPECT_NE(run({"devices"}).out.find("cpu"), std::string::npos);
+    EXPECT_NE(run({"devices"}).out.find("--devices auto is cpu with --method certified"), std::string::npos);
 }
 
 TEST_F(Usage, MeshHasItsKeys) {

@@ -54,7 +54,7 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
     Settings settings;
     settings.method = method;
     settings.caster = caster;
-    settings.device = device;
+    settings.devices = device;
     settings.threads = 2;
     Scene scene(settings);
     Random random(2013);
@@ -108,7 +108,7 @@ TEST(scenes, have_one_hash_on_the_first_device) {
     expect_the_cpus_hash(opencl_devices().front());
 }
 
-// Two devices, or parts of one, at the same time, each with its own scene.
+// Two devices, or parts of one: each with its own scene, at the same time, and both for one scene.
 void expect_side_by_side(const std::string& one, const std::string& other) {
     const Crowd& crowd = crowds().front();
     const std::string expected = hash_of(crowd, Method::standard, Caster::bvh, "cpu");
@@ -118,6 +118,7 @@ void expect_side_by_side(const std::string& one, const std::string& other) {
     thread.join();
     EXPECT_EQ(a, expected) << one;
     EXPECT_EQ(b, expected) << other;
+    expect_the_cpus_hash(one + "," + other);
 }
 
 TEST(scenes, have_one_hash_on_two_devices) {
@@ -129,6 +130,10 @@ TEST(scenes, have_one_hash_on_two_devices) {
 TEST(scenes, have_one_hash_on_parts_of_a_device) {
     if (!has_parts()) GTEST_SKIP() << "the driver does not divide the device";
     expect_side_by_side("opencl:0/0", "opencl:0/1");
+}
+
+TEST(scenes, have_one_hash_on_the_cpu_and_another_device) {
+    expect_the_cpus_hash("cpu,opencl:0");
 }
 
 // Pairs that go from the CPU to another device and back have the contacts that they would have had.
@@ -195,7 +200,7 @@ protected:
     static Settings settings(const char* device) {
         Settings settings;
         settings.method = GetParam();
-        settings.device = device;
+        settings.devices = device;
         return settings;
     }
 };

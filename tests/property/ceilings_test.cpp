@@ -47,7 +47,7 @@ TEST(ceilings, launches_and_reads_of_a_step) {
     for (const Ceiling& ceiling : ceilings) {
         Settings settings;
         settings.method = ceiling.method;
-        settings.device = "cpu";
+        settings.devices = "cpu";
         settings.threads = 1;
         Scene scene(settings);
         Random random(21);

@@ -141,7 +141,7 @@ bool same_info(const Info& p, const Info& q) {
     return p.scene == q.scene && p.seed == q.seed && p.bodies == q.bodies && p.dt == q.dt
            && p.mesh_source == q.mesh_source && p.settings.method == q.settings.method
            && p.settings.caster == q.settings.caster && p.settings.direction == q.settings.direction
-           && p.settings.device == q.settings.device && p.settings.threads == q.settings.threads
+           && p.settings.devices == q.settings.devices && p.settings.threads == q.settings.threads
            && p.settings.displacement_threshold == q.settings.displacement_threshold
            && p.settings.confidence == q.settings.confidence
            && p.settings.culling_distance == q.settings.culling_distance

@@ -108,7 +108,10 @@ kernels::uint grain_of(KernelId kernel) {
 
 class HostDevice : public Device, private Queue {
 public:
-    HostDevice(Executor& executor, const KernelTable& table) : info_(describe()), executor_(executor), table_(table) {
+    HostDevice(Executor& executor, const KernelTable& table, std::string_view id)
+        : info_(describe()), executor_(executor), table_(table) {
+        info_.id = id;
+        info_.cores = executor.threads();
         info_.driver = "native, " + std::string(table.instruction_set);
     }
 
@@ -181,11 +184,11 @@ DeviceInfo describe() {
     return info;
 }
 
-std::unique_ptr<Device> open(Executor& executor, std::string_view instruction_set) {
+std::unique_ptr<Device> open(Executor& executor, std::string_view instruction_set, std::string_view id) {
     std::string known;
     for (const KernelTable* table : usable_tables()) {
         if (instruction_set.empty() || table->instruction_set == instruction_set)
-            return std::make_unique<HostDevice>(executor, *table);
+            return std::make_unique<HostDevice>(executor, *table, id);
         known += (known.empty() ? "" : ", ") + std::string(table->instruction_set);
     }
     throw InputError("instruction set '" + std::string(instruction_set)

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <barrier>
+#include <cstddef>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace raycontact {
+
+/// Runs a function once for each of several numbers, all at the same time: for 0 on the caller's thread, for each other
+/// one on a thread of its own, always the same.
+class SideBySide {
+public:
+    explicit SideBySide(std::size_t count);
+    ~SideBySide();
+    SideBySide(const SideBySide&) = delete;
+    SideBySide& operator=(const SideBySide&) = delete;
+
+    /// Returns when all have. The function must not throw.
+    void run(const std::function<void(std::size_t)>& function);
+
+private:
+    void serve(std::size_t number);
+
+    std::barrier<> begin_, end_;
+    const std::function<void(std::size_t)>* function_ = nullptr; ///< null: the threads end
+    std::vector<std::jthread> threads_;                          ///< last, to be joined first
+};
+
+} // namespace raycontact

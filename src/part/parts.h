@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "executor/side_by_side.h"
+#include "part/part.h"
+
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace raycontact {
+
+/// The parts of a scene, one for each device, all with the same shapes. A part whose device fails is dropped, unless no
+/// other could go on in its place: then the failure is thrown.
+class Parts {
+public:
+    explicit Parts(std::vector<OpenDevice> opened);
+
+    /// Those dropped included: every part keeps its number.
+    std::size_t size() const { return parts_.size(); }
+    bool has(std::size_t number) const { return parts_[number] != nullptr; }
+    std::size_t left() const;
+    Part& operator[](std::size_t number) { return *parts_[number]; }
+    const std::string& device(std::size_t number) const { return devices_[number]; }
+
+    /// Calls work(number) for every part that is left, each on a thread of its own. Returns those dropped in doing so.
+    /// Throws DeviceError if all failed, and whatever else one of them threw.
+    template <class Work>
+    std::vector<std::size_t> run(Work&& work) {
+        return run_all(std::ref(work)); // by reference: std::function would allocate
+    }
+    /// The same for one part, on this thread: work().
+    template <class Work>
+    std::vector<std::size_t> only(std::size_t number, Work&& work) {
+        attempt(number, [&](std::size_t) { work(); });
+        return drop_failed();
+    }
+
+    void add_shape(const std::shared_ptr<const Shape>& shape);
+    void remove_shape(const Shape* shape);
+    /// As ShapeStore.
+    kernels::uint index_of(const Shape* shape) const;
+    bool pack_shapes();
+
+    /// Begins to wake the threads of all.
+    void wake();
+    void forget();
+
+    /// Those dropped by add_shape() and pack_shapes() since the last call.
+    std::vector<std::size_t> take_lost() { return std::exchange(lost_, {}); }
+    /// What was dropped since the last call, and why; for the user.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+
+private:
+    using Function = std::function<void(std::size_t)>;
+    std::vector<std::size_t> run_all(const Function& work);
+    std::vector<std::size_t> each(const Function& work);
+    void between_steps(const Function& work);
+    void attempt(std::size_t number, const Function& work);
+    std::vector<std::size_t> drop_failed();
+
+    std::vector<std::unique_ptr<Part>> parts_; ///< null: dropped
+    std::vector<std::string> devices_;
+    std::vector<std::string> faults_; ///< of the work just done; empty: none
+    std::vector<std::exception_ptr> errors_;
+    std::vector<std::size_t> lost_;
+    std::vector<std::string> warnings_;
+    std::unique_ptr<SideBySide> threads_; ///< null for one part
+};
+
+} // namespace raycontact

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "part/pipeline.h"
+
+namespace raycontact {
+
+namespace {
+
+enum class Finds : std::uint8_t { standard, certified, coherent };
+
+// `certified` needs memory that host and device share; on other devices it runs `standard`.
+Finds finds(const Settings& settings, const DeviceTraits& traits) {
+    if (settings.method == Method::standard) return Finds::standard;
+    if (settings.method != Method::certified) return Finds::coherent;
+    return traits.shares_memory ? Finds::certified : Finds::standard;
+}
+Finds finds(const Update& update) {
+    return finds(update.settings, update.device.traits());
+}
+
+} // namespace
+
+bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
+    return finds(settings, traits) != Finds::standard;
+}
+
+void Pipeline::forget() {
+    standard_.clear();
+    certified_.clear();
+    coherent_.clear();
+}
+
+void Pipeline::begin(const Update& update) {
+    switch (finds(update)) {
+    case Finds::standard:
+        standard_.begin(update, batch_);
+        break;
+    case Finds::certified:
+        certified_.cast(update, batch_);
+        break;
+    case Finds::coherent:
+        coherent_.cast(update, batch_);
+        break;
+    }
+    gather_.run(update, batch_);
+}
+
+std::span<const kernels::LocalContact> Pipeline::end(const Update& update) {
+    for (;;) {
+        const bool all_written = gather_.read(update.device, batch_);
+        const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
+        if (all_written && all_cast) break;
+        if (!all_cast) standard_.cast(update, batch_);
+        gather_.run(update, batch_);
+    }
+    if (finds(update) == Finds::coherent) coherent_.keep(update);
+    local_.set(gather_.contacts(), batch_.directed, update.pairs.size());
+    return local_.contacts();
+}
+
+std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {
+    if (finds(last) != Finds::coherent) return {};
+    return coherent_.take_out(last.device, last.shapes, last.bodies, pairs);
+}
+
+void Pipeline::put_in(const Update& last, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) coherent_.put_in(last.device, last.shapes, last.bodies, bytes);
+}
+
+void Pipeline::count(const Update& last, StepStats& stats) const {
+    stats.pairs += last.pairs.size();
+    stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
+    stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
+    switch (finds(last)) {
+    case Finds::standard:
+        return StandardRays::count(batch_, last.pairs.size(), stats);
+    case Finds::certified:
+        return certified_.count(batch_, stats);
+    case Finds::coherent:
+        return coherent_.count(stats);
+    }
+}
+
+} // namespace raycontact

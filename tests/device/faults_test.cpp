@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several devices, of which some fail: at each call of a step, in each way. The step's contacts are complete, and those
+// after it, too.
+#include "device/fake.h"
+#include "mesh/vector.h"
+#include "step.h"
+
+#include "reference/random.h"
+#include "scenes/models/model.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <tuple>
+
+namespace raycontact {
+namespace {
+
+using device_test::Fault;
+using device_test::open_fake;
+using device_test::Script;
+using reference::Random;
+
+constexpr Method methods[] = {Method::standard, Method::certified, Method::iterative, Method::predictive};
+
+bool depends_on_state(Method method) {
+    return method == Method::iterative || method == Method::predictive;
+}
+
+// Bodies that move a little in each step.
+class Crowd {
+public:
+    explicit Crowd(std::uint32_t count, double radius) {
+        for (const char* kind : {"torus", "knot", "gear"})
+            shapes.push_back(Shape::make(scenes::scene_model(kind, 200).mesh));
+        for (std::uint32_t i = 0; i < count; ++i) {
+            PlacedBody& body = bodies.emplace_back();
+            body.shape = shapes[i % shapes.size()].get();
+            body.shape_index = i % static_cast<std::uint32_t>(shapes.size());
+            body.pose = random_.rotation();
+            body.pose.translation = radius * random_.in_ball();
+        }
+        for (BodySlot a = 0; a < bodies.size(); ++a)
+            for (BodySlot b = a + 1; b < bodies.size(); ++b) pairs.emplace_back(a, b);
+        move();
+    }
+
+    void move() {
+        for (PlacedBody& body : bodies) {
+            body.pose.translation = body.pose.translation + 0.0005 * random_.in_ball();
+            body.centred = centred_pose(*body.shape, body.pose);
+        }
+    }
+
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    std::vector<PlacedBody> bodies;
+    std::vector<SlotPair> pairs;
+
+private:
+    Random random_{5};
+};
+
+Settings settings_of(Method method) {
+    Settings settings;
+    settings.method = method;
+    settings.schedule = Schedule::counted;
+    return settings;
+}
+
+// A narrow phase on fake devices.
+class Rig {
+public:
+    Rig(const Crowd& crowd, Method method, std::size_t devices, bool shares_memory = true)
+        : scripts(make_scripts(devices)), narrow(settings_of(method), open(shares_memory)) {
+        for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
+    }
+    const std::vector<Contact>& step(const Crowd& crowd) { return step(crowd, crowd.pairs); }
+    const std::vector<Contact>& step(const Crowd& crowd, std::span<const SlotPair> pairs) {
+        narrow.step(crowd.bodies, pairs, contacts, stats);
+        return contacts;
+    }
+
+    std::vector<std::shared_ptr<Script>> scripts;
+    NarrowPhase narrow;
+    std::vector<Contact> contacts;
+    StepStats stats;
+
+private:
+    static std::vector<std::shared_ptr<Script>> make_scripts(std::size_t count) {
+        std::vector<std::shared_ptr<Script>> made;
+        for (std::size_t i = 0; i < count; ++i) made.push_back(std::make_shared<Script>());
+        return made;
+    }
+    std::vector<OpenDevice> open(bool shares_memory) const {
+        std::vector<OpenDevice> opened;
+        for (std::size_t i = 0; i < scripts.size(); ++i)
+            opened.push_back(open_fake("fake:" + std::to_string(i), scripts[i], shares_memory));
+        return opened;
+    }
+};
+
+// Two parts on the CPU: some pairs leave the first for the second in one step, as new ones. What a fault must come to.
+class Reference {
+public:
+    Reference(const Crowd& crowd, Method method) : settings_(settings_of(method)) {
+        for (const auto& shape : crowd.shapes)
+            for (Part* part : {&first_, &second_}) part->shapes().add(shape);
+    }
+    std::vector<Contact> step(const Crowd& crowd, const std::vector<SlotPair>& gone) {
+        std::vector<SlotPair> stay;
+        std::ranges::set_difference(crowd.pairs, gone, std::back_inserter(stay));
+        std::vector<Contact> contacts = contacts_of(first_, crowd, stay), others = contacts_of(second_, crowd, gone);
+        contacts.insert(contacts.end(), others.begin(), others.end());
+        std::ranges::stable_sort(contacts, {}, [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+        return contacts;
+    }
+
+private:
+    std::vector<Contact> contacts_of(Part& part, const Crowd& crowd, std::span<const SlotPair> pairs) {
+        part.begin(crowd.bodies, pairs, settings_);
+        std::vector<Contact> contacts;
+        Placer().run(part.executor(), settings_.direction, crowd.bodies, pairs, part.end(), contacts);
+        return contacts;
+    }
+
+    Settings settings_;
+    Part first_{open_device("cpu", 1)}, second_{open_device("cpu", 1)};
+};
+
+::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
+    if (found.size() != expected.size())
+        return ::testing::AssertionFailure() << found.size() << " contacts, not " << expected.size();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const Contact &a = found[i], &b = expected[i];
+        if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
+                != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
+            || std::memcmp(&a.ray_length, &b.ray_length, sizeof a.ray_length) != 0
+            || std::memcmp(&a.normal, &b.normal, sizeof a.normal) != 0
+            || std::memcmp(&a.point, &b.point, sizeof a.point) != 0)
+            return ::testing::AssertionFailure() << "contact " << i << " differs";
+    }
+    return ::testing::AssertionSuccess();
+}
+
+constexpr int last_step = 4, faulty_step = 2;
+
+// Runs some steps; in one of them device 1 of three fails at its call `at`. Returns how many calls it was asked for.
+std::size_t run_with_fault(Method method, Fault fault, std::size_t at, bool shares_memory) {
+    Crowd crowd(14, 1.0);
+    Rig rig(crowd, method, 3, shares_memory);
+    Reference reference(crowd, method);
+    std::vector<SlotPair> gone;
+    std::size_t calls = 0, contacts = 0;
+    for (int step = 0; step < last_step; ++step) {
+        const std::string where = std::string(to_string(method)) + ", fault " + std::to_string(int(fault)) + " at call "
+                                  + std::to_string(at) + ", step " + std::to_string(step);
+        Script& script = *rig.scripts[1];
+        if (step == faulty_step) script.start(fault, at);
+        const std::vector<Contact>& found = rig.step(crowd);
+        if (step == faulty_step) {
+            calls = script.calls.size();
+            const bool lost = script.failed > 0;
+            EXPECT_EQ(rig.stats.devices_lost, lost ? 1u : 0u) << where;
+            EXPECT_EQ(rig.stats.warnings.size(), lost ? 1u : 0u) << where;
+            EXPECT_EQ(rig.stats.work.size(), 3u);
+            if (lost) {
+                EXPECT_NE(rig.stats.warnings[0].find("fake:1"), std::string::npos) << rig.stats.warnings[0];
+                const auto own = rig.narrow.assignment().pairs_of(1);
+                gone.assign(own.begin(), own.end());
+                EXPECT_GT(gone.size(), 10u);
+                EXPECT_EQ(rig.stats.work[1].pairs, 0u);
+            }
+        }
+        EXPECT_EQ(rig.stats.work[0].pairs + rig.stats.work[1].pairs + rig.stats.work[2].pairs, crowd.pairs.size());
+        EXPECT_TRUE(same(found, reference.step(crowd, gone))) << where;
+        contacts += found.size();
+        crowd.move();
+    }
+    EXPECT_GT(contacts, 500u);
+    return calls;
+}
+
+class EachCall : public ::testing::TestWithParam<Method> {};
+
+TEST_P(EachCall, MayFail) {
+    for (const bool shares_memory : {true, false}) {
+        const std::size_t calls = run_with_fault(GetParam(), Fault::none, 0, shares_memory);
+        EXPECT_GT(calls, 8u);
+        for (const Fault fault : {Fault::once, Fault::lost, Fault::watchdog})
+            for (std::size_t at = 0; at < calls; ++at) {
+                run_with_fault(GetParam(), fault, at, shares_memory);
+                if (HasFailure()) return;
+            }
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Faults, EachCall, ::testing::ValuesIn(methods),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+// Of three devices 0 fails, and `second` at its call `at`: one of its own, or one for pairs that it takes over. Returns
+// how many calls it was asked for, if it did not fail, else 0.
+std::size_t run_with_two_faults(Method method, std::size_t second, std::size_t at) {
+    Crowd crowd(14, 1.0);
+    Rig rig(crowd, method, 3);
+    Reference reference(crowd, method);
+    std::vector<SlotPair> gone;
+    std::size_t calls = 0;
+    for (int step = 0; step < last_step; ++step) {
+        if (step == faulty_step) {
+            rig.scripts[0]->start(Fault::lost, 3);
+            rig.scripts[second]->start(Fault::lost, at);
+        }
+        const std::vector<Contact>& found = rig.step(crowd);
+        if (step == faulty_step) {
+            const bool both = rig.scripts[second]->failed > 0;
+            EXPECT_EQ(rig.stats.devices_lost, both ? 2u : 1u);
+            if (!both) calls = rig.scripts[second]->calls.size();
+            for (const std::size_t part : {std::size_t{0}, second}) {
+                if (rig.scripts[part]->failed == 0) continue;
+                const auto own = rig.narrow.assignment().pairs_of(part);
+                gone.insert(gone.end(), own.begin(), own.end());
+            }
+            std::ranges::sort(gone);
+        }
+        EXPECT_TRUE(same(found, reference.step(crowd, gone)))
+            << to_string(method) << ", device " << second << ", call " << at << ", step " << step;
+        crowd.move();
+    }
+    return calls;
+}
+
+TEST(Faults, OneDeviceAfterAnother) {
+    for (const Method method : methods) {
+        std::size_t calls = 0;
+        for (const std::size_t second : {1, 2}) {
+            const std::size_t all = run_with_two_faults(method, second, 1000000);
+            for (std::size_t at = 0; at < all && !HasFailure(); ++at)
+                EXPECT_EQ(run_with_two_faults(method, second, at), 0u);
+            calls += all;
+        }
+        EXPECT_GT(calls, 60u) << to_string(method);
+    }
+}
+
+TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
+    for (const Method method : methods) {
+        Crowd crowd(10, 0.8);
+        Rig rig(crowd, method, 2);
+        rig.step(crowd);
+        crowd.move();
+        for (const auto& script : rig.scripts) script->start(Fault::lost, 5);
+        try {
+            rig.step(crowd);
+            FAIL() << "both devices are lost";
+        } catch (const DeviceError& error) {
+            const std::string text = error.what();
+            EXPECT_NE(text.find("fake:0"), std::string::npos) << text;
+            EXPECT_NE(text.find("fake:1"), std::string::npos) << text;
+        }
+        EXPECT_TRUE(rig.contacts.empty());
+        for (const auto& script : rig.scripts) script->start(Fault::none, 0);
+        rig.step(crowd);
+        if (!depends_on_state(method)) {
+            EXPECT_TRUE(same(rig.contacts, Reference(crowd, method).step(crowd, {})));
+        }
+        EXPECT_GT(rig.contacts.size(), 50u);
+    }
+}
+
+// A shape that a device has no room for.
+TEST(Faults, InAddingAShape) {
+    Crowd crowd(10, 0.8);
+    const auto more = Shape::make(scenes::scene_model("torus", 400).mesh);
+    for (std::size_t at = 0; at < 20; ++at) {
+        Rig rig(crowd, Method::standard, 2);
+        rig.step(crowd);
+        rig.scripts[0]->start(Fault::once, at);
+        rig.narrow.parts().add_shape(more);
+        const bool lost = rig.scripts[0]->failed > 0;
+        rig.scripts[0]->start(Fault::none, 0);
+        rig.step(crowd);
+        EXPECT_EQ(rig.stats.warnings.size(), lost ? 1u : 0u);
+        EXPECT_EQ(rig.narrow.parts().left(), lost ? 1u : 2u);
+        EXPECT_TRUE(same(rig.contacts, Reference(crowd, Method::standard).step(crowd, {})));
+        EXPECT_TRUE(lost || at > 0);
+    }
+}
+
+// ---- several devices without a fault
+
+// The load is uneven for some steps, so that pairs move. In step `faulty`, device `device` fails at call `at`.
+struct Uneven {
+    std::uint64_t moved = 0, lost = 0, contacts = 0;
+    std::size_t calls = 0;
+    int moved_in = -1;
+};
+Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at) {
+    Crowd crowd(14, 1.0);
+    Rig rig(crowd, method, 2);
+    Reference reference(crowd, method);
+    Uneven result;
+    std::vector<SlotPair> gone;
+    for (int step = 0; step < 16; ++step) {
+        if (step == 1) { // most pairs of device 1 are over
+            const auto own = rig.narrow.assignment().pairs_of(1);
+            std::vector<SlotPair> over(own.begin() + 5, own.end()), rest;
+            std::ranges::set_difference(crowd.pairs, over, std::back_inserter(rest));
+            crowd.pairs = rest;
+        }
+        const auto own = rig.narrow.assignment().pairs_of(device);
+        const std::vector<SlotPair> before(own.begin(), own.end());
+        if (step == faulty) rig.scripts[device]->start(Fault::lost, at);
+        const std::vector<Contact>& found = rig.step(crowd);
+        if (step == faulty) result.calls = rig.scripts[device]->calls.size();
+        if (rig.stats.pairs_moved > 0 && result.moved_in < 0) result.moved_in = step;
+        if (rig.stats.devices_lost > 0) {
+            // Pairs that had moved to it before it failed were new in that step as well.
+            const auto now = rig.narrow.assignment().pairs_of(device);
+            gone = now.empty() ? before : std::vector<SlotPair>(now.begin(), now.end());
+        }
+        result.moved += rig.stats.pairs_moved;
+        result.lost += rig.stats.devices_lost;
+        result.contacts += found.size();
+        EXPECT_TRUE(same(found, reference.step(crowd, gone)))
+            << to_string(method) << ", step " << step << ", device " << device << ", call " << at;
+        crowd.move();
+    }
+    return result;
+}
+
+TEST(Balance, MovesPairsWithTheirState) {
+    for (const Method method : methods) {
+        const Uneven whole = run_uneven(method, -1, 0, 0);
+        EXPECT_GT(whole.moved, 10u) << to_string(method);
+        EXPECT_GE(whole.moved_in, 8);
+        EXPECT_EQ(whole.lost, 0u);
+        EXPECT_GT(whole.contacts, 500u);
+        for (std::size_t device = 0; device < 2; ++device) {
+            const std::size_t calls = run_uneven(method, whole.moved_in, device, 1000000).calls;
+            for (std::size_t at = 0; at < calls; ++at) {
+                EXPECT_EQ(run_uneven(method, whole.moved_in, device, at).lost, 1u);
+                if (testing::Test::HasFailure()) return;
+            }
+        }
+    }
+}
+
+TEST(SeveralDevices, HaveTheContactsOfOne) {
+    for (const Method method : methods)
+        for (const std::size_t devices : {1, 3, 8})
+            for (const bool shares_memory : {true, false}) {
+                Crowd crowd(20, 1.2);
+                Rig rig(crowd, method, devices, shares_memory);
+                Reference reference(crowd, method);
+                for (int step = 0; step < 6; ++step) {
+                    EXPECT_TRUE(same(rig.step(crowd), reference.step(crowd, {}))) << to_string(method) << devices;
+                    ASSERT_EQ(rig.stats.work.size(), devices);
+                    std::uint64_t pairs = 0;
+                    for (const DeviceWork& work : rig.stats.work) {
+                        EXPECT_GT(work.pairs, crowd.pairs.size() / devices / 2);
+                        EXPECT_GT(work.load, 0);
+                        EXPECT_GT(work.ms, 0);
+                        pairs += work.pairs;
+                    }
+                    EXPECT_EQ(pairs, crowd.pairs.size());
+                    crowd.move();
+                }
+            }
+}
+
+} // namespace
+} // namespace raycontact
