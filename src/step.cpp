@@ -50,7 +50,10 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
-        if (const auto move = balance_.next_move()) move_pairs(*move, bodies, stats);
+        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
+            const auto move = balance_.next_move();
+            if (!move || !move_pairs(*move, bodies, stats)) break;
+        }
         const bool alone = parts_.left() == 1;
         auto failed =
             parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
@@ -107,7 +110,7 @@ std::vector<std::vector<SlotPair>> NarrowPhase::give_away(const std::vector<std:
 }
 
 // A part that fails here has failed before the step: its pairs are new to the others.
-void NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats) {
+bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats) {
     const auto start = Clock::now();
     const auto moving = choose_moving(assignment_.pairs_of(move.from), found_[move.from].contacts, move.share);
     std::vector<std::byte> state;
@@ -115,13 +118,14 @@ void NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].put_in(bodies, state); });
     if (failed.empty()) {
         assignment_.move(moving.pairs, move.to);
-        stats.pairs_moved = moving.pairs.size();
-        stats.bytes_moved = state.size();
+        stats.pairs_moved += moving.pairs.size();
+        stats.bytes_moved += state.size();
         balance_.record_move({move.from, move.to, moving.share}, milliseconds_since(start));
     } else {
         give_away(failed, stats);
     }
     assignment_.make_lists();
+    return failed.empty() && !moving.pairs.empty();
 }
 
 // Each part has the contacts of its own pairs, in order.

@@ -33,7 +33,7 @@ private:
         Placer placer;
         double ms = 0;
     };
-    void move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
+    bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
     void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
                                      StepStats& stats);

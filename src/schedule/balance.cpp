@@ -51,7 +51,8 @@ void Balance::end_step(std::size_t pair_count) {
         slowest = std::max(slowest, time(seat));
     }
     if (pair_count > 0) load_of_pair_ = std::max(1.0, load / static_cast<double>(pair_count));
-    uneven_steps_ = slowest > uneven * mean_time() ? uneven_steps_ + 1 : 0;
+    uneven_steps_ = slowest > uneven * mean_time() && !moved_ ? uneven_steps_ + 1 : 0;
+    moved_ = false;
 }
 
 double Balance::mean_time() const {
@@ -76,13 +77,13 @@ std::optional<Balance::Move> Balance::next_move() const {
     }
     const double mean = mean_time();
     const double load = std::min((time(*from) - mean) / from->cost, (mean - time(*to)) / to->cost);
-    if (load <= 0 || from->cost * steps_to_gain < cost_of_move_) return std::nullopt;
+    if (time(*from) <= uneven * mean || load <= 0 || from->cost * steps_to_gain < cost_of_move_) return std::nullopt;
     return Move{static_cast<std::size_t>(from - seats_.data()), static_cast<std::size_t>(to - seats_.data()),
                 load / from->load};
 }
 
 void Balance::record_move(const Move& move, double ms) {
-    uneven_steps_ = 0;
+    moved_ = true;
     const double load = move.share * seats_[move.from].load;
     seats_[move.from].load -= load;
     seats_[move.to].load += load;

@@ -33,8 +33,8 @@ public:
         std::size_t from = 0, to = 0;
         double share = 0;
     };
-    /// Something if the most loaded part has had more than 1.1 of the mean for 8 steps, and moving pays off. Call it
-    /// once a step.
+    /// Something if the most loaded part has had more than 1.1 of the mean for 8 steps, still has, and moving pays off.
+    /// Several moves may follow one another in a step.
     std::optional<Move> next_move() const;
     /// A move as it was carried out, and what it took by the clock.
     void record_move(const Move& move, double ms);
@@ -54,6 +54,7 @@ private:
     double load_of_pair_ = 1; ///< mean of the last step
     double cost_of_move_ = 0; ///< milliseconds a unit of load
     unsigned uneven_steps_ = 0;
+    bool moved_ = false; ///< in this step
 };
 
 } // namespace raycontact

@@ -30,7 +30,32 @@ TEST(Balance, MovesAfterEightUnevenSteps) {
     EXPECT_EQ(move->to, 1u);
     EXPECT_DOUBLE_EQ(move->share, 1.0 / 3) << "100 of 300: then both have 200";
     balance.record_move(*move, 1);
-    EXPECT_FALSE(balance.next_move()) << "it waits again";
+    EXPECT_FALSE(balance.next_move()) << "both have 200 now";
+    for (int i = 0; i < 8; ++i) {
+        step(balance, 300, 0, 100, 0);
+        EXPECT_FALSE(balance.next_move()) << "it waits again";
+    }
+    step(balance, 300, 0, 100, 0);
+    EXPECT_TRUE(balance.next_move());
+}
+
+// Two parts that have too much and two that have too little: three moves at most.
+TEST(Balance, LevelsAllPartsInOneStep) {
+    Balance balance(Schedule::counted, std::array{1.0, 1.0, 1.0, 1.0});
+    std::array loads{400.0, 300.0, 60.0, 40.0};
+    for (int i = 0; i < 8; ++i) {
+        for (std::size_t part = 0; part < 4; ++part) balance.record(part, loads[part], 0);
+        balance.end_step(100);
+    }
+    int moves = 0;
+    while (const auto move = balance.next_move()) {
+        const double load = move->share * loads[move->from];
+        loads[move->from] -= load;
+        loads[move->to] += load;
+        balance.record_move(*move, 0);
+        ASSERT_LE(++moves, 3);
+    }
+    for (const double load : loads) EXPECT_NEAR(load, 200, 20);
 }
 
 TEST(Balance, StickyNeverMovesAndLittleIsEven) {
