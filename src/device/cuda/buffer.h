@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/cuda/handle.h"
+#include "device/device.h"
+
+namespace raycontact::cuda {
+
+class DeviceBuffer : public Buffer {
+public:
+    /// The context is current.
+    DeviceBuffer(std::shared_ptr<const Context> context, std::size_t bytes)
+        : context_(std::move(context)), memory_(make_memory(context_, bytes)), bytes_(bytes) {}
+    /// Kernels that were started may still use it.
+    ~DeviceBuffer() override {
+        context_->when_current([&] { driver().cuStreamSynchronize(context_->stream()); });
+    }
+    DeviceBuffer(const DeviceBuffer&) = delete;
+    DeviceBuffer& operator=(const DeviceBuffer&) = delete;
+
+    std::size_t bytes() const override { return bytes_; }
+    Address address() const { return memory_.get(); }
+
+private:
+    std::shared_ptr<const Context> context_;
+    Memory memory_;
+    std::size_t bytes_;
+};
+
+/// 0, the null pointer, for no buffer: an empty array has none.
+inline Address address_of(const Buffer* buffer) {
+    return buffer ? static_cast<const DeviceBuffer&>(*buffer).address() : 0;
+}
+
+} // namespace raycontact::cuda
