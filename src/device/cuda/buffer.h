@@ -10,20 +10,24 @@ class DeviceBuffer : public Buffer {
 public:
     /// The context is current.
     DeviceBuffer(std::shared_ptr<const Context> context, std::size_t bytes)
-        : context_(std::move(context)), memory_(make_memory(context_, bytes)), bytes_(bytes) {}
-    /// Kernels that were started may still use it.
+        : context_(std::move(context)), bytes_(bytes) {
+        check(driver().cuMemAlloc(&address_, bytes), "a buffer of " + std::to_string(bytes) + " bytes");
+    }
     ~DeviceBuffer() override {
-        context_->when_current([&] { driver().cuStreamSynchronize(context_->stream()); });
+        context_->when_current([&] {
+            driver().cuStreamSynchronize(context_->stream()); // kernels that were started may still use it
+            driver().cuMemFree(address_);
+        });
     }
     DeviceBuffer(const DeviceBuffer&) = delete;
     DeviceBuffer& operator=(const DeviceBuffer&) = delete;
 
     std::size_t bytes() const override { return bytes_; }
-    Address address() const { return memory_.get(); }
+    Address address() const { return address_; }
 
 private:
     std::shared_ptr<const Context> context_;
-    Memory memory_;
+    Address address_ = 0;
     std::size_t bytes_;
 };
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -43,7 +43,9 @@ Cache::Cache() {
 std::optional<std::string> Cache::load(const std::string& name) const {
     if (folder_.empty()) return std::nullopt;
     std::ifstream file(fs::path(folder_) / name, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::ostringstream all; // what throws where it cannot be read is caught in here
+    all << file.rdbuf();
+    std::string bytes = std::move(all).str();
     Head head{};
     if (bytes.size() < sizeof head) return std::nullopt;
     std::memcpy(head.data(), bytes.data(), sizeof head);

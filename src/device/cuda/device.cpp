@@ -95,7 +95,7 @@ private:
     Program program_;
     Launcher launcher_;
     Staging staging_;
-    DeviceBuffer scan_sums_;
+    DeviceBuffer scan_sums_; ///< the last member: it waits before the others go
 };
 
 std::unique_ptr<DriverDevice> make_device(const Listed& listed, const Source& source) {

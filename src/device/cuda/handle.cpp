@@ -27,12 +27,6 @@ Event make_event(const std::shared_ptr<const Context>& context, bool timed) {
     return {context, handle};
 }
 
-Memory make_memory(const std::shared_ptr<const Context>& context, std::size_t bytes) {
-    Address address = 0;
-    check(driver().cuMemAlloc(&address, bytes), "a buffer of " + std::to_string(bytes) + " bytes");
-    return {context, address};
-}
-
 HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes) {
     void* memory = nullptr;
     check(driver().cuMemHostAlloc(&memory, bytes, 0), "pinned host memory of " + std::to_string(bytes) + " bytes");

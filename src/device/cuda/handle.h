@@ -72,12 +72,10 @@ private:
 
 using Event = Owned<EventHandle, &Driver::cuEventDestroy>;
 using Module = Owned<ModuleHandle, &Driver::cuModuleUnload>;
-using Memory = Owned<Address, &Driver::cuMemFree>;
 using HostMemory = Owned<void*, &Driver::cuMemFreeHost>; ///< pinned: copies to and from it need not wait
 
 /// What they return lies in the context, which is current.
 Event make_event(const std::shared_ptr<const Context>& context, bool timed);
-Memory make_memory(const std::shared_ptr<const Context>& context, std::size_t bytes);
 HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes);
 
 } // namespace raycontact::cuda
