@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -124,6 +125,22 @@ TEST_P(Architecture, kernels_take_little_local_memory) {
 #undef RAYCONTACT_KERNEL
 #undef RAYCONTACT_CPU_KERNEL
     EXPECT_GT(bytes.at("follow_rays_basic"), 0u); // the log was understood
+}
+
+// What a driver is given; no GPU is needed to make it.
+TEST(nvrtc, images_suit_the_driver) {
+    setenv("RAYCONTACT_CACHE", "/dev/null/none", 1); // compiled here and now
+    const std::string own = cuda::image_for(nvrtc(), cuda::exact_source(), 90, nvrtc().major());
+    EXPECT_TRUE(own.starts_with("\177ELF"));
+    const std::string older = cuda::image_for(nvrtc(), cuda::exact_source(), 90, nvrtc().major() - 1);
+    EXPECT_NE(older.find("\n.version " + std::to_string(nvrtc().major() - 5) + ".0\n"), std::string::npos);
+    EXPECT_NE(older.find("\n.target sm_" + std::to_string(nvrtc().architectures().front())), std::string::npos);
+    const std::string newer = cuda::image_for(nvrtc(), cuda::exact_source(), 9990, nvrtc().major());
+    EXPECT_NE(newer.find("\n.target sm_" + std::to_string(nvrtc().architectures().back())), std::string::npos);
+    for (const std::string& ptx : {older, newer}) {
+        EXPECT_TRUE(read_ptx(ptx).inexact.empty());
+        EXPECT_GT(read_ptx(ptx).rounded, 500u);
+    }
 }
 
 // What the checks are worth: other rules for floats are noticed.
