@@ -51,9 +51,7 @@ private:
     }
     void read(std::span<const Piece> pieces) override {
         const Current current(*context_);
-        staging_.start(pieces);
-        wait();
-        staging_.bring(pieces);
+        staging_.read(pieces, [this] { wait(); });
     }
     void copy(Buffer& to, const Buffer& from, std::size_t bytes) override {
         const Current current(*context_);

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cuda/staging.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace raycontact::cuda {
-
-namespace {
-
-// Whether the next piece still has room, and if so, where it begins; takes the room.
-bool take_room(const Piece& piece, std::size_t& used, std::size_t room, std::size_t& at) {
-    if (piece.bytes > room - used) return false;
-    at = used;
-    used += piece.bytes;
-    return true;
-}
-
-} // namespace
 
 Staging::Staging(std::shared_ptr<const Context> context)
     : context_(std::move(context)), up_(make_host_memory(context_, parts_.size() * part_bytes)),
@@ -40,29 +29,39 @@ std::byte* Staging::place_up(std::size_t bytes) {
 }
 
 void Staging::write(Address to, const void* from, std::size_t bytes) {
-    if (bytes == 0) return;
-    const bool direct = bytes > part_bytes;
-    if (!direct) from = std::memcpy(place_up(bytes), from, bytes);
-    check(driver().cuMemcpyHtoDAsync(to, from, bytes, context_->stream()), "cuMemcpyHtoDAsync");
-    if (direct) check(driver().cuStreamSynchronize(context_->stream()), "cuStreamSynchronize");
-}
-
-void Staging::start(std::span<const Piece> pieces) {
-    std::size_t used = 0, at = 0;
-    for (const Piece& piece : pieces) {
-        if (piece.bytes == 0) continue;
-        const bool here = take_room(piece, used, down_bytes, at);
-        check(driver().cuMemcpyDtoHAsync(here ? static_cast<std::byte*>(down_.get()) + at : piece.to,
-                                         address_of(piece.from) + piece.offset, piece.bytes, context_->stream()),
-              "cuMemcpyDtoHAsync");
+    const auto* source = static_cast<const std::byte*>(from);
+    while (bytes > 0) {
+        const std::size_t some = std::min(bytes, part_bytes);
+        const void* place = std::memcpy(place_up(some), source, some);
+        check(driver().cuMemcpyHtoDAsync(to, place, some, context_->stream()), "cuMemcpyHtoDAsync");
+        to += some;
+        source += some;
+        bytes -= some;
     }
 }
 
-void Staging::bring(std::span<const Piece> pieces) {
-    std::size_t used = 0, at = 0;
+void Staging::read(std::span<const Piece> pieces, const std::function<void()>& wait) {
+    std::size_t used = 0;
+    started_.clear();
+    const auto bring = [&] {
+        wait();
+        for (const Started& copy : started_) std::memcpy(copy.to, copy.from, copy.bytes);
+        started_.clear();
+        used = 0;
+    };
     for (const Piece& piece : pieces)
-        if (piece.bytes > 0 && take_room(piece, used, down_bytes, at))
-            std::memcpy(piece.to, static_cast<const std::byte*>(down_.get()) + at, piece.bytes);
+        for (std::size_t at = 0; at < piece.bytes;) {
+            if (used == down_bytes) bring();
+            const std::size_t some = std::min(piece.bytes - at, down_bytes - used);
+            std::byte* place = static_cast<std::byte*>(down_.get()) + used;
+            check(
+                driver().cuMemcpyDtoHAsync(place, address_of(piece.from) + piece.offset + at, some, context_->stream()),
+                "cuMemcpyDtoHAsync");
+            started_.push_back({static_cast<std::byte*>(piece.to) + at, place, some});
+            used += some;
+            at += some;
+        }
+    bring();
 }
 
 void Staging::all_copied() {
