@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
+#ifdef RAYCONTACT_CUDA
+#include "device/cuda/device.h"
+#endif
 #include "device/device.h"
 #ifdef RAYCONTACT_OPENCL
 #include "device/opencl/device.h"
@@ -13,6 +16,17 @@
 namespace raycontact {
 
 namespace {
+
+#ifdef RAYCONTACT_CUDA
+std::unique_ptr<Device> open_cuda(std::string_view name, bool inexact) {
+    return cuda::open(name, inexact);
+}
+#else
+std::unique_ptr<Device> open_cuda(std::string_view name, bool) {
+    throw InputError("device '" + std::string(name)
+                     + "': this raycontact was not built with CUDA (configure with RAYCONTACT_CUDA=ON)");
+}
+#endif
 
 #ifdef RAYCONTACT_OPENCL
 std::unique_ptr<Device> open_opencl(std::string_view name, bool inexact) {
@@ -30,6 +44,9 @@ std::unique_ptr<Device> open_opencl(std::string_view name, bool) {
 
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> devices = {cpu::describe()};
+#ifdef RAYCONTACT_CUDA
+    for (DeviceInfo& info : cuda::describe()) devices.push_back(std::move(info));
+#endif
 #ifdef RAYCONTACT_OPENCL
     for (DeviceInfo& info : opencl::describe()) devices.push_back(std::move(info));
 #endif
@@ -56,12 +73,12 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
         throw InputError("device '" + std::string(name) + "': this machine has " + std::to_string(usable_cores())
                          + " cores; use cpu/0 to cpu/" + std::to_string(usable_cores() - 1));
     }
-    if (name.starts_with("opencl:")) {
-        auto device = open_opencl(name, inexact);
+    if (name.starts_with("opencl:") || name.starts_with("cuda:")) {
+        auto device = name.starts_with("cuda:") ? open_cuda(name, inexact) : open_opencl(name, inexact);
         return {std::make_unique<Executor>(threads), std::move(device)};
     }
     throw InputError("device '" + std::string(name)
-                     + "' is unknown or not usable in this version; use cpu, cpu/k, opencl:i or opencl:i/k "
+                     + "' is unknown or not usable in this version; use cpu, cpu/k, cuda:i, opencl:i or opencl:i/k "
                        "(`raycontact devices` lists them)");
 }
 

@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels' text as CUDA C++: it compiles for old and new GPUs, and its PTX rounds every operation as the CPU does.
-#include "device/nvrtc.h"
 #include "device/ptx.h"
 
-#include "kernels_cuda.h"
+#include "device/cuda/image.h"
+#include "device/cuda/nvrtc.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <regex>
+#include <sstream>
 
 using namespace raycontact;
+using cuda::Nvrtc;
 using namespace raycontact::device_test;
 
 namespace {
 
-const std::vector<std::string> exact_options = {"--fmad=false", "--prec-div=true", "--prec-sqrt=true", "--ftz=false",
-                                                "--std=c++17"};
+const std::vector<std::string> exact_options = cuda::exact_source().options;
 
 std::string text() {
-    return kernel_text(cuda_pieces, true);
+    return cuda::exact_source().text;
 }
 
 const Nvrtc& nvrtc() {
-    static const Nvrtc loaded;
+    static const Nvrtc loaded(1000); // any
     return loaded;
+}
+
+std::string compile(const std::string& text, const std::vector<std::string>& options) {
+    const Nvrtc::Compiled compiled = nvrtc().compile(text, options);
+    EXPECT_EQ(compiled.log, "") << "a warning";
+    return compiled.image;
 }
 
 std::vector<std::string> with(std::vector<std::string> options, const std::vector<std::string>& more) {
@@ -36,7 +46,7 @@ PtxReport without_intended_fma(const std::vector<std::string>& options, std::str
     const std::string marked = "extern \"C\" __device__ float marked_fma(float, float, float);\n"
                                "#define __fmaf_rn marked_fma\n"
                                + text();
-    const std::string made = nvrtc().compile(marked, with(options, {"--relocatable-device-code=true"}));
+    const std::string made = compile(marked, with(options, {"--relocatable-device-code=true"}));
     if (ptx) *ptx = made;
     return read_ptx(made);
 }
@@ -54,7 +64,7 @@ std::vector<std::string> target(const std::string& architecture) {
 class Architecture : public testing::TestWithParam<const char*> {};
 
 TEST_P(Architecture, has_every_kernel_and_rounds_every_operation) {
-    const std::string ptx = nvrtc().compile(text(), with(exact_options, target(GetParam())));
+    const std::string ptx = compile(text(), with(exact_options, target(GetParam())));
     EXPECT_NE(ptx.find(std::string(".target sm_") + GetParam()), std::string::npos);
     const PtxReport report = read_ptx(ptx);
     std::vector<std::string> expected = {
@@ -80,6 +90,57 @@ TEST_P(Architecture, fuses_only_in_product_error) {
     EXPECT_NE(ptx.find("call"), std::string::npos);
     EXPECT_EQ(report.fused, 0u);
     EXPECT_EQ(joined(report.inexact), "");
+}
+
+// Bytes of local memory that each kernel takes, the functions it calls included, as the assembler of a cubin says.
+std::map<std::string, std::size_t> local_bytes(const std::string& architecture) {
+    const std::string log =
+        nvrtc()
+            .compile(text(), with(exact_options, {"--gpu-architecture=sm_" + architecture, "--ptxas-options=-v"}))
+            .log;
+    std::map<std::string, std::size_t> bytes;
+    std::string kernel;
+    const std::regex entry("Compiling entry function '(\\w+)'"), own("(\\d+) bytes stack frame"),
+        all("(\\d+) bytes cumulative stack size");
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch found;
+        if (std::regex_search(line, found, entry)) bytes[kernel = found[1]] = 0;
+        if (std::regex_search(line, found, own) || std::regex_search(line, found, all))
+            bytes[kernel] = std::max<std::size_t>(bytes[kernel], std::stoul(found[1]));
+    }
+    return bytes;
+}
+
+// At most 192 bytes, but for four kernels that take more: they may not take more than they do.
+TEST_P(Architecture, kernels_take_little_local_memory) {
+    const std::map<std::string, std::size_t> more = {
+        {"cast_rays_bvh", 224}, {"cast_rays_basic", 416}, {"follow_rays_bvh", 272}, {"follow_rays_basic", 512}};
+    const auto bytes = local_bytes(GetParam());
+#define RAYCONTACT_KERNEL(name)                                                                                        \
+    EXPECT_EQ(bytes.count(#name), 1u) << #name;                                                                        \
+    EXPECT_LE(bytes.at(#name), more.count(#name) ? more.at(#name) : 192u) << #name;
+#define RAYCONTACT_CPU_KERNEL(name)
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+    EXPECT_GT(bytes.at("follow_rays_basic"), 0u); // the log was understood
+}
+
+// What a driver is given; no GPU is needed to make it.
+TEST(nvrtc, images_suit_the_driver) {
+    setenv("RAYCONTACT_CACHE", "/dev/null/none", 1); // compiled here and now
+    const std::string own = cuda::image_for(nvrtc(), cuda::exact_source(), 90, nvrtc().major());
+    EXPECT_TRUE(own.starts_with("\177ELF"));
+    const std::string older = cuda::image_for(nvrtc(), cuda::exact_source(), 90, nvrtc().major() - 1);
+    EXPECT_NE(older.find("\n.version " + std::to_string(nvrtc().major() - 5) + ".0\n"), std::string::npos);
+    EXPECT_NE(older.find("\n.target sm_" + std::to_string(nvrtc().architectures().front())), std::string::npos);
+    const std::string newer = cuda::image_for(nvrtc(), cuda::exact_source(), 9990, nvrtc().major());
+    EXPECT_NE(newer.find("\n.target sm_" + std::to_string(nvrtc().architectures().back())), std::string::npos);
+    for (const std::string& ptx : {older, newer}) {
+        EXPECT_TRUE(read_ptx(ptx).inexact.empty());
+        EXPECT_GT(read_ptx(ptx).rounded, 500u);
+    }
 }
 
 // What the checks are worth: other rules for floats are noticed.

@@ -11,16 +11,17 @@ inline void set_argument(cl_kernel kernel, cl_uint at, cl_mem memory) {
 inline void set_argument(cl_kernel kernel, cl_uint at, kernels::uint number) {
     check(clSetKernelArg(kernel, at, sizeof number, &number), "clSetKernelArg");
 }
-/// Sets the first two arguments: the buffer of the count and its place there, or null and the count.
-inline void set_count(cl_kernel kernel, const Count& count) {
+/// The first two are the buffer of the count and its place there, or null and the count.
+inline void set_arguments(cl_kernel kernel, const Count& count, std::span<const Argument> arguments) {
     set_argument(kernel, 0, memory_of(count.buffer));
     set_argument(kernel, 1, count.value);
-}
-template <typename... Given>
-void set_arguments(cl_kernel kernel, const Count& count, Given... given) {
-    set_count(kernel, count);
     cl_uint at = 2;
-    (set_argument(kernel, at++, given), ...);
+    for (const Argument& argument : arguments) {
+        if (argument.is_scalar)
+            set_argument(kernel, at++, argument.scalar);
+        else
+            set_argument(kernel, at++, memory_of(argument.buffer));
+    }
 }
 
 } // namespace raycontact::opencl

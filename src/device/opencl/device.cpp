@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/device.h"
 
+#include "device/gpu/every_kernel.h"
+#include "device/gpu/run_probe.h"
+#include "device/gpu/run_scan.h"
 #include "device/opencl/arguments.h"
+#include "device/opencl/launcher.h"
 #include "device/opencl/list.h"
-#include "device/opencl/probe.h"
-#include "device/opencl/scan.h"
+#include "device/opencl/program.h"
 
 #include <raycontact/error.h>
 
+#include <array>
 #include <stdexcept>
 
 namespace raycontact::opencl {
@@ -21,53 +25,42 @@ Context make_context(cl_device_id device) {
     return context;
 }
 
-// The arguments of a launch over no items.
-template <typename Function>
-struct Nothing;
-template <typename... Parameters>
-struct Nothing<void (*)(kernels::Range, kernels::uint, Parameters...)> {
-    static constexpr Argument arguments[] = {{nullptr, 0, !std::is_pointer_v<Parameters>}...};
-};
+// SCAN_GROUP, as the kernel's text sets it.
+std::size_t group_size_of(cl_kernel kernel, cl_device_id device) {
+    std::array<std::size_t, 3> size{};
+    check(
+        clGetKernelWorkGroupInfo(kernel, device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof size, size.data(), nullptr),
+        "clGetKernelWorkGroupInfo");
+    return size[0];
+}
 
 class DriverDevice : public Device, private Queue {
 public:
     DriverDevice(const Listed& listed, const Source& source)
         : info_(listed.info), context_(make_context(listed.id)), program_(context_.get(), listed.id, source),
           block_items_(VERTEX_LANES / source.vertices_at_once), launcher_(context_.get(), listed.id),
-          scan_(program_, context_.get(), listed.id) {
-        const Probed probed = probe(launcher_, program_, source, context_.get());
-        if (info_.exact && !probed.differs.empty()) {
-            info_.exact = info_.usable = false;
-            info_.why_not = probed.differs + " that it computed are not the host's; its contacts would differ";
-        }
+          scan_group_(group_size_of(program_.scan_kernel(0), listed.id)),
+          scan_sums_(context_.get(), gpu::scan_sums_bytes(scan_group_)) {
+        const gpu::Probed probed = gpu::run_probe(
+            *this, source.has_double, [&](const char* name, kernels::uint count, std::span<const Argument> arguments) {
+                const Kernel kernel = program_.entry(name);
+                set_arguments(kernel.get(), count, arguments);
+                launcher_.over_items(kernel.get(), name, count);
+            });
+        probed.judge(info_);
         traits_.has_double = probed.exact_double;
     }
 
-    // Some drivers compile a kernel at its first launch; that must not happen during a step.
     void launch_all() {
-#define RAYCONTACT_KERNEL(name)                                                                                        \
-    if (program_.kernel(KernelId::name)) launch(KernelId::name, 0, Nothing<Prototype<KernelId::name>::type>::arguments);
-#define RAYCONTACT_CPU_KERNEL(name)
-#include "kernels/kernels.def"
-#undef RAYCONTACT_KERNEL
-#undef RAYCONTACT_CPU_KERNEL
-        for (const std::size_t most : {std::size_t{0}, std::size_t{SCAN_AT_ONCE} + 1})
-            scan({.count = {nullptr, 0, most}, .columns = 0});
-        finish();
+        gpu::launch_all(*this, [&](KernelId id) { return program_.kernel(id) != nullptr; });
     }
 
-    const DeviceInfo& info() const override {
-        return info_;
-    }
-    const DeviceTraits& traits() const override {
-        return traits_;
-    }
+    const DeviceInfo& info() const override { return info_; }
+    const DeviceTraits& traits() const override { return traits_; }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
         return std::make_unique<DeviceBuffer>(context_.get(), bytes);
     }
-    Queue& queue() override {
-        return *this;
-    }
+    Queue& queue() override { return *this; }
 
 private:
     void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
@@ -91,27 +84,23 @@ private:
     void launch(KernelId id, Count count, std::span<const Argument> arguments) override {
         cl_kernel kernel = program_.kernel(id);
         if (!kernel) throw std::logic_error("a kernel that this device cannot run");
-        set_count(kernel, count);
-        cl_uint at = 2;
-        for (const Argument& argument : arguments) {
-            if (argument.is_scalar)
-                set_argument(kernel, at++, argument.scalar);
-            else
-                set_argument(kernel, at++, memory_of(argument.buffer));
-        }
-        launcher_.over_items(kernel, Program::name_of(id),
+        set_arguments(kernel, count, arguments);
+        launcher_.over_items(kernel, gpu::name_of(id),
                              std::size_t{count.most} * (is_over_vertices(id) ? block_items_ : 1));
     }
     kernels::uint scan(const ScanOf& scan) override {
-        return scan_.run(launcher_, scan);
+        return gpu::run_scan(
+            scan, scan_sums_, scan_group_,
+            [&](std::size_t kernel, std::size_t groups, const Count& count, std::span<const Argument> arguments) {
+                set_arguments(program_.scan_kernel(kernel), count, arguments);
+                launcher_.in_groups(program_.scan_kernel(kernel), gpu::scan_kernels[kernel], scan_group_, groups);
+            });
     }
     void finish() override {
         check(clFinish(launcher_.queue()), "clFinish");
         launcher_.add_up();
     }
-    double busy_ms() const override {
-        return launcher_.busy_ms();
-    }
+    double busy_ms() const override { return launcher_.busy_ms(); }
 
     DeviceInfo info_;
     DeviceTraits traits_;
@@ -119,7 +108,8 @@ private:
     Program program_;
     std::size_t block_items_; ///< of a block of vertices, in the kernels over vertices
     Launcher launcher_;
-    Scan scan_;
+    std::size_t scan_group_;
+    DeviceBuffer scan_sums_;
 };
 
 } // namespace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/list.h"
 
+#include "device/gpu/device_id.h"
+
 #include <raycontact/error.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <mutex>
 
@@ -113,16 +114,6 @@ std::vector<Listed> list_parts(const Listed& whole) {
     return found;
 }
 
-bool read_number(std::string_view text, std::size_t& number) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc{} && end == text.data() + text.size();
-}
-
-/// "use opencl:0 to opencl:2"
-std::string range(const std::string& prefix, std::size_t count) {
-    return "use " + prefix + "0" + (count > 1 ? " to " + prefix + std::to_string(count - 1) : "");
-}
-
 } // namespace
 
 const std::vector<Listed>& devices() {
@@ -142,17 +133,18 @@ const Listed& find(std::string_view id) {
     const std::string named = "device '" + std::string(id) + "': ";
     const auto slash = std::min(id.find('/'), id.size());
     std::size_t index = 0, part = 0;
-    if (!id.starts_with("opencl:") || !read_number(id.substr(7, slash - 7), index)
-        || (slash < id.size() && !read_number(id.substr(slash + 1), part)))
+    if (!id.starts_with("opencl:") || !gpu::read_number(id.substr(7, slash - 7), index)
+        || (slash < id.size() && !gpu::read_number(id.substr(slash + 1), part)))
         throw InputError(named + "give opencl:i, or opencl:i/k for one core of it");
     if (devices().empty())
         throw InputError(named + "no OpenCL driver is installed here (on Debian, of the CPU: pocl-opencl-icd)");
-    if (index >= devices().size()) throw InputError(named + "there is none; " + range("opencl:", devices().size()));
+    if (index >= devices().size())
+        throw InputError(named + "there is none; " + gpu::use_one_of("opencl:", devices().size()));
     if (slash == id.size()) return devices()[index];
     if (parts(index).empty()) throw InputError(named + "its driver does not divide it into cores; use it whole");
     if (part >= parts(index).size())
         throw InputError(named + "it has no such core; "
-                         + range(std::string(id.substr(0, slash)) + "/", parts(index).size()));
+                         + gpu::use_one_of(std::string(id.substr(0, slash)) + "/", parts(index).size()));
     return parts(index)[part];
 }
 

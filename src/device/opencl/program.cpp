@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/program.h"
 
+#include "device/gpu/every_kernel.h"
 #include "kernels_opencl.h"
-
-#include <stdexcept>
 
 namespace raycontact::opencl {
 
 namespace {
 
-// By KernelId; null: needs the host's memory.
-constexpr const char* names[] = {
-#define RAYCONTACT_KERNEL(name) #name,
-#define RAYCONTACT_CPU_KERNEL(name) nullptr,
-#include "kernels/kernels.def"
-#undef RAYCONTACT_KERNEL
-#undef RAYCONTACT_CPU_KERNEL
-};
-
 bool is_built(KernelId id, bool has_double) {
     const bool in_double = id == KernelId::apply_changes || id == KernelId::place_pairs;
-    return names[static_cast<std::size_t>(id)] && (has_double || !in_double);
+    return gpu::name_of(id) && (has_double || !in_double);
 }
 
 bool claims_double(cl_device_id device) {
@@ -58,11 +48,8 @@ Program::Program(cl_context context, cl_device_id device, const Source& source) 
         check(status, "clBuildProgram" + (log.empty() ? "" : ":\n" + log + "\n"));
     }
     for (std::size_t i = 0; i < kernels_.size(); ++i)
-        if (is_built(static_cast<KernelId>(i), source.has_double)) kernels_[i] = entry(names[i]);
-}
-
-const char* Program::name_of(KernelId id) {
-    return names[static_cast<std::size_t>(id)];
+        if (is_built(static_cast<KernelId>(i), source.has_double)) kernels_[i] = entry(gpu::kernel_names[i]);
+    for (std::size_t i = 0; i < scan_kernels_.size(); ++i) scan_kernels_[i] = entry(gpu::scan_kernels[i]);
 }
 
 Kernel Program::entry(const char* name) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/host_kernels.h"
+#include "device/gpu/run_scan.h"
 #include "device/opencl/handle.h"
 
 #include <array>
@@ -25,13 +25,15 @@ public:
 
     /// Null for kernels that need shared memory, or double that the device lacks.
     cl_kernel kernel(KernelId id) const { return kernels_[static_cast<std::size_t>(id)].get(); }
-    static const char* name_of(KernelId id);
+    /// gpu::scan_kernels[i].
+    cl_kernel scan_kernel(std::size_t i) const { return scan_kernels_[i].get(); }
     /// A kernel that is not part of the pipeline.
     Kernel entry(const char* name) const;
 
 private:
     BuiltProgram program_;
     std::array<Kernel, static_cast<std::size_t>(KernelId::count)> kernels_;
+    std::array<Kernel, gpu::scan_kernels.size()> scan_kernels_;
 };
 
 } // namespace raycontact::opencl

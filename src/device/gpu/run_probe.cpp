@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device/opencl/probe.h"
+#include "device/gpu/run_probe.h"
 
-#include "device/opencl/arguments.h"
+#include "device/array.h"
 #include "executor/float_environment.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <random>
@@ -16,7 +17,7 @@ namespace raycontact::kernels::probe {
 #include "device/gpu/probe_double.h"
 } // namespace raycontact::kernels::probe
 
-namespace raycontact::opencl {
+namespace raycontact::gpu {
 
 namespace {
 
@@ -55,35 +56,17 @@ std::vector<double> double_operands() {
     return operands;
 }
 
-// One launch: operands go up, results come down.
-class Run {
-public:
-    Run(Launcher& launcher, cl_context context) : launcher_(launcher), context_(context) {}
-
-    template <typename T>
-    cl_mem send(const std::vector<T>& values) {
-        cl_int status = CL_SUCCESS;
-        Memory& memory = memories_.emplace_back(
-            clCreateBuffer(context_, CL_MEM_READ_WRITE, values.size() * sizeof(T), nullptr, &status));
-        check(status, "clCreateBuffer");
-        check(clEnqueueWriteBuffer(launcher_.queue(), memory.get(), CL_TRUE, 0, values.size() * sizeof(T),
-                                   values.data(), 0, nullptr, nullptr),
-              "clEnqueueWriteBuffer");
-        return memory.get();
-    }
-    template <typename T>
-    std::vector<T> fetch(cl_mem memory, std::size_t size) {
-        std::vector<T> values(size);
-        check(clEnqueueReadBuffer(launcher_.queue(), memory, CL_TRUE, 0, size * sizeof(T), values.data(), 0, nullptr,
-                                  nullptr),
-              "clEnqueueReadBuffer");
+/// An array on the device, and its copy here.
+template <typename T>
+struct Sent {
+    Sent(Device& device, std::vector<T> given) : values(std::move(given)) { array.write(device, values); }
+    Argument argument() const { return {array.buffer()}; }
+    const std::vector<T>& fetch(Device& device) {
+        array.read(device, values);
         return values;
     }
-
-private:
-    Launcher& launcher_;
-    cl_context context_;
-    std::vector<Memory> memories_;
+    std::vector<T> values;
+    Array<T> array;
 };
 
 template <typename T>
@@ -93,19 +76,21 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 
 } // namespace
 
-Probed probe(Launcher& launcher, const Program& program, const Source& source, cl_context context) {
+void Probed::judge(DeviceInfo& info) const {
+    if (!info.exact || differs.empty()) return;
+    info.exact = info.usable = false;
+    info.why_not = differs + " that it computed are not the host's; its contacts would differ";
+}
+
+Probed run_probe(Device& device, bool has_double, const LaunchProbe& launch) {
     const FloatEnvironment environment;
     Probed probed;
-    Run run(launcher, context);
     {
-        const std::vector<float> operands = float_operands();
-        std::vector<float> expected(float_results * count);
-        kernels::probe::probe_float({0, count}, count, operands.data(), expected.data());
-        const Kernel kernel = program.entry("probe_float");
-        const cl_mem results = run.send(std::vector<float>(expected.size()));
-        set_arguments(kernel.get(), count, run.send(operands), results);
-        launcher.over_items(kernel.get(), "probe_float", count);
-        const std::vector<float> found = run.fetch<float>(results, expected.size());
+        Sent<float> operands(device, float_operands()), results(device, std::vector<float>(float_results * count));
+        std::vector<float> expected(results.values.size());
+        kernels::probe::probe_float({0, count}, count, operands.values.data(), expected.data());
+        launch("probe_float", count, std::array{operands.argument(), results.argument()});
+        const std::vector<float>& found = results.fetch(device);
         for (std::size_t k = 0; k < float_results && probed.differs.empty(); ++k) {
             kernels::uint differ = 0;
             for (std::size_t i = k * count; i < (k + 1) * count; ++i)
@@ -114,21 +99,18 @@ Probed probe(Launcher& launcher, const Program& program, const Source& source, c
                 probed.differs = std::to_string(differ) + " of " + std::to_string(count) + " " + operations[k];
         }
     }
-    if (source.has_double) {
-        const std::vector<double> operands = double_operands();
-        std::vector<double> expected(double_results * count);
+    if (has_double) {
+        Sent<double> operands(device, double_operands()), results(device, std::vector<double>(double_results * count));
+        Sent<float> rounded(device, std::vector<float>(count));
+        std::vector<double> expected(results.values.size());
         std::vector<float> expected_rounded(count);
-        kernels::probe::probe_double({0, count}, count, operands.data(), expected_rounded.data(), expected.data());
-        const Kernel kernel = program.entry("probe_double");
-        const cl_mem rounded = run.send(std::vector<float>(count));
-        const cl_mem results = run.send(std::vector<double>(expected.size()));
-        set_arguments(kernel.get(), count, run.send(operands), rounded, results);
-        launcher.over_items(kernel.get(), "probe_double", count);
-        probed.exact_double = same_bits(run.fetch<float>(rounded, count), expected_rounded)
-                              && same_bits(run.fetch<double>(results, expected.size()), expected);
+        kernels::probe::probe_double({0, count}, count, operands.values.data(), expected_rounded.data(),
+                                     expected.data());
+        launch("probe_double", count, std::array{operands.argument(), rounded.argument(), results.argument()});
+        probed.exact_double =
+            same_bits(rounded.fetch(device), expected_rounded) && same_bits(results.fetch(device), expected);
     }
-    launcher.add_up();
     return probed;
 }
 
-} // namespace raycontact::opencl
+} // namespace raycontact::gpu

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/cuda/device.h"
+
+#include "device/cuda/image.h"
+#include "device/cuda/launcher.h"
+#include "device/cuda/list.h"
+#include "device/cuda/program.h"
+#include "device/cuda/staging.h"
+#include "device/gpu/every_kernel.h"
+#include "device/gpu/run_probe.h"
+
+#include <raycontact/error.h>
+
+#include <stdexcept>
+
+namespace raycontact::cuda {
+
+namespace {
+
+class DriverDevice : public Device, private Queue {
+public:
+    /// The context is current.
+    DriverDevice(const Listed& listed, const std::shared_ptr<const Context>& context, const std::string& image)
+        : info_(listed.info), context_(context), program_(context, image), launcher_(context, info_.cores),
+          staging_(context), scan_sums_(context, gpu::scan_sums_bytes(program_.scan_group())) {
+        const gpu::Probed probed =
+            gpu::run_probe(*this, true, [&](const char* name, kernels::uint count, std::span<const Argument> given) {
+                Arguments arguments(count, given);
+                launcher_.over_items(program_.entry(name), name, count, arguments);
+            });
+        probed.judge(info_);
+        traits_.has_double = probed.exact_double;
+    }
+
+    void launch_all() {
+        gpu::launch_all(*this, [&](KernelId id) { return program_.kernel(id) != nullptr; });
+    }
+
+    const DeviceInfo& info() const override { return info_; }
+    const DeviceTraits& traits() const override { return traits_; }
+    std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
+        const Current current(*context_);
+        return std::make_unique<DeviceBuffer>(context_, bytes);
+    }
+    Queue& queue() override { return *this; }
+
+private:
+    void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
+        const Current current(*context_);
+        staging_.write(address_of(&to) + offset, from, bytes);
+    }
+    void read(std::span<const Piece> pieces) override {
+        const Current current(*context_);
+        staging_.read(pieces, [this] { wait(); });
+    }
+    void copy(Buffer& to, const Buffer& from, std::size_t bytes) override {
+        const Current current(*context_);
+        check(driver().cuMemcpyDtoDAsync(address_of(&to), address_of(&from), bytes, context_->stream()),
+              "cuMemcpyDtoDAsync");
+    }
+    void launch(KernelId id, Count count, std::span<const Argument> given) override {
+        const FunctionHandle kernel = program_.kernel(id);
+        if (!kernel) throw std::logic_error("a kernel that this device cannot run");
+        const Current current(*context_);
+        Arguments arguments(count, given);
+        launcher_.over_items(kernel, gpu::name_of(id),
+                             std::size_t{count.most} * (is_over_vertices(id) ? VERTEX_LANES : 1), arguments);
+    }
+    kernels::uint scan(const ScanOf& scan) override {
+        const Current current(*context_);
+        return gpu::run_scan(
+            scan, scan_sums_, program_.scan_group(),
+            [&](std::size_t kernel, std::size_t groups, const Count& count, std::span<const Argument> given) {
+                Arguments arguments(count, given);
+                launcher_.in_groups(program_.scan_kernel(kernel), gpu::scan_kernels[kernel], program_.scan_group(),
+                                    groups, arguments);
+            });
+    }
+    void finish() override {
+        const Current current(*context_);
+        wait();
+    }
+    double busy_ms() const override { return launcher_.busy_ms(); }
+
+    void wait() {
+        launcher_.finish();
+        staging_.all_copied();
+    }
+
+    DeviceInfo info_;
+    DeviceTraits traits_;
+    std::shared_ptr<const Context> context_;
+    Program program_;
+    Launcher launcher_;
+    Staging staging_;
+    DeviceBuffer scan_sums_; ///< the last member: it waits before the others go
+};
+
+std::unique_ptr<DriverDevice> make_device(const Listed& listed, const Source& source) {
+    const Nvrtc nvrtc(listed.driver_major);
+    const std::string image = image_for(nvrtc, source, listed.architecture, listed.driver_major);
+    const auto context = std::make_shared<const Context>(listed.device);
+    const Current current(*context);
+    return std::make_unique<DriverDevice>(listed, context, image);
+}
+
+} // namespace
+
+std::vector<DeviceInfo> describe() {
+    std::vector<DeviceInfo> infos;
+    for (const Listed& listed : devices().found) infos.push_back(listed.info);
+    return infos;
+}
+
+std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::function<void(Source&)>& change) {
+    const Listed listed = find(id);
+    const auto refuse = [](const DeviceInfo& info) {
+        throw InputError("device '" + info.id + "' (" + info.name + ") cannot be used: " + info.why_not);
+    };
+    if (!listed.info.usable) refuse(listed.info);
+    Source source = exact_source();
+    if (change) change(source);
+    std::unique_ptr<DriverDevice> device;
+    try {
+        device = make_device(listed, source);
+        if (device->info().usable || inexact) device->launch_all();
+    } catch (const DeviceError& error) {
+        throw DeviceError("device '" + listed.info.id + "' (" + listed.info.name + ") did not open: " + error.what());
+    }
+    if (!device->info().usable && !inexact) refuse(device->info());
+    return device;
+}
+
+} // namespace raycontact::cuda

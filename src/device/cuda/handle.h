@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/cuda/driver.h"
+
+#include <memory>
+#include <utility>
+
+namespace raycontact::cuda {
+
+/// The device's primary context, which all who use the device in this process share, and our own stream in it.
+class Context {
+public:
+    explicit Context(DeviceNumber device);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    ContextHandle handle() const { return handle_; }
+    StreamHandle stream() const { return stream_; }
+
+    /// Releases something while the context is current. For destructors: a lost device releases nothing, and says so to
+    /// nobody.
+    template <typename Release>
+    void when_current(Release release) const {
+        if (driver().cuCtxPushCurrent(handle_) != 0) return;
+        release();
+        ContextHandle popped = nullptr;
+        driver().cuCtxPopCurrent(&popped);
+    }
+
+private:
+    DeviceNumber device_;
+    ContextHandle handle_ = nullptr;
+    StreamHandle stream_ = nullptr;
+};
+
+/// Makes a context the calling thread's, and puts back what was current when it goes: threads change between calls, and
+/// the caller may use CUDA, too.
+class Current {
+public:
+    explicit Current(const Context& context) { check(driver().cuCtxPushCurrent(context.handle()), "cuCtxPushCurrent"); }
+    ~Current() {
+        ContextHandle popped = nullptr;
+        driver().cuCtxPopCurrent(&popped);
+    }
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+};
+
+/// A handle that is released in its context.
+template <typename Handle, Status (*Driver::*release)(Handle)>
+class Owned {
+public:
+    Owned() = default;
+    Owned(std::shared_ptr<const Context> context, Handle handle) : context_(std::move(context)), handle_(handle) {}
+    ~Owned() {
+        if (context_) context_->when_current([&] { (driver().*release)(handle_); });
+    }
+    Owned(Owned&& other) noexcept : context_(std::move(other.context_)), handle_(other.handle_) {}
+    Owned& operator=(Owned&& other) noexcept {
+        std::swap(context_, other.context_);
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    Handle get() const { return handle_; }
+
+private:
+    std::shared_ptr<const Context> context_;
+    Handle handle_{};
+};
+
+using Event = Owned<EventHandle, &Driver::cuEventDestroy>;
+using Module = Owned<ModuleHandle, &Driver::cuModuleUnload>;
+using HostMemory = Owned<void*, &Driver::cuMemFreeHost>; ///< pinned: copies to and from it need not wait
+
+/// What they return lies in the context, which is current.
+Event make_event(const std::shared_ptr<const Context>& context, bool timed);
+HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes);
+
+} // namespace raycontact::cuda

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device/cuda/nvrtc.h"
+
+#include "device/cuda/nvrtc_search.h"
+#include "device/device.h"
+
+#include <algorithm>
+#include <dlfcn.h>
+
+namespace raycontact::cuda {
+
+// The few functions used, declared as its binary interface is; status 0 is success.
+struct Nvrtc::Api {
+    using Program = void*;
+    int (*version)(int*, int*) = nullptr;
+    int (*architecture_count)(int*) = nullptr;
+    int (*architectures)(int*) = nullptr;
+    int (*create)(Program*, const char*, const char*, int, const char* const*, const char* const*) = nullptr;
+    int (*destroy)(Program*) = nullptr;
+    int (*compile)(Program, int, const char* const*) = nullptr;
+    int (*log_size)(Program, std::size_t*) = nullptr;
+    int (*log)(Program, char*) = nullptr;
+    int (*ptx_size)(Program, std::size_t*) = nullptr;
+    int (*ptx)(Program, char*) = nullptr;
+    int (*cubin_size)(Program, std::size_t*) = nullptr;
+    int (*cubin)(Program, char*) = nullptr;
+    const char* (*error_text)(int) = nullptr;
+
+    /// Whether the library is there and has them all. It is never unloaded, so to load it again takes no time.
+    bool load(const std::string& path) {
+        void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+        if (!library) return false;
+        bool complete = true;
+        const auto find = [&](auto& function, const char* name) {
+            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+            complete = complete && function;
+        };
+        find(version, "nvrtcVersion");
+        find(architecture_count, "nvrtcGetNumSupportedArchs");
+        find(architectures, "nvrtcGetSupportedArchs");
+        find(create, "nvrtcCreateProgram");
+        find(destroy, "nvrtcDestroyProgram");
+        find(compile, "nvrtcCompileProgram");
+        find(log_size, "nvrtcGetProgramLogSize");
+        find(log, "nvrtcGetProgramLog");
+        find(ptx_size, "nvrtcGetPTXSize");
+        find(ptx, "nvrtcGetPTX");
+        find(cubin_size, "nvrtcGetCUBINSize");
+        find(cubin, "nvrtcGetCUBIN");
+        find(error_text, "nvrtcGetErrorString");
+        dlclose(library);
+        return complete;
+    }
+    void check(int status, const char* call) const {
+        if (status != 0) throw DeviceError(std::string(call) + ": " + error_text(status));
+    }
+    /// Text or image of a program, in two calls.
+    std::string fetch(Program program, int (*size_of)(Program, std::size_t*), int (*get)(Program, char*),
+                      const char* call) const {
+        std::size_t size = 0;
+        check(size_of(program, &size), call);
+        std::string text(size, '\0');
+        check(get(program, text.data()), call);
+        return text;
+    }
+};
+
+Nvrtc::Nvrtc(int driver_major) {
+    const NvrtcPlaces places = nvrtc_places();
+    const auto take = [&](const std::vector<std::string>& paths, int newest) {
+        for (const std::string& path : paths) {
+            Api api;
+            if (!api.load(path)) continue;
+            api.check(api.version(&major_, &minor_), "nvrtcVersion");
+            if (major_ > newest) continue;
+            api_ = std::make_unique<const Api>(api);
+            return true;
+        }
+        return false;
+    };
+    constexpr int any = 1 << 30;
+    if (!take(places.given, driver_major) && !take(places.given, any) && !take(places.others, driver_major)
+        && !take(places.others, any))
+        throw DeviceError("NVRTC, the compiler that its kernels need, is not installed; "
+                          + std::string(how_to_install));
+    int count = 0;
+    api_->check(api_->architecture_count(&count), "nvrtcGetNumSupportedArchs");
+    architectures_.resize(static_cast<std::size_t>(count));
+    api_->check(api_->architectures(architectures_.data()), "nvrtcGetSupportedArchs");
+    std::sort(architectures_.begin(), architectures_.end());
+}
+
+Nvrtc::~Nvrtc() = default;
+
+Nvrtc::Compiled Nvrtc::compile(const std::string& text, const std::vector<std::string>& options) const {
+    Api::Program made = nullptr;
+    api_->check(api_->create(&made, text.c_str(), "kernels.cu", 0, nullptr, nullptr), "nvrtcCreateProgram");
+    const auto destroy = [this](Api::Program program) { api_->destroy(&program); };
+    const std::unique_ptr<void, decltype(destroy)> program(made, destroy);
+
+    std::vector<const char*> given;
+    given.reserve(options.size());
+    for (const std::string& option : options) given.push_back(option.c_str());
+    const int status = api_->compile(made, static_cast<int>(given.size()), given.data());
+    Compiled compiled;
+    compiled.log = api_->fetch(made, api_->log_size, api_->log, "nvrtcGetProgramLog");
+    compiled.log.resize(compiled.log.find_last_not_of(std::string_view("\0 \n", 3)) + 1);
+    if (status != 0)
+        throw DeviceError(std::string("nvrtcCompileProgram: ") + api_->error_text(status) + "\n" + compiled.log);
+
+    const bool binary = std::any_of(options.begin(), options.end(), [](const std::string& option) {
+        return option.starts_with("--gpu-architecture=sm_");
+    });
+    compiled.image = binary ? api_->fetch(made, api_->cubin_size, api_->cubin, "nvrtcGetCUBIN")
+                            : api_->fetch(made, api_->ptx_size, api_->ptx, "nvrtcGetPTX");
+    return compiled;
+}
+
+} // namespace raycontact::cuda
