@@ -2,62 +2,25 @@
 // Several devices, of which some fail: at each call of a step, in each way. The step's contacts are complete, and those
 // after it, too.
 #include "device/fake.h"
-#include "mesh/vector.h"
+#include "device/moving_crowd.h"
 #include "step.h"
 
-#include "reference/random.h"
-#include "scenes/models/model.h"
-
-#include <cstring>
 #include <gtest/gtest.h>
-#include <tuple>
 
 namespace raycontact {
 namespace {
 
 using device_test::Fault;
+using device_test::MovingCrowd;
 using device_test::open_fake;
+using device_test::same;
 using device_test::Script;
-using reference::Random;
 
 constexpr Method methods[] = {Method::standard, Method::certified, Method::iterative, Method::predictive};
 
 bool depends_on_state(Method method) {
     return method == Method::iterative || method == Method::predictive;
 }
-
-// Bodies that move a little in each step.
-class Crowd {
-public:
-    explicit Crowd(std::uint32_t count, double radius) {
-        for (const char* kind : {"torus", "knot", "gear"})
-            shapes.push_back(Shape::make(scenes::scene_model(kind, 200).mesh));
-        for (std::uint32_t i = 0; i < count; ++i) {
-            PlacedBody& body = bodies.emplace_back();
-            body.shape = shapes[i % shapes.size()].get();
-            body.shape_index = i % static_cast<std::uint32_t>(shapes.size());
-            body.pose = random_.rotation();
-            body.pose.translation = radius * random_.in_ball();
-        }
-        for (BodySlot a = 0; a < bodies.size(); ++a)
-            for (BodySlot b = a + 1; b < bodies.size(); ++b) pairs.emplace_back(a, b);
-        move();
-    }
-
-    void move() {
-        for (PlacedBody& body : bodies) {
-            body.pose.translation = body.pose.translation + 0.0005 * random_.in_ball();
-            body.centred = centred_pose(*body.shape, body.pose);
-        }
-    }
-
-    std::vector<std::shared_ptr<const Shape>> shapes;
-    std::vector<PlacedBody> bodies;
-    std::vector<SlotPair> pairs;
-
-private:
-    Random random_{5};
-};
 
 Settings settings_of(Method method) {
     Settings settings;
@@ -69,12 +32,12 @@ Settings settings_of(Method method) {
 // A narrow phase on fake devices.
 class Rig {
 public:
-    Rig(const Crowd& crowd, Method method, std::size_t devices, bool shares_memory = true)
+    Rig(const MovingCrowd& crowd, Method method, std::size_t devices, bool shares_memory = true)
         : scripts(make_scripts(devices)), narrow(settings_of(method), open(shares_memory)) {
         for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
     }
-    const std::vector<Contact>& step(const Crowd& crowd) { return step(crowd, crowd.pairs); }
-    const std::vector<Contact>& step(const Crowd& crowd, std::span<const SlotPair> pairs) {
+    const std::vector<Contact>& step(const MovingCrowd& crowd) { return step(crowd, crowd.pairs); }
+    const std::vector<Contact>& step(const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
         narrow.step(crowd.bodies, pairs, contacts, stats);
         return contacts;
     }
@@ -101,11 +64,11 @@ private:
 // Two parts on the CPU: some pairs leave the first for the second in one step, as new ones. What a fault must come to.
 class Reference {
 public:
-    Reference(const Crowd& crowd, Method method) : settings_(settings_of(method)) {
+    Reference(const MovingCrowd& crowd, Method method) : settings_(settings_of(method)) {
         for (const auto& shape : crowd.shapes)
             for (Part* part : {&first_, &second_}) part->shapes().add(shape);
     }
-    std::vector<Contact> step(const Crowd& crowd, const std::vector<SlotPair>& gone) {
+    std::vector<Contact> step(const MovingCrowd& crowd, const std::vector<SlotPair>& gone) {
         std::vector<SlotPair> stay;
         std::ranges::set_difference(crowd.pairs, gone, std::back_inserter(stay));
         std::vector<Contact> contacts = contacts_of(first_, crowd, stay), others = contacts_of(second_, crowd, gone);
@@ -115,7 +78,7 @@ public:
     }
 
 private:
-    std::vector<Contact> contacts_of(Part& part, const Crowd& crowd, std::span<const SlotPair> pairs) {
+    std::vector<Contact> contacts_of(Part& part, const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
         part.begin(crowd.bodies, pairs, settings_);
         std::vector<Contact> contacts;
         Placer().run(part.executor(), settings_.direction, crowd.bodies, pairs, part.end(), contacts);
@@ -126,26 +89,11 @@ private:
     Part first_{open_device("cpu", 1)}, second_{open_device("cpu", 1)};
 };
 
-::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
-    if (found.size() != expected.size())
-        return ::testing::AssertionFailure() << found.size() << " contacts, not " << expected.size();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const Contact &a = found[i], &b = expected[i];
-        if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
-                != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
-            || std::memcmp(&a.ray_length, &b.ray_length, sizeof a.ray_length) != 0
-            || std::memcmp(&a.normal, &b.normal, sizeof a.normal) != 0
-            || std::memcmp(&a.point, &b.point, sizeof a.point) != 0)
-            return ::testing::AssertionFailure() << "contact " << i << " differs";
-    }
-    return ::testing::AssertionSuccess();
-}
-
 constexpr int last_step = 4, faulty_step = 2;
 
 // Runs some steps; in one of them device 1 of three fails at its call `at`. Returns how many calls it was asked for.
 std::size_t run_with_fault(Method method, Fault fault, std::size_t at, bool shares_memory) {
-    Crowd crowd(14, 1.0);
+    MovingCrowd crowd(14, 1.0);
     Rig rig(crowd, method, 3, shares_memory);
     Reference reference(crowd, method);
     std::vector<SlotPair> gone;
@@ -198,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, EachCall, ::testing::ValuesIn(methods),
 // Of three devices 0 fails, and `second` at its call `at`: one of its own, or one for pairs that it takes over. Returns
 // how many calls it was asked for, if it did not fail, else 0.
 std::size_t run_with_two_faults(Method method, std::size_t second, std::size_t at) {
-    Crowd crowd(14, 1.0);
+    MovingCrowd crowd(14, 1.0);
     Rig rig(crowd, method, 3);
     Reference reference(crowd, method);
     std::vector<SlotPair> gone;
@@ -242,7 +190,7 @@ TEST(Faults, OneDeviceAfterAnother) {
 
 TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
     for (const Method method : methods) {
-        Crowd crowd(10, 0.8);
+        MovingCrowd crowd(10, 0.8);
         Rig rig(crowd, method, 2);
         rig.step(crowd);
         crowd.move();
@@ -267,7 +215,7 @@ TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
 
 // A shape that a device has no room for.
 TEST(Faults, InAddingAShape) {
-    Crowd crowd(10, 0.8);
+    MovingCrowd crowd(10, 0.8);
     const auto more = Shape::make(scenes::scene_model("torus", 400).mesh);
     for (std::size_t at = 0; at < 20; ++at) {
         Rig rig(crowd, Method::standard, 2);
@@ -293,7 +241,7 @@ struct Uneven {
     int moved_in = -1;
 };
 Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at) {
-    Crowd crowd(14, 1.0);
+    MovingCrowd crowd(14, 1.0);
     Rig rig(crowd, method, 2);
     Reference reference(crowd, method);
     Uneven result;
@@ -347,7 +295,7 @@ TEST(SeveralDevices, HaveTheContactsOfOne) {
     for (const Method method : methods)
         for (const std::size_t devices : {1, 3, 8})
             for (const bool shares_memory : {true, false}) {
-                Crowd crowd(20, 1.2);
+                MovingCrowd crowd(20, 1.2);
                 Rig rig(crowd, method, devices, shares_memory);
                 Reference reference(crowd, method);
                 for (int step = 0; step < 6; ++step) {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/vector.h"
+#include "pairs/directed_pairs.h"
+
+#include "reference/random.h"
+#include "scenes/models/model.h"
+
+#include <raycontact/contact.h>
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <tuple>
+#include <vector>
+
+namespace raycontact::device_test {
+
+// Bodies that move a little in each step.
+class MovingCrowd {
+public:
+    explicit MovingCrowd(std::uint32_t count, double radius) {
+        for (const char* kind : {"torus", "knot", "gear"})
+            shapes.push_back(Shape::make(scenes::scene_model(kind, 200).mesh));
+        for (std::uint32_t i = 0; i < count; ++i) {
+            PlacedBody& body = bodies.emplace_back();
+            body.shape = shapes[i % shapes.size()].get();
+            body.shape_index = i % static_cast<std::uint32_t>(shapes.size());
+            body.pose = random_.rotation();
+            body.pose.translation = radius * random_.in_ball();
+        }
+        for (BodySlot a = 0; a < bodies.size(); ++a)
+            for (BodySlot b = a + 1; b < bodies.size(); ++b) pairs.emplace_back(a, b);
+        move();
+    }
+
+    void move() {
+        for (PlacedBody& body : bodies) {
+            body.pose.translation = body.pose.translation + 0.0005 * random_.in_ball();
+            body.centred = centred_pose(*body.shape, body.pose);
+        }
+    }
+
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    std::vector<PlacedBody> bodies;
+    std::vector<SlotPair> pairs;
+
+private:
+    reference::Random random_{5};
+};
+
+/// All contacts, bit for bit.
+inline ::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
+    if (found.size() != expected.size())
+        return ::testing::AssertionFailure() << found.size() << " contacts, not " << expected.size();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const Contact &a = found[i], &b = expected[i];
+        if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
+                != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
+            || std::memcmp(&a.ray_length, &b.ray_length, sizeof a.ray_length) != 0
+            || std::memcmp(&a.normal, &b.normal, sizeof a.normal) != 0
+            || std::memcmp(&a.point, &b.point, sizeof a.point) != 0)
+            return ::testing::AssertionFailure() << "contact " << i << " differs";
+    }
+    return ::testing::AssertionSuccess();
+}
+
+} // namespace raycontact::device_test
