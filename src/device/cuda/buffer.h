@@ -15,8 +15,8 @@ public:
     }
     ~DeviceBuffer() override {
         context_->when_current([&] {
-            driver().cuStreamSynchronize(context_->stream()); // kernels that were started may still use it
-            driver().cuMemFree(address_);
+            // Kernels that were started may still use it; where even the wait fails, it goes with the context.
+            if (driver().cuStreamSynchronize(context_->stream()) == 0) driver().cuMemFree(address_);
         });
     }
     DeviceBuffer(const DeviceBuffer&) = delete;

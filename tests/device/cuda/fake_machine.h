@@ -13,10 +13,11 @@ namespace raycontact::cuda_test {
 
 /// A machine with the test driver and the test compiler, and an empty cache.
 class FakeMachine : public testing::Test {
-protected:
+public:
     FakeMachine();
     ~FakeMachine() override;
 
+protected:
     /// As `--inexact`: the test driver computes nothing, so that its bits are not the host's.
     static std::unique_ptr<Device> open();
     /// What opening says; empty if it opens.
