@@ -22,6 +22,7 @@ MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Conta
         weight_of_body[pairs[i].second] += weights[i];
     }
     std::vector<std::pair<std::uint64_t, BodySlot>> bodies;
+    bodies.reserve(weight_of_body.size());
     for (const auto& [body, weight] : weight_of_body) bodies.emplace_back(weight, body);
     std::ranges::sort(bodies);
 

@@ -158,6 +158,7 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
     scene.step(std::span<const Pair>{});
     const std::int64_t before = bytes_held;
     std::vector<BodyId> guests;
+    guests.reserve(100000);
     for (int i = 0; i < 100000; ++i) guests.push_back(scene.add(shape));
     const std::int64_t most = bytes_held - before;
     for (const BodyId guest : guests) scene.remove(guest);

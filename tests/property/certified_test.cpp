@@ -197,6 +197,7 @@ TEST(certified, fine_meshes_that_creep) {
         const std::vector<Pose> homes = touching_poses(shapes, random.uniform(0, 0.02), random);
         for (const auto& shape : shapes) triplet.each([&](Scene& scene) { scene.add(shape); });
         std::vector<Mover> movers;
+        movers.reserve(homes.size());
         for (const Pose& home : homes) movers.emplace_back(Course::creep, home, 1.0, random);
         for (int step = 0; step < 50; ++step) {
             for (BodyId b = 0; b < movers.size(); ++b) {

@@ -49,6 +49,7 @@ TEST(Codec, StepsFromNonsense) {
     const std::vector<std::uint32_t> live{0, 1, 2, 3, 4};
     const auto numbers = [](const std::vector<Pair>& pairs) {
         std::vector<NumberPair> list;
+        list.reserve(pairs.size());
         for (const auto& [a, b] : pairs) list.emplace_back(slot_of(a), slot_of(b));
         return list;
     };

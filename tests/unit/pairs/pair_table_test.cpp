@@ -82,7 +82,7 @@ TEST(PairTable, AsksOfThePairsThatWantItInTheirOrder) {
     table.match(pairs, [](State&) {});
     Random random(3);
     std::vector<bool> wanted(pairs.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = random.below(3) == 0;
+    for (auto&& one : wanted) one = random.below(3) == 0;
     for (const auto& [begin, end] : {SlotPair{0, 500}, SlotPair{7, 130}, SlotPair{499, 500}, SlotPair{40, 40}}) {
         std::vector<std::uint32_t> asked, expected;
         std::vector<int> sent_for(pairs.size()), looked_at(pairs.size());

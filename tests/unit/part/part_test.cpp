@@ -6,7 +6,9 @@
 #include "reference/random.h"
 #include "scenes/models/model.h"
 
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <gtest/gtest.h>
 
 namespace raycontact {
@@ -63,6 +65,10 @@ struct Found {
     kernels::LocalContact contact; ///< pair: the direction
 };
 
+auto bytes_of(const kernels::LocalContact& contact) {
+    return std::bit_cast<std::array<std::byte, sizeof contact>>(contact);
+}
+
 void add(std::vector<Found>& all, std::span<const kernels::LocalContact> contacts, std::span<const SlotPair> pairs) {
     for (kernels::LocalContact contact : contacts) {
         const SlotPair pair = pairs[contact.pair / 2];
@@ -111,7 +117,7 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
             ASSERT_EQ(found.size(), expected.size()) << to_string(method) << ", step " << step;
             for (std::size_t i = 0; i < found.size(); ++i) {
                 ASSERT_EQ(found[i].pair, expected[i].pair);
-                ASSERT_EQ(std::memcmp(&found[i].contact, &expected[i].contact, sizeof found[i].contact), 0)
+                ASSERT_EQ(bytes_of(found[i].contact), bytes_of(expected[i].contact))
                     << to_string(method) << ", step " << step;
             }
             contacts += found.size();
