@@ -27,7 +27,7 @@ STRUCT(RayArrays) {
 
 DEVICE Closest traverse(const RayArrays* arrays, const uint caster, const RayFrame* ray, float reach,
                         READS(ShapeHeader) shape) {
-    if (caster == CASTER_BVH) return traverse_bvh(ray, reach, shape, arrays->nodes, arrays->blocks);
+    if (caster == CASTER_BVH) return traverse_bvh(*ray, reach, shape, arrays->nodes, arrays->blocks);
     Closest closest = nothing_hit(reach, shape->tolerance);
     traverse_basic(&closest, ray, 1u, shape, arrays->blocks);
     return closest;
@@ -72,6 +72,15 @@ DEVICE void record_hit(const RayArrays* arrays, uint at, const Hit hit, uint was
     arrays->outcomes[2u * arrays->stride + at] = was_cast;
 }
 
+// Of a ray in a direction that is unrelated to the others and to any axis. No table: a GPU would keep it in its slow
+// local memory.
+DEVICE RayFrame side_frame(const SourceRay* ray, uint side) {
+    const float direction[3] = {side == 3u ? 0.8123f : component(side, 0.5402f, -0.6311f, -0.2917f),
+                                side == 3u ? -0.4461f : component(side, 0.3173f, 0.7213f, -0.8349f),
+                                side == 3u ? -0.3758f : component(side, 0.7794f, 0.2856f, 0.4667f)};
+    return frame_ray(ray->position, direction, false);
+}
+
 // A vertex is in contact exactly when the closest hit within reach is a face met from inside. If the closest front and
 // back faces lie within rounding of each other (silhouettes, thin sheets), float32 could order them wrongly and invent
 // a contact a body size away. Then other directions from the same point decide whether it is inside a closed mesh. An
@@ -81,12 +90,7 @@ DEVICE Hit decide(const RayArrays* arrays, const uint caster, const SourceRay* r
     int decided = verdict(own, ray->reach, shape->tolerance);
     uint sides = 0u;
     while (decided == 0 && shape->closed != 0u && sides < SIDE_DIRECTIONS) {
-        // Unrelated to each other and to any axis.
-        const float directions[SIDE_DIRECTIONS][3] = {{0.5402f, 0.3173f, 0.7794f},
-                                                      {-0.6311f, 0.7213f, 0.2856f},
-                                                      {-0.2917f, -0.8349f, 0.4667f},
-                                                      {0.8123f, -0.4461f, -0.3758f}};
-        const RayFrame frame = frame_ray(ray->position, directions[sides], false);
+        const RayFrame frame = side_frame(ray, sides);
         const Closest side = traverse(arrays, caster, &frame, UNBOUNDED, shape);
         decided = verdict(&side, UNBOUNDED, shape->tolerance);
         ++sides;

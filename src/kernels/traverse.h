@@ -12,13 +12,13 @@ DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock
 }
 
 // So many blocks are tested for one ray after another before any lane is tested exactly: a bit each, and few enough to
-// stay in the first-level cache (20 of 32 KiB) for the next ray.
-#define BLOCKS_AHEAD 32
+// stay in the first-level cache (20 of 32 KiB) for the next ray. A single ray needs no more than one.
+#define BLOCKS_AHEAD (RAYS_AT_ONCE > 1 ? 32 : 1)
 
 // All rays against the same shape. Lanes that pass are stored without a branch, since a misprediction would discard the
 // tests already begun; each ray still takes them in their order.
-DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count, READS(ShapeHeader) shape,
-                                READS(TriangleBlock) blocks) {
+DEVICE void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count, READS(ShapeHeader) shape,
+                           READS(TriangleBlock) blocks) {
     for (uint first = 0u; first < shape->triangle_block_count; first += BLOCKS_AHEAD) {
         READS(TriangleBlock) ahead = blocks + shape->triangle_block_first + first;
         const uint left = shape->triangle_block_count - first;
@@ -45,8 +45,8 @@ DEVICE_CALL void traverse_basic(Closest* closest, const RayFrame* rays, uint ray
 
 // A ray and its opposite in one pass (paper section 5.3): the block test covers the line in both directions, so the
 // second ray costs only its exact tests.
-DEVICE_CALL void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
-                                     READS(ShapeHeader) shape, READS(TriangleBlock) blocks) {
+DEVICE void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
+                                READS(ShapeHeader) shape, READS(TriangleBlock) blocks) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
         READS(TriangleBlock) block = blocks + shape->triangle_block_first + b;
         const uint lanes = hit_block(closest, ray, block, shape->tolerance, false);
@@ -126,8 +126,10 @@ DEVICE void go_up(Descent* way, READS(Node) tree) {
     way->trail >>= NODE_LANES;
 }
 
-DEVICE_CALL Closest traverse_bvh(const RayFrame* ray, float reach, READS(ShapeHeader) shape, READS(Node) nodes,
+// By value: the address of a caller's struct would be one in local memory on a GPU.
+DEVICE_CALL Closest traverse_bvh(const RayFrame given, float reach, READS(ShapeHeader) shape, READS(Node) nodes,
                                  READS(TriangleBlock) blocks) {
+    const RayFrame* ray = &given;
     Closest closest = nothing_hit(reach, shape->tolerance);
     READS(Node) tree = nodes + shape->node_first;
     Descent way = {0u, 0u, hit_children(ray, tree, closest.limit, shape->tolerance)};

@@ -80,7 +80,7 @@ inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const
 
 inline kernels::prototype::Closest closest(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
     const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction, false);
-    return kernels::prototype::traverse_bvh(&frame, ray.reach, &target.header, target.nodes.data(),
+    return kernels::prototype::traverse_bvh(frame, ray.reach, &target.header, target.nodes.data(),
                                             target.triangle_blocks.data());
 }
 
