@@ -5,6 +5,7 @@
 
 #include <bench/device/measure.h>
 #include <bench/device/output.h>
+#include <bench/device/roofline.h>
 #include <bench/peers/machine.h>
 #include <bench/peers/work.h>
 #include <raycontact/error.h>
@@ -33,6 +34,14 @@ struct DeviceCommand {
     std::string devices = "all", out;
     std::vector<std::string> methods, casters;
     DeviceOptions options;
+    bool json = false;
+};
+
+struct RooflineCommand {
+    WorkCommand work{"", "200:208", 512};
+    std::vector<std::string> methods;
+    std::string caster = "bvh";
+    RooflineOptions options;
     bool json = false;
 };
 
@@ -96,9 +105,31 @@ void bench_device(DeviceCommand command) {
     }
 }
 
-} // namespace
+void bench_roofline(RooflineCommand command) {
+    RooflineOptions& options = command.options;
+    if (!command.methods.empty()) options.methods.clear();
+    for (const std::string& word : command.methods) {
+        options.methods.push_back(method_from(word));
+        if (options.methods.back() == Method::certified)
+            throw InputError(
+                "--methods: certified casts what standard casts on a device with memory of its own; ask for "
+                "standard");
+    }
+    options.caster = caster_from(command.caster);
+    Machine machine = this_machine();
+    tell("poses and pairs");
+    const Work work = make_work(command.work);
+    const std::vector<RooflineRow> rows = count_roofline(work, options, tell);
+    machine.load = this_machine().load;
+    tell("");
+    std::cout << (command.json ? json(machine, work, options, rows) : table(machine, work, options, rows));
+    if (!std::ranges::all_of(rows, &RooflineRow::agrees)) {
+        std::cout.flush();
+        throw std::runtime_error("the counting kernels gave other bits than the CPU's; this must not be");
+    }
+}
 
-void add_bench_device(CLI::App& bench) {
+void add_device(CLI::App& bench) {
     CLI::App* command =
         bench.add_subcommand("device", "Whole steps and single kernels on each device, beside the CPU's contacts");
     auto c = std::make_shared<DeviceCommand>();
@@ -121,4 +152,30 @@ void add_bench_device(CLI::App& bench) {
     command->footer("Single kernels are timed in a run of their own, each waited for, by the device's clock.\n"
                     "Exit status: 0 fine, 1 a device failed or its contacts are not the CPU's, 2 bad usage or input.");
     command->callback([c] { bench_device(*c); });
+}
+
+void add_roofline(CLI::App& bench) {
+    CLI::App* command =
+        bench.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
+    auto c = std::make_shared<RooflineCommand>();
+    add_work_options(*command, c->work);
+    command->add_option("--methods", c->methods, "standard,iterative,predictive; without: all")
+        ->type_name("WORDS")
+        ->delimiter(',');
+    command->add_option("--caster", c->caster, "bvh or basic")->type_name("WORD")->capture_default_str();
+    command->add_option("--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_option("--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    command->callback([c] { bench_roofline(*c); });
+}
+
+} // namespace
+
+void add_bench_device(CLI::App& bench) {
+    add_device(bench);
+    add_roofline(bench);
 }
