@@ -148,9 +148,8 @@ RayCost count_ray(RayKernel kernel, std::uint32_t item, std::uint32_t count, std
     counted::model.stack = static_cast<const char*>(__builtin_frame_address(0));
     counted::run(kernel, item, count, arguments);
     auto& sectors = counted::model.cost.sectors;
-    std::ranges::sort(sectors);
-    const auto rest = std::ranges::unique(sectors);
-    sectors.erase(rest.begin(), rest.end());
+    std::sort(sectors.begin(), sectors.end());
+    sectors.erase(std::unique(sectors.begin(), sectors.end()), sectors.end());
     return std::move(counted::model.cost);
 }
 
