@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/bench.h"
 
+#include "cli/bench_device.h"
+#include "cli/bench_options.h"
+
 #include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
 #include <bench/peers/contest_output.h>
@@ -20,10 +23,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <vector>
-
-#include <unistd.h>
 
 namespace {
 
@@ -57,11 +57,6 @@ struct GrowthCommand {
     GrowthOptions options;
     bool json = false;
 };
-
-/// One line that says what is being done, on a terminal only.
-void tell(const std::string& what) {
-    if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K" << what << std::flush;
-}
 
 bool chosen(const std::vector<std::string>& words, const std::string& word) {
     return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
@@ -241,15 +236,6 @@ void bench_sweep(const SweepCommand& command) {
     if (wrong) throw std::runtime_error("certified gave other contacts than standard; this must not be");
 }
 
-template <class Number>
-void add_number(CLI::App& command, const std::string& name, Number& value, const std::string& help, Number least,
-                Number most) {
-    command.add_option(name, value, help)
-        ->type_name(std::is_integral_v<Number> ? "N" : "METRES")
-        ->capture_default_str()
-        ->check(CLI::Range(least, most));
-}
-
 void add_peers(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "peers", "The same poses and pairs through ours, Bullet GImpact, FCL, ODE and Embree, one thread each");
@@ -333,9 +319,11 @@ void add_bench(CLI::App& app) {
     bench->require_subcommand(0, 1); // none is refused below, with the names to choose from
     bench->callback([bench] {
         if (bench->get_subcommands().empty())
-            throw InputError("bench: a subcommand is required: peers, growth or sweep (see raycontact bench --help)");
+            throw InputError("bench: a subcommand is required: peers, growth, sweep, device or roofline (see "
+                             "raycontact bench --help)");
     });
     add_peers(*bench);
     add_growth(*bench);
     add_sweep(*bench);
+    add_bench_device(*bench);
 }

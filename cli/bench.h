@@ -3,5 +3,5 @@
 
 #include <CLI/CLI.hpp>
 
-/// Registers `bench peers` and `bench growth`: what contacts cost here and elsewhere, and how that grows.
+/// Registers `bench` and its subcommands: what contacts cost here and elsewhere, and how that grows.
 void add_bench(CLI::App& app);

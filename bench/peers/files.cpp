@@ -41,15 +41,21 @@ std::string machine_fields(const Machine& m) {
                        m.governor, m.load);
 }
 
-std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                 const std::string& csv, const std::string& svg) {
+std::filesystem::path write_csv(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
+                                const std::string& csv) {
     const std::filesystem::path where = folder / machine.slug;
     std::error_code error;
     std::filesystem::create_directories(where, error);
     if (error) throw InputError("--out " + folder.string() + ": cannot be made a folder; name another");
     std::filesystem::path file = where / (name + "-" + machine.date + ".csv");
     write_file(file, csv);
-    write_file(where / (name + "-" + machine.date + ".svg"), svg);
+    return file;
+}
+
+std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
+                                 const std::string& csv, const std::string& svg) {
+    std::filesystem::path file = write_csv(folder, machine, name, csv);
+    write_file(std::filesystem::path(file).replace_extension(".svg"), svg);
     return file;
 }
 

@@ -20,8 +20,11 @@ std::string machine_fields(const Machine& machine);
 /// A field that may hold commas.
 std::string quoted(const std::string& text);
 
-/// DIR/<machine>/<name>-<date>.csv and .svg; the folders are made where missing. Returns the path of the CSV.
-/// Throws InputError naming what cannot be written.
+/// DIR/<machine>/<name>-<date>.csv; the folders are made where missing. Returns its path. Throws InputError naming what
+/// cannot be written.
+std::filesystem::path write_csv(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
+                                const std::string& csv);
+/// The same, and a chart: .svg.
 std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
                                  const std::string& csv, const std::string& svg);
 

@@ -54,7 +54,7 @@ TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
     for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "bench"}) {
         expect_refused(run({}), command);
     }
-    expect_refused(run({"bench"}), "peers, growth or sweep");
+    expect_refused(run({"bench"}), "peers, growth, sweep, device or roofline");
     expect_refused(run({"bench", "peer"}), "peer");
     expect_refused(run({"bench", "peers", "--only", "nobody"}), "nobody");
     expect_refused(run({"bench", "peers", "--works", "nothing"}), "nothing");

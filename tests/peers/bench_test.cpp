@@ -249,3 +249,79 @@ TEST(BenchSweep, ARecording) {
         EXPECT_GT(one[i]["contacts_compared"], 0) << i;
     }
 }
+
+TEST(BenchDevice, StepsAndKernelsOfTheCpu) {
+    const Folder folder;
+    const std::string how = "device --bodies 8 --steps 90:96 --basic-steps 3 --copies 2 --runs 2 --devices cpu ";
+    const Ran ran = run(how + "--json --out \"" + folder.path.string() + "\"");
+    ASSERT_EQ(ran.status, 0);
+    const Json out = Json::parse(ran.out);
+    ASSERT_EQ(out["devices"].size(), 1u);
+    EXPECT_GT(out["devices"][0]["copy_gb_per_s"], 0);
+    EXPECT_GT(out["devices"][0]["launch_and_wait_us"], 0);
+    ASSERT_EQ(out["results"].size(), 8u); // four methods, two casters
+    std::size_t rows = 5;                 // of the device
+    for (const Json& r : out["results"]) {
+        EXPECT_TRUE(r["agrees"]);
+        EXPECT_EQ(r["steps"], r["caster"] == "bvh" ? 6 : 3);
+        EXPECT_GT(r["contacts"], 0);
+        EXPECT_GE(r["step_us"], r["narrow_us"]);
+        double launches = 0, share = 0;
+        for (const Json& k : r["kernels"]) {
+            launches += k["launches"].get<double>();
+            share += k["share"].get<double>();
+        }
+        EXPECT_NEAR(launches, r["launches"].get<double>(), 2) << "a median against a mean";
+        EXPECT_NEAR(share, 1, 1e-6);
+        rows += 1 + r["kernels"].size();
+    }
+    // What standard finds, certified does; and every copy finds what one does.
+    const Json& results = out["results"];
+    EXPECT_EQ(results[0]["hash"], results[1]["hash"]);
+    const Json once = Json::parse(run("device --bodies 8 --steps 90:96 --casters bvh --methods standard --runs 1 "
+                                      "--devices cpu --json")
+                                      .out)["results"];
+    ASSERT_EQ(once.size(), 1u);
+    EXPECT_EQ(results[0]["contacts"], 2 * once[0]["contacts"].get<double>());
+    EXPECT_NE(results[0]["hash"], once[0]["hash"]);
+
+    const std::string csv = content(file_with(folder.path, "device-", ".csv"));
+    EXPECT_TRUE(csv.starts_with("date,commit,cpu,")) << csv.substr(0, 80);
+    const std::vector<Row> table = table_of(csv);
+    ASSERT_EQ(table.size(), rows);
+    for (const Row& row : table) {
+        EXPECT_EQ(row.at("device"), "cpu");
+        EXPECT_EQ(row.at("agrees"), row.at("what") == "step" ? "1" : "");
+    }
+}
+
+TEST(BenchDevice, RefusesWhatItCannotDo) {
+    for (const std::string arguments : {"--steps 5", "--steps 5:6", "--steps 5:x", "--steps :9", "--devices gpu",
+                                        "--methods none", "--casters none", "--recording missing.glb"}) {
+        const Ran ran = run("device --bodies 1 " + arguments, true);
+        EXPECT_EQ(ran.status, 2) << arguments;
+        EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << ran.out;
+    }
+}
+
+TEST(BenchRoofline, CountsWhatTheKernelsDo) {
+    const Ran ran = run("roofline --bodies 8 --steps 90:94 --json");
+    ASSERT_EQ(ran.status, 0); // the counting kernels gave the CPU's bits
+    const Json rows = Json::parse(ran.out)["rows"];
+    ASSERT_EQ(rows.size(), 3u);
+    for (const Json& row : rows) {
+        const Json& cast = row["kinds"][0];
+        EXPECT_EQ(cast["rays"], "cast");
+        EXPECT_GE(cast["nodes"], 1); // the root, of each ray
+        // A node's planes and the corners of a block are read whole; the rest is less than as much again.
+        const double least = 384 * cast["nodes"].get<double>() + 576 * cast["blocks"].get<double>();
+        EXPECT_GE(cast["bytes_loaded"], least);
+        EXPECT_LT(cast["bytes_loaded"], 2 * least);
+        EXPECT_GT(row["floor_us_every_ray"], row["floor_us_once"]);
+        if (row["method"] == "standard") continue;
+        const Json& update = row["kinds"][1];
+        EXPECT_EQ(update["nodes"], 0);
+        EXPECT_GE(update["faces"], 1);
+        EXPECT_LT(update["operations"], cast["operations"]);
+    }
+}

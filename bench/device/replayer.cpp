@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/device/replayer.h"
+
+#include "executor/float_environment.h"
+
+#include <chrono>
+#include <utility>
+
+namespace raycontact::bench {
+
+namespace {
+
+std::vector<OpenDevice> alone(OpenDevice opened) {
+    std::vector<OpenDevice> list;
+    list.push_back(std::move(opened));
+    return list;
+}
+
+} // namespace
+
+Replayer::Replayer(const Work& work, std::uint32_t copies, const Settings& settings, OpenDevice opened)
+    : work_(work), copies_(copies), narrow_(settings, alone(std::move(opened))) {
+    bodies_.resize(copies * work.body_shape.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const auto& shape = work.shapes[work.body_shape[i % work.body_shape.size()]];
+        narrow_.parts().add_shape(shape);
+        bodies_[i].shape = shape.get();
+    }
+    narrow_.parts().pack_shapes();
+    for (PlacedBody& body : bodies_) body.shape_index = narrow_.parts().index_of(body.shape);
+}
+
+void Replayer::rest(const Settings& settings) {
+    narrow_.set_settings(settings);
+    step(0);
+    narrow_.set_settings(settings); // forgets
+}
+
+void Replayer::step(std::size_t k) {
+    const WorkStep& now = work_.steps[k];
+    const auto count = static_cast<BodySlot>(now.poses.size());
+    pairs_.clear();
+    for (std::uint32_t copy = 0; copy < copies_; ++copy)
+        for (const auto& [a, b] : now.pairs)
+            pairs_.emplace_back(copy * count + static_cast<BodySlot>(a), copy * count + static_cast<BodySlot>(b));
+    const FloatEnvironment environment;
+    const auto start = std::chrono::steady_clock::now();
+    narrow_.parts().wake();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        bodies_[i].pose = now.poses[i % count];
+        bodies_[i].centred = centred_pose(*bodies_[i].shape, bodies_[i].pose);
+    }
+    narrow_.step(bodies_, pairs_, contacts_, stats_);
+    step_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace raycontact::bench

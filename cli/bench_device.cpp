@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/bench_device.h"
+
+#include "cli/bench_options.h"
+
+#include <bench/device/measure.h>
+#include <bench/device/output.h>
+#include <bench/device/roofline.h>
+#include <bench/peers/machine.h>
+#include <bench/peers/work.h>
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace raycontact;
+using namespace raycontact::bench;
+
+struct WorkCommand {
+    std::string recording, range = "200:260";
+    std::uint32_t bodies = 512;
+};
+
+struct DeviceCommand {
+    WorkCommand work;
+    std::string devices = "all", out;
+    std::vector<std::string> methods, casters;
+    DeviceOptions options;
+    bool json = false;
+};
+
+struct RooflineCommand {
+    WorkCommand work{"", "200:208", 512};
+    std::vector<std::string> methods;
+    std::string caster = "bvh";
+    RooflineOptions options;
+    bool json = false;
+};
+
+/// A:B, from step A up to but not with step B.
+std::pair<std::uint32_t, std::uint32_t> range_of(const std::string& text) {
+    const char *end = text.data() + text.size(), *colon = std::find(text.data(), end, ':');
+    std::uint32_t first = 0, last = 0;
+    const auto one = std::from_chars(text.data(), colon, first);
+    const auto two = std::from_chars(colon == end ? end : colon + 1, end, last);
+    if (one.ec != std::errc{} || one.ptr != colon || two.ec != std::errc{} || two.ptr != end || last < first + 2)
+        throw InputError("--steps: \"" + text + "\" is no range; give A:B, steps A to B - 1, two or more");
+    return {first, last};
+}
+
+Work make_work(const WorkCommand& command) {
+    const auto [first, last] = range_of(command.range);
+    AvalancheWorkOptions options;
+    options.bodies = command.bodies;
+    options.first = first;
+    options.steps = last - first;
+    Work work = command.recording.empty() ? avalanche_work(options) : recorded_work(command.recording, options);
+    if (work.steps.size() < options.steps)
+        throw InputError(command.recording + ": ends after step " + std::to_string(first + work.steps.size())
+                         + "; give a shorter range with --steps");
+    return work;
+}
+
+void add_work_options(CLI::App& command, WorkCommand& work) {
+    command
+        .add_option("--recording", work.recording,
+                    "poses and pairs (run --record); without: an avalanche, simulated beforehand")
+        ->type_name("FILE");
+    command.add_option("--steps", work.range, "its steps A to B - 1")->type_name("A:B")->capture_default_str();
+    add_number(command, "--bodies", work.bodies, "of the avalanche", 1u, 1'000'000u);
+}
+
+void bench_device(DeviceCommand command) {
+    DeviceOptions& options = command.options;
+    Settings settings;
+    settings.method = Method::standard;
+    settings.devices = command.devices;
+    options.devices = chosen_devices(settings);
+    if (!command.methods.empty()) options.methods.clear();
+    for (const std::string& word : command.methods) options.methods.push_back(method_from(word));
+    if (!command.casters.empty()) options.casters.clear();
+    for (const std::string& word : command.casters) options.casters.push_back(caster_from(word));
+    options.first = range_of(command.work.range).first;
+
+    Machine machine = this_machine();
+    tell("poses and pairs");
+    const Work work = make_work(command.work);
+    const DeviceResults results = measure_devices(work, options, tell);
+    machine.load = this_machine().load;
+    tell("");
+    if (!command.out.empty())
+        std::cerr << "written: " << write_results(command.out, machine, work, options, results).string() << '\n';
+    std::cout << (command.json ? json(machine, work, options, results) : table(machine, work, options, results));
+    if (!std::ranges::all_of(results.results, &DeviceResult::agrees)) {
+        std::cout.flush();
+        throw std::runtime_error("a device failed or gave other bits than the CPU; this must not be");
+    }
+}
+
+void bench_roofline(RooflineCommand command) {
+    RooflineOptions& options = command.options;
+    if (!command.methods.empty()) options.methods.clear();
+    for (const std::string& word : command.methods) {
+        options.methods.push_back(method_from(word));
+        if (options.methods.back() == Method::certified)
+            throw InputError(
+                "--methods: certified casts what standard casts on a device with memory of its own; ask for "
+                "standard");
+    }
+    options.caster = caster_from(command.caster);
+    Machine machine = this_machine();
+    tell("poses and pairs");
+    const Work work = make_work(command.work);
+    const std::vector<RooflineRow> rows = count_roofline(work, options, tell);
+    machine.load = this_machine().load;
+    tell("");
+    std::cout << (command.json ? json(machine, work, options, rows) : table(machine, work, options, rows));
+    if (!std::ranges::all_of(rows, &RooflineRow::agrees)) {
+        std::cout.flush();
+        throw std::runtime_error("the counting kernels gave other bits than the CPU's; this must not be");
+    }
+}
+
+void add_device(CLI::App& bench) {
+    CLI::App* command =
+        bench.add_subcommand("device", "Whole steps and single kernels on each device, beside the CPU's contacts");
+    auto c = std::make_shared<DeviceCommand>();
+    add_work_options(*command, c->work);
+    command->add_option("--devices", c->devices, "each measured alone: all (every GPU, or the CPU), or a list")
+        ->type_name("LIST")
+        ->capture_default_str();
+    command->add_option("--methods", c->methods, "standard,certified,iterative,predictive; without: all")
+        ->type_name("WORDS")
+        ->delimiter(',');
+    command->add_option("--casters", c->casters, "bvh,basic; without: both")->type_name("WORDS")->delimiter(',');
+    add_number(*command, "--basic-steps", c->options.basic_steps, "of the steps, how many the caster basic gets", 2u,
+               1'000'000u);
+    add_number(*command, "--copies", c->options.copies, "of all bodies and pairs, to fill a large device", 1u,
+               100'000u);
+    add_number(*command, "--runs", c->options.runs, "figures are medians over runs and steps", 1u, 1000u);
+    add_number(*command, "--threads", c->options.threads, "of the host, 0: one per core", 0u, 1024u);
+    command->add_option("--out", c->out, "write DIR/<machine>/device-<date>.csv")->type_name("DIR");
+    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    command->footer("Single kernels are timed in a run of their own, each waited for, by the device's clock.\n"
+                    "Exit status: 0 fine, 1 a device failed or its contacts are not the CPU's, 2 bad usage or input.");
+    command->callback([c] { bench_device(*c); });
+}
+
+void add_roofline(CLI::App& bench) {
+    CLI::App* command =
+        bench.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
+    auto c = std::make_shared<RooflineCommand>();
+    add_work_options(*command, c->work);
+    command->add_option("--methods", c->methods, "standard,iterative,predictive; without: all")
+        ->type_name("WORDS")
+        ->delimiter(',');
+    command->add_option("--caster", c->caster, "bvh or basic")->type_name("WORD")->capture_default_str();
+    command->add_option("--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_option("--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    command->callback([c] { bench_roofline(*c); });
+}
+
+} // namespace
+
+void add_bench_device(CLI::App& bench) {
+    add_device(bench);
+    add_roofline(bench);
+}
