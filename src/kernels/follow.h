@@ -126,13 +126,13 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
     const RayFrame frame = frame_ray(ray->position, ray->direction, false);
     uint at = followed->start, came_from = NONE;
     for (uint i = 0u; i < follow->max_iterations; ++i) {
-        READS(Face) face = follow->faces + shape->face_first + at;
-        if (face->triangle_lane == NONE) return end;
+        const Face face = follow->faces[shape->face_first + at];
+        if (face.triangle_lane == NONE) return end;
         uint came_by = NONE;
         for (uint e = 0u; e < 3u; ++e)
-            if (came_from != NONE && face->neighbour[e] == came_from) came_by = e;
-        const Passage passage = pass_triangle(&frame, blocks + face->triangle_lane / TRIANGLE_LANES,
-                                              face->triangle_lane % TRIANGLE_LANES, came_by);
+            if (came_from != NONE && face.neighbour[e] == came_from) came_by = e;
+        const Passage passage = pass_triangle(&frame, blocks + face.triangle_lane / TRIANGLE_LANES,
+                                              face.triangle_lane % TRIANGLE_LANES, came_by);
         if (passage.through != 0u) {
             end.how = WALKED;
             if (passage.t >= 0.0f && passage.t <= ray->reach && followed->inside != 0u) {
@@ -145,7 +145,7 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
         }
         if (passage.across == NONE) return end;
         came_from = at;
-        at = face->neighbour[passage.across];
+        at = face.neighbour[passage.across];
         if (at == NONE) return end;
     }
     return end;
