@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <report/plot.h>
 #include <reproduce/cache.h>
 #include <reproduce/number.h>
-#include <report/plot.h>
 
 #include <functional>
 #include <string>

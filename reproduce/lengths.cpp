@@ -32,7 +32,8 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
     std::size_t at = 0;
     for (const std::string& scene : scene_names()) {
         const double paper = scene == "rain" ? 56 : 45;
-        report::Plot plot{"Section 5.2: length of the rays of standard, " + scene, "m",
+        report::Plot plot{"Section 5.2: length of the rays of standard, " + scene,
+                          "m",
                           fmt::format("Seed 1. The paper: {:.0f} % shorter over the whole scene.", paper),
                           {line("driven by iterative", found[at]["length"].get<Series>()),
                            line("driven by predictive", found[at + 1]["length"].get<Series>())},
@@ -50,14 +51,16 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
         plot.note += " Here " + percent(median(shorter)) + " (median of the seeds).";
         out.numbers.push_back(compared(
             "lengths." + scene, paper, median(shorter), "% shorter", Better::higher,
-            fmt::format("median of {} seeds, range {} to {}; depends on the displacement threshold, which the paper does "
-                        "not state ({} m here), and on the response",
-                        shorter.size(), percent(*least), percent(*most), constants::displacement_threshold)));
+            fmt::format(
+                "median of {} seeds, range {} to {}; depends on the displacement threshold, which the paper does "
+                "not state ({} m here), and on the response",
+                shorter.size(), percent(*least), percent(*most), constants::displacement_threshold)));
         out.plots.push_back(plot);
         out.tables.push_back(table);
     }
-    out.paragraphs = {"One simulation is driven by the contacts of iterative, one by those of predictive, with the same "
-                      "fixed constants. Both are recorded, and standard measures all rays along both recordings."};
+    out.paragraphs = {
+        "One simulation is driven by the contacts of iterative, one by those of predictive, with the same "
+        "fixed constants. Both are recorded, and standard measures all rays along both recordings."};
     return out;
 }
 
@@ -73,8 +76,7 @@ Experiment lengths(const Workshop& shop) {
                 const SimulationOptions options = driven_by(shop, method, scene, seed);
                 const double cost = Workshop::cost(options) / 2;
                 e.parts.push_back({fmt::format("lengths-{}-{}-seed{}", scene, to_string(method), seed),
-                                   shop.key("lengths", options), 3 * cost,
-                                   [&shop, options, cost](const Tick& tick) {
+                                   shop.key("lengths", options), 3 * cost, [&shop, options, cost](const Tick& tick) {
                                        return measure(shop, options, cost, tick);
                                    }});
             }

@@ -44,26 +44,34 @@ Outcome show(const std::vector<Json>& found) {
         const double best = best_second(standard, iterative), mean = sum(standard) / std::max(sum(iterative), 1e-9);
         const std::string caster = basic ? "basic" : "bvh";
         table.rows.push_back({caster, "every ray cast", fmt::format("{:.1f}", best), fmt::format("{:.1f}", mean)});
-        report::Plot plot{"LGA13: time, caster " + caster, "ms",
-                          fmt::format("The paper: iterative up to 33 times as fast; here {:.1f} in the best second, {:.1f} "
-                                      "over all steps.", best, mean),
-                          {line("standard", standard), line("iterative", iterative)}, report::over_steps(1.0 / 60)};
+        report::Plot plot{
+            "LGA13: time, caster " + caster,
+            "ms",
+            fmt::format("The paper: iterative up to 33 times as fast; here {:.1f} in the best second, {:.1f} "
+                        "over all steps.",
+                        best, mean),
+            {line("standard", standard), line("iterative", iterative)},
+            report::over_steps(1.0 / 60)};
         if (!basic) {
             const auto grids = found[k][2].get<Series>();
             plot.lines.push_back(line("standard with grids", grids));
-            table.rows.push_back({caster, "with this library's grids", fmt::format("{:.1f}", best_second(grids, iterative)),
+            table.rows.push_back({caster, "with this library's grids",
+                                  fmt::format("{:.1f}", best_second(grids, iterative)),
                                   fmt::format("{:.1f}", sum(grids) / std::max(sum(iterative), 1e-9))});
         }
         out.plots.push_back(plot);
         if (basic)
             out.numbers.push_back(compared(
                 "lga13", 33, best, "times as fast", Better::higher,
-                fmt::format("best second of the avalanche, caster basic, constants fixed; mean {:.1f}. The paper says \"up "
-                            "to\", on a GPU and a scene that it does not name", mean)));
+                fmt::format(
+                    "best second of the avalanche, caster basic, constants fixed; mean {:.1f}. The paper says \"up "
+                    "to\", on a GPU and a scene that it does not name",
+                    mean)));
     }
     out.tables.push_back(table);
-    out.paragraphs = {"Both methods follow the same recording with the same caster. standard casts every ray in full in "
-                      "every step; iterative has the fixed constants of Figure 9."};
+    out.paragraphs = {
+        "Both methods follow the same recording with the same caster. standard casts every ray in full in "
+        "every step; iterative has the fixed constants of Figure 9."};
     return out;
 }
 

@@ -6,8 +6,8 @@
 namespace raycontact::reproduce {
 
 namespace {
-constexpr std::size_t second = 60;   // steps
-constexpr double no_time = 1e-6;     // milliseconds: below any clock's resolution, and never zero
+constexpr std::size_t second = 60; // steps
+constexpr double no_time = 1e-6;   // milliseconds: below any clock's resolution, and never zero
 } // namespace
 
 std::vector<Phase> phases(const Series& full, const Series& ordered_pairs) {

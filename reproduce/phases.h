@@ -11,7 +11,8 @@ namespace raycontact::reproduce {
 enum class Phase { b, c };
 
 /// Of each step. A second (60 steps) is of phase B if its share of ordered pairs looked at in full lies above the
-/// middle between the least and the largest share of the seconds that have pairs, or if all have the same; others are C.
+/// middle between the least and the largest share of the seconds that have pairs, or if all have the same; others are
+/// C.
 std::vector<Phase> phases(const Series& full, const Series& ordered_pairs);
 
 /// The first's time over the second's, in that phase; over all steps where there is no such step. Always finite.

@@ -17,7 +17,7 @@ report::Line windows(std::string name, std::size_t steps, Value value) {
     for (std::size_t from = 0; from < steps; from += length) {
         const std::size_t end = std::min(steps, from + length);
         // The ends stay at the first and last step, so that the axis covers the whole run.
-        const double x = from == 0        ? 0
+        const double x = from == 0      ? 0
                          : end == steps ? static_cast<double>(steps - 1)
                                         : (static_cast<double>(from) + static_cast<double>(end - 1)) / 2;
         line.points.emplace_back(x, value(from, end));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <reproduce/cache.h>
 #include <report/plot.h>
+#include <reproduce/cache.h>
 
 #include <cstddef>
 #include <string>

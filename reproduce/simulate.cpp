@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <reproduce/workshop.h>
+#include <reproduce/experiments.h>
 
 #include <raycontact/error.h>
 #include <recording/writer.h>
@@ -47,11 +47,14 @@ std::unique_ptr<recording::Writer> writer_for(const std::filesystem::path& file,
 
 std::string picture(const scenes::RunLog& log, std::uint32_t width) {
     const report::Renderer renderer(log);
-    return report::base64(
-        report::encode_jpeg(renderer.render(log.frames.back(), width, width * 9 / 16), jpeg_quality));
+    return report::base64(report::encode_jpeg(renderer.render(log.frames.back(), width, width * 9 / 16), jpeg_quality));
 }
 
 } // namespace
+
+std::vector<std::string> scene_names() {
+    return {"avalanche"};
+}
 
 Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
               const Tick& tick) {
@@ -59,7 +62,9 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
     const scenes::RunLog& log = scene.log();
     std::unique_ptr<recording::Writer> writer;
     if (!recording.empty()) writer = writer_for(recording, log, options);
-    Json result{{"pairs", Json::array()}, {"contacts", Json::array()}, {"ray_length", Json::array()},
+    Json result{{"pairs", Json::array()},
+                {"contacts", Json::array()},
+                {"ray_length", Json::array()},
                 {"depth_length", Json::array()}};
     for (std::uint32_t i = 0; i < options.size.steps; ++i) {
         scene.step();

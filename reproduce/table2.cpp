@@ -24,13 +24,15 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
     for (const std::string& scene : scene_names()) {
         // Of the paper's lengths; its percentages, 59 and 42, do not both follow from them.
         const double paper = scene == "rain" ? 100 * (1 - 38398.0 / 66094) : 100 * (1 - 10793.0 / 16115);
-        report::Plot plot{"Table 2: length of the rays, " + scene, "m",
+        report::Plot plot{"Table 2: length of the rays, " + scene,
+                          "m",
                           fmt::format("Seed 1. The paper's lengths: {} shorter.", percent(paper)),
                           {line("ray", found[at]["ray_length"].get<Series>()),
                            line("reprojected", found[at + 1]["ray_length"].get<Series>())},
                           report::over_steps(1.0 / 60)};
         Table table{"Cumulative length, " + scene,
-                    {"seed", "ray", "reprojected", "shorter", "its depths", "shorter by depth"}, {}};
+                    {"seed", "ray", "reprojected", "shorter", "its depths", "shorter by depth"},
+                    {}};
         Series shorter;
         for (std::uint32_t seed = 1; seed <= shop.plan().seeds; ++seed, at += 2) {
             const double ray = sum(found[at]["ray_length"].get<Series>());
@@ -46,9 +48,10 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
         plot.note += " Here " + percent(median(shorter)) + " (median of the seeds).";
         out.numbers.push_back(compared(
             "table2." + scene, paper, median(shorter), "% shorter", Better::higher,
-            fmt::format("median of {} seeds, range {} to {}; the paper's lengths give {}, its table prints {} %. Meshes "
-                        "and the response's constants differ",
-                        shorter.size(), percent(*least), percent(*most), percent(paper), scene == "rain" ? 42 : 59)));
+            fmt::format(
+                "median of {} seeds, range {} to {}; the paper's lengths give {}, its table prints {} %. Meshes "
+                "and the response's constants differ",
+                shorter.size(), percent(*least), percent(*most), percent(paper), scene == "rain" ? 42 : 59)));
         out.plots.push_back(plot);
         out.tables.push_back(table);
     }

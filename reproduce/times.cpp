@@ -64,8 +64,11 @@ Outcome show(const std::string& scene, const std::vector<Json>& found) {
                               fmt::format("{:.2f}", in_c), fmt::format("{:.2f}", sum(a) / std::max(sum(b), 1e-9))});
         if (!own) continue;
         const bool basic = caster == Caster::basic;
-        report::Plot plot{fmt::format("{}: time, caster {}", rain ? "Figure 12" : "Figure 11", word), "ms",
-                          "Contact finding, each method along its own simulation. A bar below marks phase B. ", {}, ""};
+        report::Plot plot{fmt::format("{}: time, caster {}", rain ? "Figure 12" : "Figure 11", word),
+                          "ms",
+                          "Contact finding, each method along its own simulation. A bar below marks phase B. ",
+                          {},
+                          ""};
         plot.over = report::over_steps(1.0 / 60);
         if (!rain)
             plot.note += fmt::format("The paper, part B: {} times as fast with prediction; here {:.2f}.",
@@ -78,15 +81,18 @@ Outcome show(const std::string& scene, const std::vector<Json>& found) {
         out.plots.push_back(plot);
         if (!rain)
             out.numbers.push_back(compared(
-                basic ? "speedup.basic" : "speedup.stackless", basic ? 1.27 : 0.78, in_b, "times as fast", Better::higher,
+                basic ? "speedup.basic" : "speedup.stackless", basic ? 1.27 : 0.78, in_b, "times as fast",
+                Better::higher,
                 fmt::format("time of iterative over that of predictive in phase B of the avalanche, caster {}, on this "
-                            "machine; phase C {:.2f}. The paper measured on a GTX 660, \"an average\"", word, in_c)));
+                            "machine; phase C {:.2f}. The paper measured on a GTX 660, \"an average\"",
+                            word, in_c)));
     }
     out.tables.push_back(table);
-    out.paragraphs = {"The paper's text names two parts of Figure 11: B, in which most pairs are cast in full, and C, in "
-                      "which most are updated. Here a second is of phase B if the share of ordered pairs that iterative "
-                      "looks at in full lies above the middle between the least and the largest share of the run's "
-                      "seconds with pairs; all other seconds are of phase C. Constants fixed as in Figure 9."};
+    out.paragraphs = {
+        "The paper's text names two parts of Figure 11: B, in which most pairs are cast in full, and C, in "
+        "which most are updated. Here a second is of phase B if the share of ordered pairs that iterative "
+        "looks at in full lies above the middle between the least and the largest share of the run's "
+        "seconds with pairs; all other seconds are of phase C. Constants fixed as in Figure 9."};
     return out;
 }
 
@@ -98,8 +104,11 @@ Experiment times(const Workshop& shop, const std::string& scene) {
     e.name = rain ? "fig12" : "fig11";
     e.title = fmt::format("{}: time with and without prediction, {}", rain ? "Figure 12" : "Figure 11", scene);
     for (const auto& [caster, own] : all_measured) {
-        Json settings{{"scene", scene}, {"own", own}, {"caster", to_string(caster)},
-                      {"bodies", shop.plan().size(scene).bodies}, {"steps", shop.plan().size(scene).steps}};
+        Json settings{{"scene", scene},
+                      {"own", own},
+                      {"caster", to_string(caster)},
+                      {"bodies", shop.plan().size(scene).bodies},
+                      {"steps", shop.plan().size(scene).steps}};
         for (const Method method : both) settings[std::string(to_string(method))] = to_json(as_in_the_paper(method));
         const double cost = Workshop::cost(shop.base(scene)) * (caster == Caster::basic ? (rain ? 12 : 4) : 0.7);
         e.parts.push_back({fmt::format("times-{}-{}-{}", scene, to_string(caster), own ? "own" : "same"),

@@ -67,13 +67,16 @@ Outcome show(const std::string& scene, const Json& found) {
                             + "; each pair stays where it came first (section 4). The paper: two GTX 580";
     out.numbers.push_back(two ? compared(id, paper, ratio, "times as fast", Better::higher, why)
                               : not_comparable(id, paper, ratio, "times as fast", why + ". There is one device here"));
-    report::Plot plot{rain ? "Figure 15" : "Figure 14", "ms",
+    report::Plot plot{rain ? "Figure 15" : "Figure 14",
+                      "ms",
                       fmt::format("On {}. The paper: two devices {} times as fast; here {:.2f}.", named, paper, ratio),
-                      {line("one device", one_ms)}, report::over_steps(1.0 / 60)};
+                      {line("one device", one_ms)},
+                      report::over_steps(1.0 / 60)};
     if (two) plot.lines.push_back(line("two devices", two_ms));
     out.plots.push_back(plot);
-    out.paragraphs = {"One device and two follow the same recording, step after step in turn. Without two GPUs a device "
-                      "is one core of the CPU, and the host has as many threads as there are cores in use."};
+    out.paragraphs = {
+        "One device and two follow the same recording, step after step in turn. Without two GPUs a device "
+        "is one core of the CPU, and the host has as many threads as there are cores in use."};
     return out;
 }
 
@@ -85,8 +88,11 @@ Experiment two_devices(const Workshop& shop, const std::string& scene) {
     e.name = rain ? "fig15" : "fig14";
     e.title = fmt::format("{}: one device against two, {}", rain ? "Figure 15" : "Figure 14", scene);
     const Choice choice = devices();
-    const Json settings{{"scene", scene}, {"one", to_json(on(choice, 1))}, {"count", choice.ids.size()},
-                        {"last", choice.ids.back()}, {"bodies", shop.plan().size(scene).bodies},
+    const Json settings{{"scene", scene},
+                        {"one", to_json(on(choice, 1))},
+                        {"count", choice.ids.size()},
+                        {"last", choice.ids.back()},
+                        {"bodies", shop.plan().size(scene).bodies},
                         {"steps", shop.plan().size(scene).steps}};
     const double cost = Workshop::cost(shop.base(scene));
     e.parts = {{"devices-" + scene, shop.key("devices", settings), cost,

@@ -68,9 +68,10 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
     const std::string figure = scene == "rain" ? "Figure 10" : "Figure 9";
     out.numbers.push_back(compared(
         "wrong_rays." + scene, 91, paper, "% fewer with prediction", Better::higher,
-        fmt::format("over all steps of the {}, constants fixed; thresholds chosen by the library: {} fewer. The paper's "
-                    "91 % is an \"up to\" over both scenes; its constants and meshes are not known",
-                    scene, percent(ours))));
+        fmt::format(
+            "over all steps of the {}, constants fixed; thresholds chosen by the library: {} fewer. The paper's "
+            "91 % is an \"up to\" over both scenes; its constants and meshes are not known",
+            scene, percent(ours))));
     const auto pairs = base["pairs"].get<Series>();
     const bool rain = scene == "rain";
     const double most = *std::max_element(pairs.begin(), pairs.end());
@@ -86,10 +87,12 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
         const bool is_paper = before == "paper";
         report::Plot plot{figure + (is_paper ? ": constants fixed" : ": thresholds chosen by the library"),
                           "% of the rays of standard",
-                          is_paper ? "Missed, invented or on another triangle. The paper: up to 91 % fewer by prediction; "
-                                     "here " + percent(paper) + "."
-                                   : "The same with the library's own choice; predictive has " + percent(ours)
-                                         + " fewer. certified finds what standard finds.",
+                          is_paper
+                              ? "Missed, invented or on another triangle. The paper: up to 91 % fewer by prediction; "
+                                "here "
+                                    + percent(paper) + "."
+                              : "The same with the library's own choice; predictive has " + percent(ours)
+                                    + " fewer. certified finds what standard finds.",
                           {},
                           report::over_steps(1.0 / 60)};
         for (const Contestant& one : contestants())
@@ -98,7 +101,8 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
         out.plots.push_back(plot);
     }
     Table table{"Wrong rays of the whole " + scene,
-                {"method", "settings", "wrong", "missed", "invented", "other triangle", "of all rays"}, {}};
+                {"method", "settings", "wrong", "missed", "invented", "other triangle", "of all rays"},
+                {}};
     for (const Contestant& one : contestants()) {
         const Json& of = found[one.key];
         const double wrong = sum(of["wrong"].get<Series>());
@@ -108,13 +112,13 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
     }
     out.tables.push_back(table);
     out.pictures.push_back(base["picture"].get<std::string>());
-    out.paragraphs = {
-        fmt::format("The {} of seed 1 ({} bodies, {} steps; {}) runs with exact contacts; all methods then follow its "
-                    "poses. Constants fixed: displacementThreshold {} m, confidence {}, distanceExtension {} m, maxIt {}, "
-                    "the same for both methods, and no full cast for a walk that ends nowhere.",
-                    scene, shop.plan().size(scene).bodies, shop.plan().size(scene).steps,
-                    base["mesh_source"].get<std::string>(), constants::displacement_threshold, constants::confidence,
-                    constants::distance_extension, constants::max_iterations)};
+    out.paragraphs = {fmt::format(
+        "The {} of seed 1 ({} bodies, {} steps; {}) runs with exact contacts; all methods then follow its "
+        "poses. Constants fixed: displacementThreshold {} m, confidence {}, distanceExtension {} m, maxIt {}, "
+        "the same for both methods, and no full cast for a walk that ends nowhere.",
+        scene, shop.plan().size(scene).bodies, shop.plan().size(scene).steps, base["mesh_source"].get<std::string>(),
+        constants::displacement_threshold, constants::confidence, constants::distance_extension,
+        constants::max_iterations)};
     return out;
 }
 

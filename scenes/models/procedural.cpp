@@ -66,9 +66,13 @@ void normalise(Mesh& mesh) {
     for (Vec3& v : mesh.vertices) v = {place(v.x, centre.x), place(v.y, centre.y), place(v.z, centre.z)};
 }
 
-Mesh bumpy_sphere(std::uint32_t triangles) {
+namespace {
+
+/// Rings and two poles; radius(unit direction) is the distance from the middle.
+template <class Radius>
+Mesh sphere_of_rings(std::uint32_t triangles, const char* name, Radius radius_at) {
     const std::uint32_t points = ring_points("sphere", triangles, 8);
-    Mesh mesh{"sphere-" + std::to_string(triangles), {}, {}};
+    Mesh mesh{name + std::to_string(triangles), {}, {}};
     // Triangles near equilateral: rings sqrt(3) / 2 of the points' spacing apart.
     const double rows = std::sqrt(points * 0.8660254037844386 * 0.7853981633974483);
     const std::uint32_t ring_count =
@@ -76,8 +80,8 @@ Mesh bumpy_sphere(std::uint32_t triangles) {
     std::vector<double> weights;
     for (std::uint32_t k = 0; k < ring_count; ++k)
         weights.push_back(sine_cosine(0.5 * (k + 1) / (ring_count + 1)).sine);
-    const auto add = [&mesh](const Vec3& direction) {
-        const double radius = bumpy_radius(direction);
+    const auto add = [&](const Vec3& direction) {
+        const double radius = radius_at(direction);
         mesh.vertices.push_back({radius * direction.x, radius * direction.y, radius * direction.z});
     };
     const auto counts = share_out(points, weights, 3);
@@ -102,6 +106,16 @@ Mesh bumpy_sphere(std::uint32_t triangles) {
         mesh.triangles.push_back({north, rings.back().first + i, rings.back().first + (i + 1) % counts.back()});
     normalise(mesh);
     return mesh;
+}
+
+} // namespace
+
+Mesh bumpy_sphere(std::uint32_t triangles) {
+    return sphere_of_rings(triangles, "sphere-", bumpy_radius);
+}
+
+Mesh round_sphere(std::uint32_t triangles) {
+    return sphere_of_rings(triangles, "round-sphere-", [](const Vec3&) { return 1.0; });
 }
 
 Mesh bumpy_torus(std::uint32_t triangles) {
