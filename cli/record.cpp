@@ -10,34 +10,36 @@
 using namespace raycontact;
 
 struct Recorder::State {
-    State(const std::string& f, const scenes::Avalanche& s, const recording::Info& info)
+    State(const std::string& f, const scenes::Simulation& s, const recording::Info& info)
         : file(f), scene(s), writer(f, info) {}
 
     std::string file;
-    const scenes::Avalanche& scene;
+    const scenes::Simulation& scene;
+    std::size_t bodies = 0; ///< recorded so far
     recording::Writer writer;
 };
 
-Recorder::Recorder(const std::string& file, const scenes::Avalanche& scene, std::uint64_t seed,
-                   const Settings& settings) {
+Recorder::Recorder(const std::string& file, const scenes::Simulation& scene) {
     if (file.empty()) return;
     const scenes::RunLog& log = scene.log();
     recording::Info info;
     info.scene = log.scene;
-    info.seed = seed;
+    info.seed = log.seed;
     info.bodies = scene.body_count();
     info.dt = log.dt;
-    info.settings = settings;
+    info.settings = scene.description().settings;
     info.mesh_source = log.mesh_source;
     state_ = std::make_unique<State>(file, scene, info);
     for (const auto& shape : log.shapes) state_->writer.add_shape(*shape);
-    for (const std::uint32_t shape : log.body_shape) state_->writer.add_body(shape);
 }
 
 Recorder::~Recorder() = default;
 
 void Recorder::step() {
-    if (state_) state_->writer.step(state_->scene.scene());
+    if (!state_) return;
+    const auto& shapes = state_->scene.log().body_shape;
+    for (; state_->bodies < shapes.size(); ++state_->bodies) state_->writer.add_body(shapes[state_->bodies]);
+    state_->writer.step(state_->scene.scene());
 }
 
 void Recorder::finish() {

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/settings.h>
-#include <scenes/avalanche.h>
+#include <scenes/simulation.h>
 
-#include <cstdint>
 #include <memory>
 #include <string>
 
-/// Records an avalanche as it runs; does nothing where no file was asked for.
+/// Records a simulation as it runs; does nothing where no file was asked for.
 class Recorder {
 public:
     /// Throws InputError when the file cannot be made. An empty name: nothing is recorded.
-    Recorder(const std::string& file, const raycontact::scenes::Avalanche& scene, std::uint64_t seed,
-             const raycontact::Settings& settings);
+    Recorder(const std::string& file, const raycontact::scenes::Simulation& scene);
     ~Recorder();
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;

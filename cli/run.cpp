@@ -10,6 +10,8 @@
 #include <raycontact/error.h>
 #include <report/report.h>
 #include <scenes/avalanche.h>
+#include <scenes/rain.h>
+#include <scenes/simulation.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +22,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,22 +34,22 @@ using namespace raycontact::scenes;
 
 struct RunOptions {
     std::string scene, out, record;
-    std::uint32_t steps = 600, bodies = 512;
+    std::optional<std::uint32_t> steps, bodies; ///< the scene's own where not given
     std::uint64_t seed = 1;
     bool json = false;
     raycontact::Settings settings;
 };
 
-Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) {
+Json summary(const RunOptions& options, const Simulation& scene, double wall_ms) {
     using raycontact::to_string;
-    const AvalancheHealth health = scene.health();
+    const Health health = scene.health();
     const RunLog& log = scene.log();
     const Work work(log.rows);
-    const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(60, log.rows.size()));
+    const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(steps_of_a_second(log.dt), log.rows.size()));
     const std::vector<StepRow> last_second(log.rows.end() - second, log.rows.end());
     Json result{
-        {"scene", "avalanche"},
-        {"seed", options.seed},
+        {"scene", log.scene},
+        {"seed", log.seed},
         {"steps", scene.steps()},
         {"bodies", scene.body_count()},
         {"pairs_max", scene.pairs_max()},
@@ -83,20 +86,20 @@ Json summary(const RunOptions& options, const Avalanche& scene, double wall_ms) 
 
 std::string for_a_person(const Json& s) {
     std::string text = fmt::format(
-        "avalanche: {} bodies, {} steps, seed {}; {}\n"
+        "{}: {} bodies, {} steps, seed {}; {}\n"
         "pairs      {} at most, {} in the last second\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most, {:.4f} m in the last second\n"
         "speed      median {:.4f} m/s in the last second; {} bodies below ground, {} flown off\n"
         "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median, {:.2f} ms in the "
         "last second\n",
-        s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(), s["seed"].get<std::uint64_t>(),
-        s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(), s["pairs_last_second"].get<double>(),
-        s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(),
-        s["penetration_max"].get<double>(), s["penetration_max_last_second"].get<double>(),
-        s["median_speed_last_second"].get<double>(), s["below_ground"].get<std::uint64_t>(),
-        s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(),
-        s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
+        s["scene"].get<std::string>(), s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(),
+        s["seed"].get<std::uint64_t>(), s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(),
+        s["pairs_last_second"].get<double>(), s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(),
+        s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
+        s["penetration_max_last_second"].get<double>(), s["median_speed_last_second"].get<double>(),
+        s["below_ground"].get<std::uint64_t>(), s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000,
+        s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
         s["narrow_ms_last_second"].get<double>());
     return text + work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + s["hash"].get<std::string>()
            + "\n";
@@ -118,21 +121,32 @@ void check_record(const std::string& file) {
     if (ending != ".glb") throw InputError("--record: \"" + file + "\" does not end in .glb; name a .glb file");
 }
 
-void run(const RunOptions& options) {
-    if (options.scene != "avalanche")
-        throw InputError("SCENE: \"" + options.scene + "\" is not known; scenes are: avalanche");
-    check_common_options(options.settings);
-    if (!options.out.empty()) make_out_folder(options.out);
-    AvalancheOptions how;
-    how.bodies = options.bodies;
+/// One of the paper's scenes.
+template <class Options>
+SceneDescription named(SceneDescription (*make)(const Options&), const RunOptions& options) {
+    Options how;
+    how.bodies = options.bodies.value_or(how.bodies);
+    how.steps = options.steps.value_or(how.steps);
     how.seed = options.seed;
     how.settings = options.settings;
-    how.expected_steps = options.steps;
+    return make(how);
+}
+
+SceneDescription describe(const RunOptions& options) {
+    if (options.scene == "avalanche") return named(avalanche, options);
+    if (options.scene == "rain") return named(rain, options);
+    throw InputError("SCENE: \"" + options.scene + "\" is not known; scenes are: avalanche, rain");
+}
+
+void run(const RunOptions& options) {
+    check_common_options(options.settings);
+    if (!options.out.empty()) make_out_folder(options.out);
     const auto start = std::chrono::steady_clock::now();
-    Avalanche scene(how);
-    Recorder recorder(options.record, scene, options.seed, options.settings);
-    Progress progress("avalanche", options.steps);
-    for (std::uint32_t i = 0; i < options.steps; ++i) {
+    Simulation scene(describe(options));
+    const SceneDescription& description = scene.description();
+    Recorder recorder(options.record, scene);
+    Progress progress(description.name, description.steps);
+    for (std::uint32_t i = 0; i < description.steps; ++i) {
         scene.step();
         recorder.step();
         progress.show(i + 1);
@@ -159,15 +173,19 @@ void run(const RunOptions& options) {
 void add_run(CLI::App& app) {
     CLI::App* command = app.add_subcommand("run", "Simulate a scene: Bullet's response to RayContact's contacts");
     auto options = std::make_shared<RunOptions>();
-    command->add_option("SCENE", options->scene, "avalanche: concave meshes in a cubic grid fall on a slab")
+    command
+        ->add_option(
+            "SCENE", options->scene,
+            "avalanche: concave meshes in a cubic grid fall on a slab; rain: a source on a circle lets go ten a "
+            "second, of four shapes")
         ->required();
     command->add_option("--steps", options->steps, "steps of 1/60 s")
         ->type_name("N")
-        ->capture_default_str()
+        ->default_str("avalanche 600, rain 3000")
         ->check(CLI::Range(1u, 10'000'000u));
     command->add_option("--bodies", options->bodies, "moving bodies")
         ->type_name("N")
-        ->capture_default_str()
+        ->default_str("avalanche 512, rain 500")
         ->check(CLI::Range(1u, 1'000'000u));
     command->add_option("--seed", options->seed, "of the bodies' small offsets and tilts; same seed, same hash")
         ->type_name("S")

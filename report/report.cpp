@@ -39,9 +39,9 @@ void check(const scenes::RunLog& log) {
         if (shape >= log.shapes.size())
             throw InputError("report: a body has shape " + std::to_string(shape) + ", which the run lacks");
     for (const scenes::Frame& frame : log.frames)
-        if (frame.poses.size() != log.body_shape.size())
+        if (frame.poses.size() > log.body_shape.size())
             throw InputError("report: the frame of step " + std::to_string(frame.step)
-                             + " has not one pose for each body");
+                             + " has more poses than the run has bodies");
 }
 
 /// The first, the last, and as many as fit evenly between.

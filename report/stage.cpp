@@ -44,10 +44,10 @@ double half_diagonal(const Shape& shape) {
 
 Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
     Stage stage;
-    stage.is_ground.assign(log.body_shape.size(), false);
+    stage.is_ground.assign(frame.poses.size(), false);
     std::size_t up = 2;
     double widest = 0, ground_height = 0;
-    for (std::size_t body = 0; body < log.body_shape.size(); ++body) {
+    for (std::size_t body = 0; body < frame.poses.size(); ++body) {
         if (log.body_moves[body]) continue;
         const Box box = world_box(*log.shapes[log.body_shape[body]], frame.poses[body]);
         std::array<double, 3> extent{};
@@ -66,7 +66,7 @@ Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
 
     std::array<double, 3> sum{};
     double lowest = std::numeric_limits<double>::infinity(), count = 0;
-    for (std::size_t body = 0; body < log.body_shape.size(); ++body) {
+    for (std::size_t body = 0; body < frame.poses.size(); ++body) {
         if (!log.body_moves[body]) continue;
         const Shape& shape = *log.shapes[log.body_shape[body]];
         const auto centre = components(body_centre(shape, frame.poses[body]));
@@ -79,6 +79,7 @@ Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
         stage.origin = {std::floor(sum[0] / count), std::floor(sum[1] / count), std::floor(sum[2] / count)};
         if (widest == 0) ground_height = lowest;
     }
+    if (log.plane) ground_height = *log.plane; // of a scene whose up is z
     stage.ground = static_cast<float>(ground_height - components(stage.origin)[up]);
     return stage;
 }
@@ -91,7 +92,7 @@ Float3 place(const Stage& stage, const Vec3& world) {
 
 std::vector<Ball> moving_balls(const Stage& stage, const scenes::RunLog& log, const scenes::Frame& frame) {
     std::vector<Ball> balls;
-    for (std::size_t body = 0; body < log.body_shape.size(); ++body) {
+    for (std::size_t body = 0; body < frame.poses.size(); ++body) {
         if (!log.body_moves[body]) continue;
         const Shape& shape = *log.shapes[log.body_shape[body]];
         balls.push_back(

@@ -26,7 +26,7 @@ constexpr Known known[] = {
     {"steps", "Steps", "", "of the simulation"},
     {"seed", "Seed", "", "of the bodies' first poses"},
     {"pairs_max", "Pairs, most in a step", "pairs", "bodies whose boxes overlap"},
-    {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps: the pile at rest"},
+    {"pairs_last_second", "Pairs, last second", "pairs", "median over the last second's steps"},
     {"rays", "Rays", "rays", "of the rule, less those the method had a reason to leave alone, in all steps together"},
     {"rays_cast", "Rays cast", "rays", "in full; of the others it is known how they end"},
     {"pairs_full", "Pairs in full", "", "directed pairs looked at in full, each step counted"},
@@ -49,13 +49,13 @@ constexpr Known known[] = {
     {"median_speed_last_second", "Median speed, last second", "mm/s",
      "half of the bodies are slower, in each step of the last second", 1000},
     {"below_ground", "Below ground", "bodies", "whose centre is under the ground at the end"},
-    {"flown_off", "Flown off", "bodies", "off the slab, or higher than any started, at the end"},
+    {"flown_off", "Flown off", "bodies", "off the ground, or higher than any started, at the end"},
     {"wall_ms", "Wall clock", "s", "all steps together, setup included, pictures not", 0.001},
     {"step_ms.median", "Step, median", "ms", "wall clock: detection and response"},
     {"step_ms.p95", "Step, 95th percentile", "ms", "one step in twenty takes longer"},
     {"narrow_ms.median", "Narrow phase, median", "ms", "wall clock of contact finding alone"},
     {"narrow_ms.p95", "Narrow phase, 95th percentile", "ms", "one step in twenty takes longer"},
-    {"narrow_ms_last_second", "Narrow phase, last second", "ms", "its median there, when the pile has come to rest"},
+    {"narrow_ms_last_second", "Narrow phase, last second", "ms", "its median there"},
     {"method", "Method", "", "how rays are kept from step to step"},
     {"caster", "Caster", "", "how a ray meets a mesh"},
     {"direction", "Direction", "", "what normal and depth are made of"},
@@ -159,7 +159,7 @@ void describe(const scenes::RunLog& log, Page& page) {
     for (const bool moves : log.body_moves) moving += moves;
     const double seconds = static_cast<double>(log.rows.size()) * log.dt;
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    page.title = fmt::format("{}: {} concave meshes", log.scene.empty() ? "run" : log.scene, moving);
+    page.title = fmt::format("{}: {} meshes", log.scene.empty() ? "run" : log.scene, moving);
     page.title[0] =
         static_cast<char>(page.title[0] >= 'a' && page.title[0] <= 'z' ? page.title[0] - 'a' + 'A' : page.title[0]);
     page.summary = fmt::format(
@@ -200,7 +200,7 @@ void describe(const scenes::RunLog& log, Page& page) {
     for (const auto& [key, value] : figures)
         page.rows.push_back({key, as_text(value, 1), "", "as `run --json` prints it"});
 
-    page.command = "raycontact run " + (log.scene.empty() ? "SCENE" : log.scene) + option(summary, "bodies", "--bodies")
+    page.command = "raycontact run " + (log.arguments.empty() ? "SCENE" : log.arguments)
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
                    + option(summary, "method", "--method") + option(summary, "caster", "--caster")
                    + option(summary, "direction", "--direction") + thresholds(summary)

@@ -17,7 +17,7 @@ Experiment table2(const Workshop& shop);
 Experiment two_devices(const Workshop& shop, const std::string& scene); ///< Figures 14 and 15
 Experiment lga13(const Workshop& shop);                                 ///< LGA13 against its start, section 1
 
-/// The scenes that can be run.
+/// "avalanche" and "rain".
 std::vector<std::string> scene_names();
 /// All that can be run, in the order of the paper.
 std::vector<Experiment> all_experiments(const Workshop& shop);

@@ -21,8 +21,8 @@ Plan full_plan() {
 Plan quick_plan() {
     Plan plan;
     plan.name = "quick";
-    plan.avalanche = {216, 240};
-    plan.rain = {60, 420};
+    plan.avalanche = {343, 300};
+    plan.rain = {80, 480};
     plan.seeds = 1;
     plan.orientations = 100;
     plan.depths = 10;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/experiments.h>
 
-#include <raycontact/error.h>
 #include <recording/writer.h>
 #include <report/image.h>
 #include <report/render.h>
 #include <scenes/avalanche.h>
+#include <scenes/rain.h>
+#include <scenes/simulation.h>
 
+#include <cstddef>
 #include <optional>
+#include <stdexcept>
 
 namespace raycontact::reproduce {
 
@@ -16,34 +19,48 @@ namespace {
 constexpr std::uint64_t small_animation = std::uint64_t{4} << 20; // recordings are kept to be followed, not looked at
 constexpr int jpeg_quality = 88;
 
-scenes::AvalancheOptions described(const SimulationOptions& options) {
-    if (options.scene != "avalanche") throw InputError("scene " + options.scene + " is not there yet");
-    scenes::AvalancheOptions how;
+template <class SceneOptions>
+scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneOptions&),
+                                   const SimulationOptions& options) {
+    SceneOptions how;
     how.bodies = options.size.bodies;
+    how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
-    how.expected_steps = options.size.steps;
-    how.frames = 2;
-    if (options.one_manifold) how.manifolds = {btScalar(-1), btScalar(1e9), 0};
-    return how;
+    if (options.one_manifold) how.response.manifolds = {btScalar(-1), btScalar(1e9), 0};
+    return make(how);
 }
 
-std::unique_ptr<recording::Writer> writer_for(const std::filesystem::path& file, const scenes::RunLog& log,
-                                              const SimulationOptions& options) {
-    recording::Info info;
-    info.scene = log.scene;
-    info.seed = options.seed;
-    info.bodies = options.size.bodies;
-    info.dt = log.dt;
-    info.settings = options.settings;
-    info.mesh_source = log.mesh_source;
-    recording::WriterOptions how;
-    how.animation_bytes = small_animation;
-    auto writer = std::make_unique<recording::Writer>(file, info, how);
-    for (const auto& shape : log.shapes) writer->add_shape(*shape);
-    for (const std::uint32_t shape : log.body_shape) writer->add_body(shape);
-    return writer;
+scenes::SceneDescription described(const SimulationOptions& options) {
+    if (options.scene == "avalanche") return described(scenes::avalanche, options);
+    if (options.scene == "rain") return described(scenes::rain, options);
+    throw std::logic_error("scene " + options.scene + " is not known; report this");
 }
+
+/// Records a simulation as it runs.
+class Record {
+public:
+    Record(const std::filesystem::path& file, const scenes::Simulation& scene)
+        : scene_(scene), writer_(file, info_of(scene), {.animation_bytes = small_animation}) {
+        for (const auto& shape : scene.log().shapes) writer_.add_shape(*shape);
+    }
+    void step() {
+        const auto& shapes = scene_.log().body_shape;
+        for (; bodies_ < shapes.size(); ++bodies_) writer_.add_body(shapes[bodies_]);
+        writer_.step(scene_.scene());
+    }
+    void finish() { writer_.finish(scene_.hash()); }
+
+private:
+    static recording::Info info_of(const scenes::Simulation& scene) {
+        const scenes::RunLog& log = scene.log();
+        return {log.scene, log.seed, scene.body_count(), log.dt, scene.description().settings, log.mesh_source};
+    }
+
+    const scenes::Simulation& scene_;
+    recording::Writer writer_;
+    std::size_t bodies_ = 0; ///< so far
+};
 
 std::string picture(const scenes::RunLog& log, std::uint32_t width) {
     const report::Renderer renderer(log);
@@ -53,22 +70,22 @@ std::string picture(const scenes::RunLog& log, std::uint32_t width) {
 } // namespace
 
 std::vector<std::string> scene_names() {
-    return {"avalanche"};
+    return {"avalanche", "rain"};
 }
 
 Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
               const Tick& tick) {
-    scenes::Avalanche scene(described(options));
+    scenes::Simulation scene(described(options));
     const scenes::RunLog& log = scene.log();
-    std::unique_ptr<recording::Writer> writer;
-    if (!recording.empty()) writer = writer_for(recording, log, options);
+    std::optional<Record> record;
+    if (!recording.empty()) record.emplace(recording, scene);
     Json result{{"pairs", Json::array()},
                 {"contacts", Json::array()},
                 {"ray_length", Json::array()},
                 {"depth_length", Json::array()}};
     for (std::uint32_t i = 0; i < options.size.steps; ++i) {
         scene.step();
-        if (writer) writer->step(scene.scene());
+        if (record) record->step();
         double depth = 0;
         for (const Contact& contact : scene.contacts()) depth += static_cast<double>(contact.depth);
         result["pairs"].push_back(scene.stats().pairs);
@@ -77,7 +94,7 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
         result["depth_length"].push_back(depth);
         tick(Workshop::cost(options) / options.size.steps);
     }
-    if (writer) writer->finish(scene.hash());
+    if (record) record->finish();
     std::uint64_t triangles = 0;
     for (std::size_t i = 0; i < log.body_shape.size(); ++i)
         if (log.body_moves[i]) triangles += log.shapes[log.body_shape[i]]->triangles().size();

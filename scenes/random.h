@@ -30,6 +30,17 @@ public:
         return {1 / length, x / length, y / length, z / length};
     }
 
+    /// Unit quaternion (w, x, y, z), uniform over all rotations: a point of a cube, kept where it is in the unit ball.
+    std::array<double, 4> rotation() {
+        for (;;) {
+            const double w = symmetric(), x = symmetric(), y = symmetric(), z = symmetric();
+            const double square = w * w + x * x + y * y + z * z;
+            if (square > 1 || square < 0.01) continue;
+            const double length = std::sqrt(square);
+            return {w / length, x / length, y / length, z / length};
+        }
+    }
+
 private:
     std::uint64_t state_;
 };

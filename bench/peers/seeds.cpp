@@ -4,6 +4,7 @@
 #include <bench/peers/clock.h>
 #include <bench/peers/sums.h>
 #include <scenes/avalanche.h>
+#include <scenes/simulation.h>
 
 #include <algorithm>
 #include <memory>
@@ -53,8 +54,8 @@ std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function
         scenes::AvalancheOptions how;
         how.bodies = options.bodies;
         how.seed = options.first + i;
-        scenes::Avalanche avalanche(how);
-        const scenes::RunLog& log = avalanche.log();
+        scenes::Simulation simulation(scenes::avalanche(how));
+        const scenes::RunLog& log = simulation.log();
         Settings standard;
         standard.method = Method::standard;
         standard.skip_outside = false;
@@ -68,8 +69,8 @@ std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function
             if (k % 20 == 0)
                 progress("seed " + std::to_string(how.seed) + ": step " + std::to_string(k) + " of "
                          + std::to_string(options.steps));
-            avalanche.step();
-            const Scene& watched = avalanche.scene();
+            simulation.step();
+            const Scene& watched = simulation.scene();
             const auto follow = [&](Scene& scene) {
                 for (BodyId body = 0; body < log.body_shape.size(); ++body) scene.set_pose(body, watched.pose(body));
                 return scene.step(watched.pairs());

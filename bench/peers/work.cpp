@@ -8,6 +8,7 @@
 #include <scenes/avalanche.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
+#include <scenes/simulation.h>
 
 #include "pairs/directed_pairs.h"
 #include "pairs/displacement.h"
@@ -126,7 +127,7 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
     scenes::AvalancheOptions how;
     how.bodies = options.bodies;
     how.seed = options.seed;
-    scenes::Avalanche scene(how);
+    scenes::Simulation scene(scenes::avalanche(how));
     Work work;
     work.name = "avalanche";
     const scenes::RunLog& log = scene.log();

@@ -37,6 +37,11 @@ Model scene_model(std::string_view kind, std::uint32_t triangles) {
     return model;
 }
 
+Mesh stood_up(Mesh mesh) {
+    for (Vec3& v : mesh.vertices) v = {v.x, -v.z, v.y};
+    return mesh;
+}
+
 std::vector<std::string> model_kinds() {
     return {"bunny", "knot", "gear", "torus", "sphere"};
 }

@@ -26,6 +26,9 @@ struct Model {
 /// `source` and `stand_in` say so. Throws InputError for an unknown kind or a count it cannot have.
 Model scene_model(std::string_view kind, std::uint32_t triangles);
 
+/// A model's y axis points up; of the mesh that this returns it is the z axis.
+Mesh stood_up(Mesh mesh);
+
 /// "bunny", "knot", "gear", "torus", "sphere".
 std::vector<std::string> model_kinds();
 

@@ -2,6 +2,7 @@
 #include <scenes/avalanche.h>
 
 #include <raycontact/error.h>
+#include <scenes/simulation.h>
 
 #include <gtest/gtest.h>
 
@@ -13,12 +14,12 @@ AvalancheOptions small() {
     o.bodies = 27;
     o.model = "torus"; // procedural: no package needed
     o.triangles = 300;
-    o.expected_steps = 60;
+    o.steps = 60;
     return o;
 }
 
 std::string hash_of(const AvalancheOptions& o, std::uint32_t steps, std::uint64_t* contacts = nullptr) {
-    Avalanche scene(o);
+    Simulation scene(avalanche(o));
     for (std::uint32_t i = 0; i < steps; ++i) scene.step();
     if (contacts) *contacts = scene.contacts_total();
     return scene.hash();
@@ -44,9 +45,9 @@ TEST(Avalanche, SameSeedSameHash) {
 TEST(Avalanche, OneBodyComesToRest) {
     AvalancheOptions o = small();
     o.bodies = 1;
-    Avalanche scene(o);
+    Simulation scene(avalanche(o));
     for (int i = 0; i < 420; ++i) scene.step();
-    const AvalancheHealth h = scene.health();
+    const Health h = scene.health();
     EXPECT_LT(h.median_speed_last_second, 0.05);
     EXPECT_EQ(h.below_ground, 0u);
     EXPECT_EQ(h.flown_off, 0u);
@@ -60,10 +61,10 @@ TEST(Avalanche, OneBodyComesToRest) {
 
 TEST(Avalanche, PileComesToRest) {
     AvalancheOptions o = small();
-    o.expected_steps = 480;
-    Avalanche scene(o);
+    o.steps = 480;
+    Simulation scene(avalanche(o));
     for (int i = 0; i < 480; ++i) scene.step();
-    const AvalancheHealth h = scene.health();
+    const Health h = scene.health();
     EXPECT_LT(h.median_speed_last_second, 0.05);
     EXPECT_LE(h.deep_steps_last_second, 6u); // a tenth of a second
     EXPECT_EQ(h.below_ground, 0u);
@@ -73,7 +74,7 @@ TEST(Avalanche, PileComesToRest) {
 TEST(Avalanche, LogHoldsWhatAReportNeeds) {
     AvalancheOptions o = small();
     o.bodies = 10; // not a cube
-    Avalanche scene(o);
+    Simulation scene(avalanche(o));
     EXPECT_EQ(scene.body_count(), 10u);
     for (int i = 0; i < 60; ++i) scene.step();
     const RunLog& log = scene.log();
@@ -95,13 +96,13 @@ TEST(Avalanche, LogHoldsWhatAReportNeeds) {
 TEST(Avalanche, RefusesNonsense) {
     AvalancheOptions o = small();
     o.bodies = 0;
-    EXPECT_THROW(Avalanche{o}, InputError);
+    EXPECT_THROW(avalanche(o), InputError);
     o = small();
     o.density = 0;
-    EXPECT_THROW(Avalanche{o}, InputError);
+    EXPECT_THROW(avalanche(o), InputError);
     o = small();
     o.model = "teapot";
-    EXPECT_THROW(Avalanche{o}, InputError);
+    EXPECT_THROW(avalanche(o), InputError);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <recording/replay.h>
 #include <scenes/avalanche.h>
 #include <scenes/models/model.h>
+#include <scenes/simulation.h>
 
 #include <raycontact/error.h>
 
@@ -32,9 +33,9 @@ Found record_avalanche(const std::filesystem::path& file, const Settings& settin
     options.bodies = 27;
     options.model = "gear";
     options.triangles = 240;
-    options.expected_steps = 60;
+    options.steps = 60;
     options.settings = settings;
-    scenes::Avalanche scene(options);
+    scenes::Simulation scene(scenes::avalanche(options));
     Info info;
     info.scene = "avalanche";
     info.seed = options.seed;

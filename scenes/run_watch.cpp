@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <scenes/run_watch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace raycontact::scenes {
+
+RunWatch::RunWatch(const SceneDescription& description)
+    : region_(description.region), planned_steps_(std::max(description.steps, 1u)),
+      frames_(std::max(description.frames, 2u)), hash_(description.settings.direction),
+      depths_(description.depth_limit) {
+    log_.scene = description.name;
+    log_.arguments = description.arguments;
+    log_.seed = description.seed;
+    log_.dt = description.dt;
+    log_.mesh_source = description.mesh_source;
+    if (description.plane) log_.plane = 0;
+    for (const SceneShape& shape : description.shapes) log_.shapes.push_back(shape.shape);
+}
+
+void RunWatch::add_body(const BodyStart& start, const Pose& pose) {
+    log_.body_shape.push_back(start.shape);
+    log_.body_moves.push_back(start.density > 0);
+    positions_.push_back(pose.translation);
+}
+
+void RunWatch::add_step(double step_ms, const Scene& scene, std::span<const Pose> poses) {
+    const StepStats& s = scene.stats();
+    const auto found = scene.contacts();
+    StepRow row;
+    static_cast<StepStats&>(row) = s;
+    row.step = steps();
+    row.step_ms = step_ms;
+    hash_.add(row.step, found);
+    depths_.add(row.step, found);
+    contacts_ += found.size();
+    rays_ += s.rays;
+    rays_cast_ += s.rays_cast;
+    ray_length_ += s.ray_length;
+    pairs_max_ = std::max(pairs_max_, s.pairs);
+    for (const Contact& c : found) row.penetration_max = std::max(row.penetration_max, static_cast<double>(c.depth));
+    row.median_speed = median_speed(poses);
+    keep_frame(row.step, poses);
+    log_.rows.push_back(std::move(row));
+}
+
+// From positions: what the eye sees, with the corrections that Bullet keeps out of its velocities.
+double RunWatch::median_speed(std::span<const Pose> poses) {
+    std::vector<double> speeds;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (!log_.body_moves[i]) continue;
+        const Vec3 now = poses[i].translation, &before = positions_[i];
+        const Vec3 d{now.x - before.x, now.y - before.y, now.z - before.z};
+        speeds.push_back(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) / log_.dt);
+        positions_[i] = now;
+    }
+    if (speeds.empty()) return 0;
+    const auto half = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
+    std::nth_element(speeds.begin(), half, speeds.end());
+    return *half;
+}
+
+// Evenly over the planned run, its first and last step included.
+void RunWatch::keep_frame(std::uint32_t step, std::span<const Pose> poses) {
+    for (std::uint32_t k = 0; k < frames_; ++k) {
+        if (step != static_cast<std::uint64_t>(planned_steps_ - 1) * k / (frames_ - 1)) continue;
+        log_.frames.push_back({step, {poses.begin(), poses.end()}});
+        return;
+    }
+}
+
+Health RunWatch::health() const {
+    Health h;
+    const std::uint32_t second = steps_of_a_second(log_.dt);
+    const std::uint32_t late = steps() > second ? steps() - second : 0;
+    for (const StepRow& row : log_.rows) {
+        h.penetration_max = std::max(h.penetration_max, row.penetration_max);
+        if (row.step >= late) h.median_speed_last_second = std::max(h.median_speed_last_second, row.median_speed);
+    }
+    h.depth_limit = depths_.limit();
+    h.deep_contacts = depths_.contacts();
+    h.deep_steps_longest = depths_.longest();
+    h.deep_steps_last_second = depths_.longest_since(late);
+    const Vec3 &low = region_.low, &high = region_.high;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        if (!log_.body_moves[i]) continue;
+        const Vec3& p = positions_[i];
+        if (p.z < low.z) ++h.below_ground;
+        if (p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y || p.z > high.z) ++h.flown_off;
+    }
+    return h;
+}
+
+} // namespace raycontact::scenes
