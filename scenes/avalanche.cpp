@@ -75,7 +75,7 @@ void check(const AvalancheOptions& o) {
 struct Avalanche::State {
     explicit State(const AvalancheOptions& o)
         : options(o), dispatcher(&configuration, o.settings, o.manifolds),
-          world(&dispatcher, &broadphase, &solver, &configuration) {}
+          world(&dispatcher, &broadphase, &solver, &configuration), hash(o.settings.direction) {}
     ~State() {
         for (const auto& body : bodies) {
             world.removeRigidBody(body.get());
