@@ -37,7 +37,7 @@ Verdict verdict_of(double paper, double ours, Better better) {
     if (std::fabs(ours - paper) < printed) return Verdict::reached;
     if (better == Better::lower && ours < paper) return Verdict::passed;
     if (better == Better::higher && ours > paper) return Verdict::passed;
-    return std::fabs(ours - paper) <= near * std::fabs(paper) ? Verdict::reached : Verdict::missed;
+    return std::fabs(ours - paper) <= near * std::fabs(paper) * (1 + 1e-9) ? Verdict::reached : Verdict::missed;
 }
 
 Number compared(std::string id, double paper, double ours, std::string unit, Better better, std::string why) {
