@@ -66,6 +66,7 @@ Json to_json(const Contact& contact) {
             {"normal", contact.normal},
             {"depth", contact.depth},
             {"ray_length", contact.ray_length},
+            {"weight", contact.weight},
             {"key", contact_key(contact)}};
 }
 
@@ -76,7 +77,7 @@ void print_json(std::size_t index, std::span<const Contact> contacts) {
     std::cout << line.dump() << '\n';
 }
 
-void print_table(std::size_t index, const QueryPair& pair, std::span<const Contact> contacts) {
+void print_table(std::size_t index, const QueryPair& pair, std::span<const Contact> contacts, bool weighted) {
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
     if (contacts.empty()) {
         std::cout << "no contact\n";
@@ -86,13 +87,15 @@ void print_table(std::size_t index, const QueryPair& pair, std::span<const Conta
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
     std::cout << fmt::format("{} contact{}, deepest {:.6g} m\n", contacts.size(), contacts.size() == 1 ? "" : "s",
                              deepest->depth);
-    std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12} {:>12}  {:<38}  {}\n", "body", "vertex", "triangle",
-                             "depth (m)", "ray (m)", "point (m)", "normal from a to b");
+    const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
+    std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "vertex", "triangle",
+                             "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)", "normal from a to b");
     for (const Contact& c : contacts) {
-        std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12.6g} {:>12.6g}  {:>12.6g} {:>12.6g} {:>12.6g}  "
+        std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12.6g} {:>12.6g}{}  {:>12.6g} {:>12.6g} {:>12.6g}  "
                                  "{:>9.6f} {:>9.6f} {:>9.6f}\n",
                                  c.vertex_body == VertexBody::a ? "a" : "b", c.vertex, c.triangle, c.depth,
-                                 c.ray_length, c.point.x, c.point.y, c.point.z, c.normal[0], c.normal[1], c.normal[2]);
+                                 c.ray_length, weight(fmt::format("{:.6g}", c.weight)), c.point.x, c.point.y, c.point.z,
+                                 c.normal[0], c.normal[1], c.normal[2]);
     }
 }
 
@@ -114,7 +117,8 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
         std::size_t end = begin;
         while (end < contacts.size() && contacts[end].body_a == slot_of(list[i].first)) ++end;
         const auto own = contacts.subspan(begin, end - begin);
-        json ? print_json(first + i, own) : print_table(first + i, pairs[i], own);
+        json ? print_json(first + i, own)
+             : print_table(first + i, pairs[i], own, settings.direction == Direction::weighted);
         begin = end;
     }
 }

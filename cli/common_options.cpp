@@ -101,9 +101,12 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     add_word(command, "--caster", "how a ray meets a mesh: basic (every triangle) or bvh; same bits from both", "WORD",
              std::string(to_string(settings.caster)),
              [&](const std::string& word) { settings.caster = caster_from(word); });
-    add_word(command, "--direction", "what normal and depth are made of: ray or reprojected", "WORD",
-             std::string(to_string(settings.direction)),
-             [&](const std::string& word) { settings.direction = direction_from(word); });
+    add_word(
+        command, "--direction",
+        "what normal and depth are made of: ray, weighted (as ray, and each contact has its vertex's area in m^2 as "
+        "weight) or reprojected",
+        "WORD", std::string(to_string(settings.direction)),
+        [&](const std::string& word) { settings.direction = direction_from(word); });
     add_length(command, settings, &Settings::displacement_threshold, "--displacement-threshold",
                "metres a pair may move before it is looked at in full again; auto: chosen for each pair");
     add_setting(command, settings, &Settings::confidence, "--confidence",

@@ -4,6 +4,7 @@
 #include "cli/devices.h"
 #include "cli/mesh.h"
 #include "cli/replay.h"
+#include "cli/reproduce.h"
 #include "cli/run.h"
 
 #include <raycontact/error.h>
@@ -39,6 +40,7 @@ int run_program(int argc, char** argv) {
     add_collide(app);
     add_run(app);
     add_replay(app);
+    add_reproduce(app);
     add_bench(app);
     try {
         app.parse(argc, argv);
@@ -49,7 +51,7 @@ int run_program(int argc, char** argv) {
     }
     if (app.get_subcommands().empty()) {
         throw raycontact::InputError(
-            "a subcommand is required: devices, mesh, collide, run, replay or bench (see raycontact --help)");
+            "a subcommand is required: devices, mesh, collide, run, replay, reproduce or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return fine;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
 #include <utility>
 
@@ -12,20 +13,28 @@ namespace {
 constexpr std::uint32_t cells = 40;
 }
 
-Progress::Progress(std::string title, std::uint32_t total)
-    : title_(std::move(title)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
+std::string time_left(double seconds, double done, double total) {
+    const auto left = static_cast<std::uint64_t>(std::ceil(seconds * (total - done) / done));
+    return left < 60 ? fmt::format("{} s left", left) : fmt::format("{} min {} s left", left / 60, left % 60);
+}
+
+Progress::Progress(std::string title, std::uint32_t total, std::string unit)
+    : title_(std::move(title)), unit_(std::move(unit)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 void Progress::show(std::uint32_t now) {
-    if (!terminal_ || total_ == 0) return;
+    if (!terminal_ || total_ == 0 || now == 0) return;
     const auto percent = static_cast<std::uint32_t>(std::uint64_t{100} * now / total_);
     if (percent == shown_ && now != 1) return;
     shown_ = percent;
     const std::uint32_t full = cells * percent / 100;
-    std::cerr << fmt::format("\r{} [{:=<{}}{: <{}}] {:3}% step {} of {}", title_, "", full, "", cells - full, percent,
-                             now, total_)
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start_;
+    const std::string counted = unit_.empty() ? "" : fmt::format(" {} {} of {},", unit_, now, total_);
+    // The end of a longer line before this one is wiped out.
+    std::cerr << fmt::format("\r{} [{:=<{}}{: <{}}] {:3}%{} {}\x1b[K", title_, "", full, "", cells - full, percent,
+                             counted, time_left(took.count(), now, total_))
               << std::flush;
 }
 
 void Progress::done() {
-    if (terminal_) std::cerr << '\n';
+    if (terminal_ && total_ > 0) std::cerr << '\n';
 }

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
-/// A bar on standard error, on a terminal only; anywhere else it is silent.
+/// A bar on standard error with the time left, on a terminal only; anywhere else it is silent.
 class Progress {
 public:
-    Progress(std::string title, std::uint32_t total);
+    /// `unit`: what is counted, as "step"; without one only the percentage is shown.
+    Progress(std::string title, std::uint32_t total, std::string unit = "step");
     void show(std::uint32_t now);
     void done();
 
 private:
-    std::string title_;
+    std::string title_, unit_;
     std::uint32_t total_;
     std::uint32_t shown_ = 0; ///< percent
     bool terminal_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Of work of which `done` of `total` took so many seconds, 0 < done <= total: "1 min 5 s left".
+std::string time_left(double seconds, double done, double total);

@@ -89,7 +89,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
         reference.emplace(reader, standard);
         result.wrong_rays.emplace();
     }
-    ContactHash hash;
+    ContactHash hash(options.settings.direction);
     std::vector<Pose> poses;
     std::vector<Pair> pairs;
     result.steps.reserve(reader.steps());

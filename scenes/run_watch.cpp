@@ -9,7 +9,8 @@ namespace raycontact::scenes {
 
 RunWatch::RunWatch(const SceneDescription& description)
     : region_(description.region), planned_steps_(std::max(description.steps, 1u)),
-      frames_(std::max(description.frames, 2u)), depths_(description.depth_limit) {
+      frames_(std::max(description.frames, 2u)), hash_(description.settings.direction),
+      depths_(description.depth_limit) {
     log_.scene = description.name;
     log_.arguments = description.arguments;
     log_.seed = description.seed;

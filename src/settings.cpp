@@ -18,6 +18,7 @@ constexpr std::array methods{std::pair{Method::standard, std::string_view("stand
 constexpr std::array casters{std::pair{Caster::basic, std::string_view("basic")},
                              std::pair{Caster::bvh, std::string_view("bvh")}};
 constexpr std::array directions{std::pair{Direction::ray, std::string_view("ray")},
+                                std::pair{Direction::weighted, std::string_view("weighted")},
                                 std::pair{Direction::reprojected, std::string_view("reprojected")}};
 constexpr std::array schedules{std::pair{Schedule::balanced, std::string_view("balanced")},
                                std::pair{Schedule::sticky, std::string_view("sticky")},

@@ -58,7 +58,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         auto failed =
             parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
         while (!failed.empty()) failed = replace(failed, bodies, stats);
-        if (!alone) merge(pairs, contacts);
+        if (!alone) merge(contacts);
         changes_.mark(contacts);
     } catch (...) {
         parts_.forget(); // the step failed half-way: what it kept may be wrong
@@ -105,7 +105,10 @@ std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& fa
 
 std::vector<std::vector<SlotPair>> NarrowPhase::give_away(const std::vector<std::size_t>& failed, StepStats& stats) {
     stats.devices_lost += failed.size();
-    for (const std::size_t part : failed) balance_.drop(part);
+    for (const std::size_t part : failed) {
+        balance_.drop(part);
+        found_[part].contacts.clear();
+    }
     return assignment_.give_away(failed, balance_);
 }
 
@@ -129,14 +132,20 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
 }
 
 // Each part has the contacts of its own pairs, in order.
-void NarrowPhase::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+void NarrowPhase::merge(std::vector<Contact>& contacts) {
     contacts.clear();
-    next_.assign(found_.size(), 0);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const std::size_t part = assignment_.part_of(i);
-        const std::vector<Contact>& own = found_[part].contacts;
-        std::size_t& next = next_[part];
-        while (next < own.size() && pair_of(own[next]) == pairs[i]) contacts.push_back(own[next++]);
+    rest_.clear();
+    for (const Found& found : found_)
+        if (!found.contacts.empty()) rest_.emplace_back(found.contacts);
+    while (!rest_.empty()) {
+        std::span<const Contact>& first =
+            *std::ranges::min_element(rest_, {}, [](const auto& own) { return pair_of(own.front()); });
+        const SlotPair pair = pair_of(first.front());
+        std::size_t count = 1;
+        while (count < first.size() && pair_of(first[count]) == pair) ++count;
+        contacts.insert(contacts.end(), first.begin(), first.begin() + static_cast<std::ptrdiff_t>(count));
+        first = first.subspan(count);
+        if (first.empty()) rest_.erase(rest_.begin() + (&first - rest_.data()));
     }
 }
 

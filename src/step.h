@@ -38,15 +38,15 @@ private:
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
                                      StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
-    void merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
+    void merge(std::vector<Contact>& contacts);
     void count(std::size_t pair_count, StepStats& stats);
 
     Settings settings_;
     Parts parts_;
     Balance balance_;
     Assignment assignment_;
-    std::vector<Found> found_;      ///< by part, as next_
-    std::vector<std::size_t> next_; ///< contact to be merged
+    std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
+    std::vector<std::span<const Contact>> rest_; ///< still to be merged
     Changes changes_;
 };
 

@@ -34,7 +34,7 @@ Settings settings_of(const Way& way, const DeviceOptions& options) {
 template <class Seen>
 std::string run(Replayer& replayer, const Settings& settings, std::uint32_t steps, Seen&& seen) {
     replayer.rest(settings);
-    ContactHash hash;
+    ContactHash hash(settings.direction);
     for (std::uint32_t k = 0; k < steps; ++k) {
         replayer.step(k);
         hash.add(k, replayer.contacts());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/pose.h>
+#include <raycontact/settings.h>
 
 #include <array>
 #include <cstdint>
@@ -19,13 +20,15 @@ struct Contact {
     std::uint32_t body_a = 0; ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
+    bool is_new = true;            ///< the last step had no contact with this key in this pair
     std::uint32_t vertex = 0;      ///< source vertex, index of its file
     std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file
     Vec3 point;                    ///< the source vertex, world frame, metres
     std::array<float, 3> normal{}; ///< unit, world frame, from A to B
     float depth = 0;               ///< > 0, metres along the normal (section 3.2: r . n)
     float ray_length = 0;          ///< |r|, metres from the vertex to the hit
-    bool is_new = true;            ///< the last step had no contact with this key in this pair
+    /// Direction `weighted`: the vertex's share of its surface, m^2 (Shape::vertex_areas). Other directions: 1.
+    float weight = 1;
 };
 
 /// A contact that the last step had and this step does not have. Read it before the next add(), which may give the slot
@@ -44,10 +47,11 @@ std::string contact_key(const LostContact& contact);
 
 /// XXH64 over every contact of every step in order; the same for every device, caster and thread count.
 /// Layout per contact: step, body_a, body_b, vertex_body, vertex, triangle as little-endian uint32; normal, depth,
-/// ray_length as float32 bits; point as float64 bits.
+/// ray_length and, with direction `weighted` alone, weight as float32 bits; point as float64 bits.
 class ContactHash {
 public:
-    ContactHash();
+    /// direction: of the contacts that will be added.
+    explicit ContactHash(Direction direction = Direction::reprojected);
     ~ContactHash();
     ContactHash(const ContactHash&) = delete;
     ContactHash& operator=(const ContactHash&) = delete;
@@ -56,6 +60,7 @@ public:
 
 private:
     void* state_;
+    bool weighted_;
 };
 
 } // namespace raycontact

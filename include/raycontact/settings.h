@@ -25,6 +25,7 @@ enum class Caster {
 /// What a contact's normal and depth are made of.
 enum class Direction {
     ray,         ///< along the ray itself, depth = |r| (Hermann et al. 2008)
+    weighted,    ///< as ray, and each contact has its vertex's area as weight (after Hermann et al. 2008)
     reprojected, ///< along the normal of the face that was hit, depth = r . n (paper section 3.2, equation 2)
 };
 

@@ -41,6 +41,9 @@ public:
     /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero
     /// where the triangles around a vertex cancel out: such a vertex casts no ray.
     std::span<const Vec3> vertex_normals() const;
+    /// Each vertex's share of the surface, m^2: a third of the area of its triangles, rounded once from double.
+    /// Contact::weight of direction `weighted`.
+    std::span<const float> vertex_areas() const;
     /// How far the ray from a vertex along its inward normal travels inside its own mesh, metres: t_max of its rays.
     /// +inf where it never leaves, 0 where it points out of the mesh at once.
     std::span<const float> exit_distances() const;

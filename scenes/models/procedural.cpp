@@ -119,6 +119,10 @@ Mesh bumpy_sphere(std::uint32_t triangles) {
     return drawn_out_sphere("sphere", triangles, 8, bumpy_radius);
 }
 
+Mesh round_sphere(std::uint32_t triangles) {
+    return drawn_out_sphere("round-sphere", triangles, 8, [](const Vec3&) { return 1.0; });
+}
+
 Mesh star(std::uint32_t triangles) {
     return drawn_out_sphere("star", triangles, 400, star_radius);
 }

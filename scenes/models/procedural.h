@@ -7,10 +7,12 @@
 
 namespace raycontact::scenes {
 
-// Closed, concave meshes of an exact, even number of triangles; +, -, *, / and square roots only, so that every
-// compiler gives the same bits. Scaled and centred by normalise(). Each throws InputError for a count it cannot have.
+// Closed meshes, concave but for the round sphere, of an exact, even number of triangles; +, -, *, / and square roots
+// only, so that every compiler gives the same bits. Scaled and centred by normalise(). Each throws InputError for a
+// count it cannot have.
 
 Mesh bumpy_sphere(std::uint32_t triangles); ///< even, from 8; concave from about 60
+Mesh round_sphere(std::uint32_t triangles); ///< even, from 8; vertices at distance 1 before normalise()
 Mesh star(std::uint32_t triangles);         ///< even, from 400; six rounded arms along the axes
 Mesh bumpy_torus(std::uint32_t triangles);  ///< even, from 18
 Mesh gear(std::uint32_t triangles);         ///< even, from 48; a spur gear with a bore, more teeth with more triangles

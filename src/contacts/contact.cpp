@@ -9,6 +9,9 @@
 
 namespace raycontact {
 
+// A step writes and reads some ten thousand of them: the small members fill what the alignment of `point` leaves free.
+static_assert(sizeof(Contact) <= 72);
+
 std::string contact_key(const Contact& contact) {
     return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.vertex});
 }
@@ -19,7 +22,8 @@ std::string contact_key(const LostContact& contact) {
     return text;
 }
 
-ContactHash::ContactHash() : state_(XXH64_createState()) {
+ContactHash::ContactHash(Direction direction)
+    : state_(XXH64_createState()), weighted_(direction == Direction::weighted) {
     if (state_ == nullptr) throw std::bad_alloc();
     XXH64_reset(static_cast<XXH64_state_t*>(state_), 0);
 }
@@ -30,7 +34,7 @@ ContactHash::~ContactHash() {
 
 void ContactHash::add(std::uint32_t step, std::span<const Contact> contacts) {
     for (const Contact& c : contacts) {
-        unsigned char bytes[6 * 4 + 5 * 4 + 3 * 8];
+        unsigned char bytes[6 * 4 + 6 * 4 + 3 * 8];
         unsigned char* to = bytes;
         const auto put = [&to](auto bits) { // little-endian on every machine
             for (std::size_t i = 0; i < sizeof bits; ++i) *to++ = static_cast<unsigned char>(bits >> (8 * i));
@@ -39,8 +43,9 @@ void ContactHash::add(std::uint32_t step, std::span<const Contact> contacts) {
             put(word);
         for (const float x : {c.normal[0], c.normal[1], c.normal[2], c.depth, c.ray_length})
             put(std::bit_cast<std::uint32_t>(x));
+        if (weighted_) put(std::bit_cast<std::uint32_t>(c.weight));
         for (const double x : {c.point.x, c.point.y, c.point.z}) put(std::bit_cast<std::uint64_t>(x));
-        XXH64_update(static_cast<XXH64_state_t*>(state_), bytes, sizeof bytes);
+        XXH64_update(static_cast<XXH64_state_t*>(state_), bytes, static_cast<std::size_t>(to - bytes));
     }
 }
 

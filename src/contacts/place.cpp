@@ -21,6 +21,7 @@ struct Side {
         __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
         __builtin_prefetch(&source.mesh.vertices[local.vertex]);
         __builtin_prefetch(&target.mesh.triangle_index[local.triangle]);
+        if (direction == Direction::weighted) __builtin_prefetch(&source.vertex_areas[local.vertex]);
     }
 };
 
@@ -45,14 +46,19 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.point.y = turned.y + origin.y;
     contact.point.z = turned.z + origin.z;
     contact.ray_length = local.distance;
+    contact.weight = side.direction == Direction::weighted ? shape.vertex_areas[local.vertex] : 1;
     Vec3 out; // the direction in which the source leaves the target
-    if (side.direction == Direction::reprojected) {
+    switch (side.direction) {
+    case Direction::reprojected:
         out = rotate(side.target_pose, {local.normal.x, local.normal.y, local.normal.z});
         contact.depth = local.distance * local.facing;
-    } else {
+        break;
+    case Direction::ray:
+    case Direction::weighted: {
         const Vec3 n = shape.vertex_normals[local.vertex];
         out = rotate(side.source_pose, {-n.x, -n.y, -n.z});
         contact.depth = local.distance;
+    }
     }
     const double sign = side.from_a ? -1 : 1;
     contact.normal[0] = static_cast<float>(sign * out.x);

@@ -4,13 +4,13 @@
 #include "device/cuda/device.h"
 #endif
 #include "device/device.h"
+#include "device/device_id.h"
 #ifdef RAYCONTACT_OPENCL
 #include "device/opencl/device.h"
 #endif
 
 #include <raycontact/error.h>
 
-#include <charconv>
 #include <cstdlib>
 
 namespace raycontact {
@@ -63,23 +63,15 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
         auto device = cpu::open(*executor, instruction_set, name);
         return OpenDevice{std::move(executor), std::move(device)};
     };
-    if (name == "cpu") return on_cpu(-1);
-    if (name.starts_with("cpu/")) {
-        const std::string_view part = name.substr(4);
-        std::uint32_t core = 0;
-        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), core);
-        if (error == std::errc() && end == part.data() + part.size() && core < usable_cores())
-            return on_cpu(usable_core(core));
-        throw InputError("device '" + std::string(name) + "': this machine has " + std::to_string(usable_cores())
-                         + " cores; use cpu/0 to cpu/" + std::to_string(usable_cores() - 1));
+    const DeviceId id = DeviceId::read(name);
+    if (id.kind == "cpu") {
+        if (!id.part) return on_cpu(-1);
+        if (*id.part < usable_cores()) return on_cpu(usable_core(*id.part));
+        throw InputError("device '" + id.text() + "': this machine has " + std::to_string(usable_cores()) + " cores; "
+                         + use_one_of("cpu/", usable_cores()));
     }
-    if (name.starts_with("opencl:") || name.starts_with("cuda:")) {
-        auto device = name.starts_with("cuda:") ? open_cuda(name, inexact) : open_opencl(name, inexact);
-        return {std::make_unique<Executor>(threads), std::move(device)};
-    }
-    throw InputError("device '" + std::string(name)
-                     + "' is unknown or not usable in this version; use cpu, cpu/k, cuda:i, opencl:i or opencl:i/k "
-                       "(`raycontact devices` lists them)");
+    auto device = id.kind == "cuda" ? open_cuda(name, inexact) : open_opencl(name, inexact);
+    return {std::make_unique<Executor>(threads), std::move(device)};
 }
 
 } // namespace raycontact

@@ -3,32 +3,64 @@
 
 #include "executor/float_environment.h"
 
+#include <chrono>
+
 namespace raycontact {
 
-SideBySide::SideBySide(std::size_t count)
-    : begin_(static_cast<std::ptrdiff_t>(count)), end_(static_cast<std::ptrdiff_t>(count)) {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A thread that sleeps takes some 50 us to wake, so it stays awake for a while when it expects something at once.
+constexpr Clock::duration awake_before_a_run = std::chrono::microseconds(500);
+constexpr Clock::duration awake_at_the_end = std::chrono::microseconds(50);
+
+template <class Done>
+bool wait_awake(Clock::duration most, Done&& done) {
+    for (const auto start = Clock::now(); !done(); std::this_thread::yield())
+        if (Clock::now() - start > most) return false;
+    return true;
+}
+
+} // namespace
+
+SideBySide::SideBySide(std::size_t count) {
     for (std::size_t i = 1; i < count; ++i) threads_.emplace_back([this, i] { serve(i); });
 }
 
 SideBySide::~SideBySide() {
     function_ = nullptr;
-    begin_.arrive_and_wait();
+    ++runs_;
+    wake();
+}
+
+void SideBySide::wake() {
+    ++calls_;
+    calls_.notify_all();
 }
 
 void SideBySide::run(const std::function<void(std::size_t)>& function) {
     function_ = &function;
-    begin_.arrive_and_wait();
+    running_ = static_cast<std::uint32_t>(threads_.size());
+    ++runs_;
+    wake();
     function(0);
-    end_.arrive_and_wait();
+    if (wait_awake(awake_at_the_end, [&] { return running_ == 0; })) return;
+    while (const std::uint32_t left = running_) running_.wait(left);
 }
 
 void SideBySide::serve(std::size_t number) {
     const FloatEnvironment environment;
-    for (;;) {
-        begin_.arrive_and_wait();
+    std::uint32_t calls = 0;
+    for (std::uint32_t run = 1;; ++run) {
+        do {
+            calls_.wait(calls);
+            calls = calls_;
+        } while (!wait_awake(awake_before_a_run, [&] { return runs_ == run; }));
         if (!function_) return;
         (*function_)(number);
-        end_.arrive_and_wait();
+        calls = calls_; // the next call is for the next run
+        if (--running_ == 0) running_.notify_one();
     }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <barrier>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -18,15 +19,19 @@ public:
     SideBySide(const SideBySide&) = delete;
     SideBySide& operator=(const SideBySide&) = delete;
 
+    /// Begins to wake the threads, which takes a while, and does not wait for them: a run is about to come.
+    void wake();
     /// Returns when all have. The function must not throw.
     void run(const std::function<void(std::size_t)>& function);
 
 private:
     void serve(std::size_t number);
 
-    std::barrier<> begin_, end_;
     const std::function<void(std::size_t)>* function_ = nullptr; ///< null: the threads end
-    std::vector<std::jthread> threads_;                          ///< last, to be joined first
+    std::atomic<std::uint32_t> calls_{0};                        ///< of wake() and run()
+    std::atomic<std::uint32_t> runs_{0};
+    std::atomic<std::uint32_t> running_{0}; ///< threads
+    std::vector<std::jthread> threads_;     ///< last, to be joined first
 };
 
 } // namespace raycontact

@@ -87,6 +87,7 @@ bool Parts::pack_shapes() {
 }
 
 void Parts::wake() {
+    if (left() > 1) threads_->wake();
     for (const auto& part : parts_)
         if (part) part->executor().wake();
 }

@@ -13,6 +13,9 @@ std::vector<Vec3> face_normals(const ShapeData& shape);
 /// Angle-weighted unit normal of each vertex (Thuermer and Wuethrich 1998); zero where the faces around it cancel out.
 std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals);
 
+/// Each vertex's share of the surface, m^2: a third of the area of its triangles, summed in double and rounded once.
+std::vector<float> measure_areas(const ShapeData& shape);
+
 /// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
 /// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.

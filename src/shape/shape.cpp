@@ -71,6 +71,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.neighbours = triangle_neighbours(shape.mesh.triangles);
     for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});
     shape.vertex_normals = angle_weighted_normals(shape, normals);
+    shape.vertex_areas = measure_areas(shape);
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
 
@@ -127,6 +128,9 @@ double Shape::radius() const {
 std::span<const Vec3> Shape::vertex_normals() const {
     return data_->vertex_normals;
 }
+std::span<const float> Shape::vertex_areas() const {
+    return data_->vertex_areas;
+}
 std::span<const float> Shape::exit_distances() const {
     return data_->exit_distances;
 }
@@ -138,9 +142,10 @@ std::uint64_t Shape::memory_bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
-           + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.exit_distances)
-           + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells) + bytes(d.clearances);
+           + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
+           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
+           + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells)
+           + bytes(d.clearances);
 }
 
 } // namespace raycontact

@@ -18,6 +18,7 @@ struct ShapeData {
     Vec3 centre;
     std::vector<Point3f> points; ///< float32 offsets from centre
     std::vector<Vec3> vertex_normals;
+    std::vector<float> vertex_areas;
     std::vector<float> exit_distances;
     std::vector<std::array<std::uint32_t, 3>> neighbours;
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points

@@ -60,11 +60,12 @@ TEST_F(Collide, TwoCorners) {
     ASSERT_EQ(contacts.size(), 2u);
     for (const json& contact : contacts) {
         EXPECT_EQ(keys_of(contact), (std::set<std::string>{"vertex_body", "vertex", "triangle", "point", "normal",
-                                                           "depth", "ray_length", "key"}));
+                                                           "depth", "ray_length", "weight", "key"}));
         // Either corner is 0.2, 0.3, 0.4 from the faces of the other; the ray runs along the diagonal to the first.
         EXPECT_NEAR(contact["depth"].get<double>(), 0.2, 1e-6);
         EXPECT_NEAR(contact["ray_length"].get<double>(), 0.2 * std::sqrt(3.0), 1e-6);
         expect_vector(contact["normal"], 1, 0, 0);
+        EXPECT_EQ(contact["weight"], 1);
     }
     EXPECT_EQ(contacts[0]["vertex_body"], "a");
     EXPECT_EQ(contacts[0]["vertex"], 6);
@@ -87,7 +88,7 @@ TEST_F(Collide, SwappedPairTurnsTheNormals) {
         const json& contact = lines[1]["contacts"][i];
         const json& other = lines[0]["contacts"][1 - i]; // the same vertex, now sorted by the other letter
         EXPECT_NE(contact["vertex_body"], other["vertex_body"]);
-        for (const char* key : {"vertex", "triangle", "point", "depth", "ray_length"})
+        for (const char* key : {"vertex", "triangle", "point", "depth", "ray_length", "weight"})
             EXPECT_EQ(contact[key], other[key]) << key;
         for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_EQ(contact["normal"][k].get<double>(), -other["normal"][k].get<double>());
@@ -171,6 +172,34 @@ TEST_F(Collide, DirectionRayIsTheRayItself) {
         const double third = std::sqrt(1.0 / 3);
         expect_vector(contact["normal"], third, third, third);
     }
+}
+
+TEST_F(Collide, DirectionWeightedIsTheRayAndTheAreaOfItsVertex) {
+    // Either corner is one of five triangles of half a square metre, and a third of each is its own.
+    const double share = 5 * 0.5 / 3;
+    json scaled = corner_pair();
+    scaled["pose_b"] = translation(0.6, 0.55, 0.5);
+    scaled["scale_b"] = 0.5;
+    const json pairs = json::array({corner_pair(), scaled});
+    const auto lines = json_lines(run(pairs, {"--json", "--direction", "weighted"}).out);
+    auto rays = json_lines(run(pairs, {"--json", "--direction", "ray"}).out);
+    ASSERT_EQ(lines.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        ASSERT_EQ(lines[i]["contacts"].size(), 2u);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const json& contact = lines[i]["contacts"][k];
+            const double scale = i == 1 && contact["vertex_body"] == "b" ? 0.5 : 1;
+            EXPECT_NEAR(contact["weight"].get<double>(), scale * scale * share, 1e-7);
+            json& ray = rays[i]["contacts"][k];
+            EXPECT_EQ(ray["weight"], 1);
+            ray["weight"] = contact["weight"];
+        }
+        EXPECT_EQ(lines[i], rays[i]) << "all but the weight";
+    }
+    const auto table = run(pairs, {"--direction", "weighted"}).out;
+    EXPECT_NE(table.find("weight (m^2)"), std::string::npos) << table;
+    EXPECT_NE(table.find(" 0.833333 "), std::string::npos) << table;
+    EXPECT_EQ(run(pairs, {}).out.find("weight"), std::string::npos);
 }
 
 TEST_F(Collide, TenKilometresAwayIsTheSame) {

@@ -51,7 +51,7 @@ TEST_F(Usage, Version) {
 }
 
 TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
-    for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "bench"}) {
+    for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "reproduce", "bench"}) {
         expect_refused(run({}), command);
     }
     expect_refused(run({"bench"}), "peers, growth, sweep, device or roofline");

@@ -58,6 +58,7 @@ inline ::testing::AssertionResult same(const std::vector<Contact>& found, const 
         if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
                 != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
             || std::memcmp(&a.ray_length, &b.ray_length, sizeof a.ray_length) != 0
+            || std::memcmp(&a.weight, &b.weight, sizeof a.weight) != 0
             || std::memcmp(&a.normal, &b.normal, sizeof a.normal) != 0
             || std::memcmp(&a.point, &b.point, sizeof a.point) != 0)
             return ::testing::AssertionFailure() << "contact " << i << " differs";

@@ -50,10 +50,12 @@ const std::vector<Crowd>& crowds() {
     return made;
 }
 
-std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std::string& device) {
+std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std::string& device,
+                    Direction direction = Direction::reprojected) {
     Settings settings;
     settings.method = method;
     settings.caster = caster;
+    settings.direction = direction;
     settings.devices = device;
     settings.threads = 2;
     Scene scene(settings);
@@ -64,7 +66,7 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
         poses.back().translation = crowd.spread * random.in_ball();
         scene.add(crowd.shapes[i % crowd.shapes.size()], poses.back());
     }
-    ContactHash hash;
+    ContactHash hash(direction);
     std::size_t contacts = 0;
     for (std::uint32_t step = 0; step < 5; ++step) {
         hash.add(step, scene.step());
@@ -106,6 +108,19 @@ bool has_parts() {
 TEST(scenes, have_one_hash_on_the_first_device) {
     ASSERT_FALSE(opencl_devices().empty()) << "on Debian: apt-get install pocl-opencl-icd";
     expect_the_cpus_hash(opencl_devices().front());
+}
+
+// Weights are placed on the host, whichever device found the contact.
+TEST(scenes, have_one_hash_with_weights) {
+    for (const char* device : {"opencl:0", "cpu,opencl:0"})
+        for (const Crowd& crowd : crowds()) {
+            const auto hash = [&](const char* on, Direction direction) {
+                return hash_of(crowd, Method::standard, Caster::bvh, on, direction);
+            };
+            const std::string expected = hash("cpu", Direction::weighted);
+            EXPECT_EQ(hash(device, Direction::weighted), expected) << crowd.name << ", " << device;
+            EXPECT_EQ(expected == hash("cpu", Direction::ray), crowd.least_contacts == 0) << crowd.name;
+        }
 }
 
 // Two devices, or parts of one: each with its own scene, at the same time, and both for one scene.

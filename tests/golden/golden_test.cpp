@@ -30,7 +30,7 @@ Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spr
         poses.push_back(pose);
     }
     Result result;
-    ContactHash hash;
+    ContactHash hash(settings.direction);
     for (std::uint32_t step = 0; step < steps; ++step) {
         const auto contacts = scene.step();
         hash.add(step, contacts);
@@ -46,12 +46,13 @@ Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spr
 }
 
 void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t steps, const char* golden,
-                   std::uint64_t contacts) {
+                   std::uint64_t contacts, Direction direction = Direction::reprojected) {
     for (const Method method : {Method::standard, Method::certified})
         for (const Caster caster : {Caster::bvh, Caster::basic})
             for (const std::uint32_t threads : {1u, 2u, 3u}) {
                 Settings settings;
                 settings.method = method;
+                settings.direction = direction;
                 settings.caster = caster;
                 settings.threads = threads;
                 const Result result = run(settings, meshes, spread, steps);
@@ -69,6 +70,14 @@ void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t
 TEST(golden, plain_meshes) {
     expect_golden({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8)}, 1.5, 6,
                   "0cd9da44f0afd8ec", 7737);
+}
+
+// The contacts of the test above, with normals along the rays, and with weights.
+TEST(golden, directions_of_plain_meshes) {
+    const std::vector<Mesh> meshes{bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(),
+                                   bowl_mesh(8)};
+    expect_golden(meshes, 1.5, 6, "06b09c883d9d859b", 7737, Direction::ray);
+    expect_golden(meshes, 1.5, 6, "5033be61d7b69a6f", 7737, Direction::weighted);
 }
 
 // The procedural meshes of the scenes: changes with them too.

@@ -16,8 +16,9 @@ using namespace raycontact::reference;
 
 namespace {
 
-Settings with(Caster caster) {
+Settings with(Caster caster, Direction direction = Direction::reprojected) {
     Settings settings;
+    settings.direction = direction;
     settings.method = Method::standard; // every ray of the rule
     settings.caster = caster;
     return settings;
@@ -47,6 +48,7 @@ void expect_flipped(std::span<const Contact> one, std::span<const Contact> two, 
         for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(c.normal[k], -d.normal[k]);
         ASSERT_EQ(c.depth, d.depth);
         ASSERT_EQ(c.ray_length, d.ray_length);
+        ASSERT_EQ(c.weight, d.weight);
         ++counts.swapped;
     }
 }
@@ -57,9 +59,10 @@ void run(Place place, std::size_t poses, Counts& counts) {
     for (std::size_t done = 0; done < poses; done += batch) {
         std::vector<Placement> placements;
         for (std::size_t i = 0; i < batch; ++i) placements.push_back(place());
-        Scene bvh(with(Caster::bvh));
-        Scene basic(with(Caster::basic));
-        Scene swapped(with(Caster::bvh));
+        const Direction direction = directions[done / batch % std::size(directions)];
+        Scene bvh(with(Caster::bvh, direction));
+        Scene basic(with(Caster::basic, direction));
+        Scene swapped(with(Caster::bvh, direction));
         const auto contacts = bvh.step(add_all(bvh, placements));
         const auto of_basic = basic.step(add_all(basic, placements));
         const auto of_swapped = swapped.step(add_all(swapped, placements, true));
@@ -75,7 +78,7 @@ void run(Place place, std::size_t poses, Counts& counts) {
         std::size_t seen = 0;
         for (std::size_t i = 0; i < batch; ++i) {
             const Placement& p = placements[i];
-            compare(p.a->solid, p.pose_a, p.b->solid, p.pose_b, parts[i], counts.sum);
+            compare(p.a->solid, p.pose_a, p.b->solid, p.pose_b, parts[i], counts.sum, direction);
             expect_flipped(parts[i], swapped_parts[i], counts);
             counts.pairs_touching += !parts[i].empty();
             seen += parts[i].size();

@@ -74,6 +74,7 @@ TEST(Allocations, NoneAfterWarmUp) {
                 Settings settings;
                 settings.method = method;
                 settings.threads = threads;
+                settings.direction = given ? Direction::weighted : Direction::reprojected;
                 Scene scene(settings);
                 for (BodyId body = 0; body < 64; ++body) scene.add(shape);
                 std::vector<Pair> pairs;

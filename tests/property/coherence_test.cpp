@@ -85,7 +85,9 @@ bool is_genuine(const Contact& c, const Guest& a, const Guest& b) {
     const double sign = of_a ? -1 : 1;
     const bool along_face = length(said - sign * normal) < 1e-4, along_ray = length(said - sign * ray) < 1e-4;
     const Vec3 point = transform_point(source.pose, source.subject->shape->vertices()[v]);
-    return (along_face || along_ray) && c.depth >= 0 && length(c.point - point) < 1e-6 * size;
+    const bool weighted = std::fabs(c.weight - s.vertex_areas[v]) < 1e-6 * s.vertex_areas[v];
+    return (along_face || along_ray) && (c.weight == 1 || (weighted && along_ray)) && c.depth >= 0
+           && length(c.point - point) < 1e-6 * size;
 }
 
 std::vector<Subject> make_subjects() {
@@ -205,7 +207,7 @@ private:
         Settings changed = scene_.settings();
         constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
         if (random_.below(2)) changed.method = methods[random_.below(4)];
-        if (random_.below(2)) changed.direction = random_.below(2) ? Direction::ray : Direction::reprojected;
+        if (random_.below(2)) changed.direction = directions[random_.below(3)];
         if (random_.below(3) == 0) changed.caster = random_.below(2) ? Caster::bvh : Caster::basic;
         if (random_.below(3) == 0) changed.skip_outside = random_.below(2) != 0;
         if (random_.below(2)) {

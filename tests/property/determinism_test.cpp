@@ -153,10 +153,13 @@ TEST(determinism, threads_change_no_counter_where_caps_are_asked) {
 
 TEST(determinism, hash_sees_every_field_and_the_step) {
     const std::vector<Contact> contacts = run(threads(1)).steps[0];
-    const auto hash_of = [](std::uint32_t step, std::span<const Contact> list) {
-        ContactHash hash;
+    const auto hash_with = [](Direction direction, std::uint32_t step, std::span<const Contact> list) {
+        ContactHash hash(direction);
         hash.add(step, list);
         return hash.hex();
+    };
+    const auto hash_of = [&](std::uint32_t step, std::span<const Contact> list) {
+        return hash_with(Direction::reprojected, step, list);
     };
     const std::string plain = hash_of(0, contacts);
     EXPECT_EQ(plain, hash_of(0, contacts));
@@ -177,6 +180,14 @@ TEST(determinism, hash_sees_every_field_and_the_step) {
     EXPECT_NE(plain, changed([](Contact& c) { c.normal[1] = std::nextafter(c.normal[1], 9.0f); }));
     EXPECT_NE(plain, changed([](Contact& c) { c.depth = std::nextafter(c.depth, 9.0f); }));
     EXPECT_NE(plain, changed([](Contact& c) { c.ray_length = std::nextafter(c.ray_length, 9.0f); }));
+
+    // The weight is hashed where it means something.
+    EXPECT_EQ(plain, hash_with(Direction::ray, 0, contacts));
+    EXPECT_EQ(plain, changed([](Contact& c) { c.weight = 2; }));
+    std::vector<Contact> heavier = contacts;
+    heavier[contacts.size() / 2].weight = std::nextafter(1.0f, 9.0f);
+    EXPECT_NE(hash_with(Direction::weighted, 0, contacts), plain);
+    EXPECT_NE(hash_with(Direction::weighted, 0, contacts), hash_with(Direction::weighted, 0, heavier));
 }
 
 TEST(determinism, pairs_given_twice_or_in_any_order) {

@@ -18,7 +18,7 @@ namespace {
 
 struct Counts {
     int vertices = 0, finite = 0, infinite = 0, zero = 0, excused = 0;
-    double worst_normal = 0, worst_exit = 0;
+    double worst_normal = 0, worst_exit = 0, worst_area = 0;
 };
 
 void expect_shape(const Subject& subject, Counts& counts) {
@@ -30,7 +30,8 @@ void expect_shape(const Subject& subject, Counts& counts) {
     EXPECT_EQ(shape.report().closed, solid.closed);
     EXPECT_LT(length(shape.box_min() - shape.centre() - solid.box_min), 1e-6 * solid.diagonal);
     EXPECT_LT(length(shape.box_max() - shape.centre() - solid.box_max), 1e-6 * solid.diagonal);
-    double radius = 0;
+    ASSERT_EQ(shape.vertex_areas().size(), solid.vertices.size());
+    double radius = 0, area = 0;
     for (std::size_t v = 0; v < solid.vertices.size(); ++v) {
         radius = std::max(radius, length(shape.vertices()[v]));
         ++counts.vertices;
@@ -39,6 +40,10 @@ void expect_shape(const Subject& subject, Counts& counts) {
             EXPECT_LT(off, 1e-5) << "normal of vertex " << v;
             counts.worst_normal = std::max(counts.worst_normal, off);
         }
+        const double share = shape.vertex_areas()[v], wrong = std::fabs(share - solid.vertex_areas[v]);
+        EXPECT_LT(wrong, 1e-6 * solid.vertex_areas[v]) << "area of vertex " << v;
+        counts.worst_area = std::max(counts.worst_area, wrong / solid.vertex_areas[v]);
+        area += share;
         const double exit = shape.exit_distances()[v];
         const double expected = solid.exits[v];
         const bool both_infinite = std::isinf(exit) && std::isinf(expected);
@@ -53,14 +58,15 @@ void expect_shape(const Subject& subject, Counts& counts) {
         }
         (std::isinf(expected) ? counts.infinite : expected > 0 ? counts.finite : counts.zero) += 1;
     }
+    EXPECT_NEAR(area, shape.report().area, 1e-5 * area);
     EXPECT_NEAR(shape.radius(), radius, 1e-6 * solid.diagonal);
     EXPECT_GE(shape.radius(), radius * (1 - 1e-12)) << "motion would be underestimated";
 }
 
 void report(const Counts& c) {
     std::printf("[ counts   ] %d vertices: %d finite exits, %d infinite, %d zero; %d excused; worst normal %.2g, exit "
-                "%.2g\n",
-                c.vertices, c.finite, c.infinite, c.zero, c.excused, c.worst_normal, c.worst_exit);
+                "%.2g, area %.2g\n",
+                c.vertices, c.finite, c.infinite, c.zero, c.excused, c.worst_normal, c.worst_exit, c.worst_area);
 }
 
 TEST(shape, normals_and_exit_distances_of_the_closed_meshes) {

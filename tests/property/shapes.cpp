@@ -90,7 +90,8 @@ bool same_bits(std::span<const Contact> x, std::span<const Contact> y) {
                && c.triangle == d.triangle && wide(c.point.x) == wide(d.point.x) && wide(c.point.y) == wide(d.point.y)
                && wide(c.point.z) == wide(d.point.z) && bits(c.normal[0]) == bits(d.normal[0])
                && bits(c.normal[1]) == bits(d.normal[1]) && bits(c.normal[2]) == bits(d.normal[2])
-               && bits(c.depth) == bits(d.depth) && bits(c.ray_length) == bits(d.ray_length);
+               && bits(c.depth) == bits(d.depth) && bits(c.ray_length) == bits(d.ray_length)
+               && bits(c.weight) == bits(d.weight);
     });
 }
 

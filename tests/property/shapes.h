@@ -43,6 +43,8 @@ std::vector<Pair> add_all(Scene& scene, const std::vector<Placement>& placements
 /// The contacts of placement i out of all, which are sorted by body.
 std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts, std::size_t pairs);
 
+inline constexpr Direction directions[] = {Direction::ray, Direction::weighted, Direction::reprojected};
+
 /// The same contacts, bit for bit.
 bool same_bits(std::span<const Contact> x, std::span<const Contact> y);
 

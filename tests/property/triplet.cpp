@@ -49,7 +49,7 @@ Settings some_settings(Random& random) {
     Settings settings;
     settings.threads = 1;
     settings.skip_outside = random.below(4) != 0; // now and then every ray is cast
-    settings.direction = random.below(2) ? Direction::ray : Direction::reprojected;
+    settings.direction = directions[random.below(3)];
     return settings;
 }
 

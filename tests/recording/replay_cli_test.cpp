@@ -82,6 +82,22 @@ TEST_P(ReplayOfMethod, ReproducesTheHash) {
     EXPECT_NE(replay({"a.glb"}).out.find("as recorded"), std::string::npos);
 }
 
+TEST_F(ReplayProgram, ReproducesTheHashOfAWeightedRun) {
+    const json run = record("a.glb", {"--direction", "weighted"});
+    EXPECT_EQ(run.at("direction"), "weighted");
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"a.glb"}, {"a.glb", "--method", "standard"}, {"a.glb", "--caster", "basic"}}) {
+        const json again = replayed(words);
+        EXPECT_EQ(again.at("direction"), "weighted");
+        EXPECT_EQ(again.at("hash"), run.at("hash"));
+        EXPECT_EQ(again.at("hash_expected"), true);
+    }
+    const json ray = replayed({"a.glb", "--direction", "ray"});
+    EXPECT_NE(ray.at("hash"), run.at("hash"));
+    EXPECT_EQ(ray.at("contacts"), run.at("contacts"));
+    EXPECT_EQ(ray.at("hash_expected"), false);
+}
+
 TEST_P(ReplayOfMethod, UsesTheRecordedSettingsUnlessOthersAreGiven) {
     const json run = record("a.glb", {"--method", GetParam(), "--displacement-threshold", "0.0125", "--confidence",
                                       "1.5", "--culling-distance", "0.03", "--distance-extension", "0.025",

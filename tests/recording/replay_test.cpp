@@ -168,6 +168,7 @@ TEST(Replay, WhatMustAgree) {
         EXPECT_TRUE(agrees(&Settings::threads, 3u));
         EXPECT_TRUE(agrees(&Settings::skip_outside, false));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
+        EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
         EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
         EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
         EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);
@@ -188,6 +189,25 @@ TEST(Replay, AnotherDirectionIsAnotherHash) {
     ReplayOptions options;
     options.settings.direction = Direction::ray;
     EXPECT_NE(replay(reader, options).hash, run.hash);
+}
+
+TEST(Replay, AWeightedRunIsReproduced) {
+    for (const Method method : {Method::certified, Method::predictive}) {
+        const TemporaryFile file;
+        Settings settings = settings_of(method);
+        settings.direction = Direction::weighted;
+        const Found run = record_avalanche(file.path(), settings);
+        Reader reader(file.path());
+        ReplayOptions options;
+        options.settings = reader.info().settings;
+        EXPECT_EQ(options.settings.direction, Direction::weighted);
+        EXPECT_EQ(replay(reader, options).hash, run.hash);
+        // The same contacts; only the hash does not see their weights.
+        options.settings.direction = Direction::ray;
+        const raycontact::recording::Replay ray = replay(reader, options);
+        EXPECT_NE(ray.hash, run.hash);
+        EXPECT_EQ(ray.contacts, run.contacts);
+    }
 }
 
 TEST(Replay, BodiesComeAndGo) {

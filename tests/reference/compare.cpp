@@ -26,23 +26,23 @@ std::string text(const Pose& pose) {
 }
 
 struct Difference {
-    double normal = 0, depth = 0, ray_length = 0, point = 0;
+    double normal = 0, depth = 0, ray_length = 0, weight = 0, point = 0;
 };
 
 // One directed pair: every ray of the reference, then what the library has beyond them.
-class Direction {
+class OneWay {
 public:
-    Direction(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose,
-              VertexBody body, Comparison& sum)
+    OneWay(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose, VertexBody body,
+           Direction direction, Comparison& sum)
         : source_(source), target_(target), source_pose_(source_pose), target_pose_(target_pose), body_(body),
-          sum_(sum), size_(std::max(source.diagonal, target.diagonal)) {}
+          direction_(direction), sum_(sum), size_(std::max(source.diagonal, target.diagonal)) {}
 
     void run(std::span<const Contact> contacts) {
         std::map<std::uint32_t, const Contact*> found;
         for (const Contact& contact : contacts)
             if (contact.vertex_body == body_ && !found.emplace(contact.vertex, &contact).second)
                 complain("vertex reported twice", contact.vertex, nullptr, &contact);
-        for (const CastRay& ray : cast_all(source_, source_pose_, target_, target_pose_)) {
+        for (const CastRay& ray : cast_all(source_, source_pose_, target_, target_pose_, direction_)) {
             ++sum_.rays;
             const std::uint32_t vertex = source_.vertex_index[ray.vertex];
             const auto it = found.find(vertex);
@@ -70,14 +70,16 @@ private:
         d.normal = length(normal - sign * ray.normal);
         d.depth = std::fabs(contact.depth - ray.depth) / size_;
         d.ray_length = std::fabs(contact.ray_length - ray.ray_length) / size_;
+        d.weight = std::fabs(contact.weight - ray.weight) / ray.weight;
         d.point = length(contact.point - ray.point) / size_;
         const bool same = contact.triangle == target_.triangle_index[ray.triangle] && d.normal < 1e-4 && d.depth < 1e-5
-                          && d.ray_length < 1e-5 && d.point < 1e-6 && contact.depth > 0;
+                          && d.ray_length < 1e-5 && d.weight < 1e-6 && d.point < 1e-6 && contact.depth > 0;
         if (!same) return judge("other numbers", ray.vertex, &ray, &contact);
         ++sum_.agreed;
         sum_.worst_normal = std::max(sum_.worst_normal, d.normal);
         sum_.worst_depth = std::max(sum_.worst_depth, d.depth);
         sum_.worst_ray_length = std::max(sum_.worst_ray_length, d.ray_length);
+        sum_.worst_weight = std::max(sum_.worst_weight, d.weight);
     }
 
     void judge(const char* what, std::uint32_t vertex, const CastRay* ray, const Contact* contact) {
@@ -98,14 +100,15 @@ private:
         std::string s = what + text(": vertex %u of ", vertex) + source_.name + " (body "
                         + (body_ == VertexBody::a ? "a" : "b") + ") against " + target_.name;
         if (ray)
-            s += text("\n  reference: triangle %u, depth %.9g, ray %.9g, face normal %.6g %.6g %.6g",
-                      target_.triangle_index[ray->triangle], ray->depth, ray->ray_length, ray->normal.x, ray->normal.y,
-                      ray->normal.z);
+            s += text("\n  reference: triangle %u, depth %.9g, ray %.9g, weight %.9g, normal %.6g %.6g %.6g out of the "
+                      "target",
+                      target_.triangle_index[ray->triangle], ray->depth, ray->ray_length, ray->weight, ray->normal.x,
+                      ray->normal.y, ray->normal.z);
         if (contact)
-            s += text("\n  library: triangle %u, depth %.9g, ray %.9g, normal %.6g %.6g %.6g", contact->triangle,
-                      static_cast<double>(contact->depth), static_cast<double>(contact->ray_length),
-                      static_cast<double>(contact->normal[0]), static_cast<double>(contact->normal[1]),
-                      static_cast<double>(contact->normal[2]));
+            s += text("\n  library: triangle %u, depth %.9g, ray %.9g, weight %.9g, normal %.6g %.6g %.6g",
+                      contact->triangle, static_cast<double>(contact->depth), static_cast<double>(contact->ray_length),
+                      static_cast<double>(contact->weight), static_cast<double>(contact->normal[0]),
+                      static_cast<double>(contact->normal[1]), static_cast<double>(contact->normal[2]));
         s += "\n  source pose " + text(source_pose_) + "\n  target pose " + text(target_pose_);
         sum_.complaints.push_back(s);
     }
@@ -115,6 +118,7 @@ private:
     const Pose& source_pose_;
     const Pose& target_pose_;
     VertexBody body_;
+    Direction direction_;
     Comparison& sum_;
     double size_;
 };
@@ -122,20 +126,21 @@ private:
 } // namespace
 
 void compare(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b, std::span<const Contact> contacts,
-             Comparison& sum) {
+             Comparison& sum, Direction direction) {
     ++sum.pairs;
-    Direction(a, pose_a, b, pose_b, VertexBody::a, sum).run(contacts);
-    Direction(b, pose_b, a, pose_a, VertexBody::b, sum).run(contacts);
+    OneWay(a, pose_a, b, pose_b, VertexBody::a, direction, sum).run(contacts);
+    OneWay(b, pose_b, a, pose_a, VertexBody::b, direction, sum).run(contacts);
 }
 
 std::string Comparison::summary() const {
-    std::string s = text("%llu pairs, %llu rays, %llu contacts: %llu agree (worst normal %.2g, depth %.2g, ray length "
-                         "%.2g), %llu rays excused (%.4f %%), %llu wrong",
-                         static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(rays),
-                         static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(agreed),
-                         worst_normal, worst_depth, worst_ray_length, static_cast<unsigned long long>(excused),
-                         rays ? 100.0 * static_cast<double>(excused) / static_cast<double>(rays) : 0.0,
-                         static_cast<unsigned long long>(wrong));
+    std::string s =
+        text("%llu pairs, %llu rays, %llu contacts: %llu agree (worst normal %.2g, depth %.2g, ray length "
+             "%.2g, weight %.2g), %llu rays excused (%.4f %%), %llu wrong",
+             static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(rays),
+             static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(agreed), worst_normal,
+             worst_depth, worst_ray_length, worst_weight, static_cast<unsigned long long>(excused),
+             rays ? 100.0 * static_cast<double>(excused) / static_cast<double>(rays) : 0.0,
+             static_cast<unsigned long long>(wrong));
     for (const auto& [name, count] : excuses)
         s += text("; by %s %llu", name.c_str(), static_cast<unsigned long long>(count));
     for (const std::string& complaint : complaints) s += "\n" + complaint;

@@ -48,7 +48,7 @@ struct Bounds {
 } // namespace
 
 std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, const Solid& target,
-                              const Pose& target_pose) {
+                              const Pose& target_pose, Direction direction) {
     const Relative relative(source, source_pose, target, target_pose);
     const Bounds bounds(source, target);
     RayCaster caster(target);
@@ -59,23 +59,25 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
         if (!bounds.holds(origin)) continue;
         CastRay ray;
         ray.vertex = v;
-        const Vec3 direction = relative.inward(v);
-        const Hit hit = caster.closest(origin, direction);
+        const Vec3 inward = relative.inward(v);
+        const Hit hit = caster.closest(origin, inward);
         if (hit.triangle != Hit::none && hit.from_inside && hit.distance <= source.exits[v]) {
-            const Vec3& normal = target.face_normals[hit.triangle];
+            const Vec3& out = direction == Direction::reprojected ? target.face_normals[hit.triangle] : inward;
             ray.contact = true;
             ray.triangle = hit.triangle;
             ray.point = source_pose.translation + rotate(source_pose, source.centre + source.vertices[v]);
-            ray.normal = rotate(target_pose, normal);
+            ray.normal = rotate(target_pose, out);
             ray.ray_length = hit.distance;
-            ray.depth = hit.distance * dot(direction, normal);
+            ray.depth = hit.distance * dot(inward, out);
+            if (direction == Direction::weighted) ray.weight = source.vertex_areas[v];
         }
         rays.push_back(ray);
     }
     return rays;
 }
 
-std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b) {
+std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
+                                            Direction direction) {
     std::vector<ReferenceContact> contacts;
     const auto add = [&](VertexBody body, const Solid& source, const Solid& target, const std::vector<CastRay>& rays) {
         for (const CastRay& ray : rays) {
@@ -88,11 +90,12 @@ std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, 
             contact.normal = body == VertexBody::a ? -ray.normal : ray.normal;
             contact.depth = ray.depth;
             contact.ray_length = ray.ray_length;
+            contact.weight = ray.weight;
             contacts.push_back(contact);
         }
     };
-    add(VertexBody::a, a, b, cast_all(a, pose_a, b, pose_b));
-    add(VertexBody::b, b, a, cast_all(b, pose_b, a, pose_a));
+    add(VertexBody::a, a, b, cast_all(a, pose_a, b, pose_b, direction));
+    add(VertexBody::b, b, a, cast_all(b, pose_b, a, pose_a, direction));
     std::stable_sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
         return x.vertex_body != y.vertex_body ? x.vertex_body < y.vertex_body : x.vertex < y.vertex;
     });

@@ -122,6 +122,24 @@ TEST(reference_contacts, of_a_box_corner_in_a_box) {
     }
 }
 
+TEST(reference_contacts, of_a_box_corner_along_the_ray) {
+    const Solid big = solid(box_mesh({1, 1, 1}));
+    const Solid small = solid(box_mesh({0.5, 0.5, 0.5}));
+    for (const Direction direction : {Direction::ray, Direction::weighted}) {
+        const auto contacts = find_contacts(big, at(0, 0, 0), small, at(0.125, 0.0625, 1.375), direction);
+        ASSERT_EQ(contacts.size(), 4u);
+        for (const auto& c : contacts) {
+            EXPECT_NEAR(c.depth, c.ray_length, 1e-14);
+            EXPECT_LT(length(c.normal + unit(small.vertices[c.vertex])), 1e-15); // A (below) to B (above)
+            const auto triangles = std::count_if(small.triangles.begin(), small.triangles.end(), [&](const auto& t) {
+                return std::find(t.begin(), t.end(), c.vertex) != t.end();
+            });
+            // Half a square metre each, of which a corner has a third.
+            EXPECT_NEAR(c.weight, direction == Direction::weighted ? double(triangles) / 6 : 1, 1e-14);
+        }
+    }
+}
+
 TEST(reference_contacts, swap_flips_normals) {
     const Solid big = solid(box_mesh({1, 1, 1}));
     const Solid small = solid(box_mesh({0.5, 0.5, 0.5}));
@@ -200,6 +218,7 @@ std::vector<Contact> as_library(const std::vector<ReferenceContact>& contacts) {
         c.normal = {static_cast<float>(r.normal.x), static_cast<float>(r.normal.y), static_cast<float>(r.normal.z)};
         c.depth = static_cast<float>(r.depth);
         c.ray_length = static_cast<float>(r.ray_length);
+        c.weight = static_cast<float>(r.weight);
         list.push_back(c);
     }
     return list;
@@ -233,6 +252,7 @@ TEST(reference_compare, notices_every_kind_of_error) {
     EXPECT_EQ(wrong_after([](Contact& c) { c.triangle = c.triangle ? 0 : 1; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.depth += 1e-4f; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.ray_length += 1e-4f; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.weight *= 1.00001f; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.point.x += 1e-4; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) {
                   for (float& n : c.normal) n = -n;

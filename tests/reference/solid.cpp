@@ -56,6 +56,15 @@ void add_vertex_normals(Solid& solid) {
     }
 }
 
+void add_vertex_areas(Solid& solid) {
+    solid.vertex_areas.resize(solid.vertices.size(), 0.0);
+    for (const auto& t : solid.triangles) {
+        const Vec3 normal =
+            cross(solid.vertices[t[1]] - solid.vertices[t[0]], solid.vertices[t[2]] - solid.vertices[t[0]]);
+        for (const std::uint32_t v : t) solid.vertex_areas[v] += length(normal) / 6;
+    }
+}
+
 void add_box(Solid& solid) {
     const double inf = std::numeric_limits<double>::infinity();
     solid.box_min = {inf, inf, inf};
@@ -88,6 +97,7 @@ Solid make_surface(std::string name, const std::vector<Vec3>& vertices,
     }
     add_edges(solid);
     add_vertex_normals(solid);
+    add_vertex_areas(solid);
     add_box(solid);
     return solid;
 }

@@ -24,6 +24,7 @@ struct Solid {
     std::vector<Vec3> face_normals;                  ///< unit; zero for a triangle without area
     std::vector<Vec3> vertex_normals;                ///< unit, angle-weighted; zero where they cancel out
     std::vector<double> cancellation;                ///< length of the weighted sum over the sum of the weights
+    std::vector<double> vertex_areas;                ///< m^2, a third of the area of the triangles around each vertex
     std::vector<double> exits;                       ///< exit distance of each vertex, metres, may be +inf
     std::vector<double> exit_margins;                ///< how safe that is, relative to the diagonal (see exits.h)
     Vec3 box_min, box_max;                           ///< minus centre

@@ -2,7 +2,7 @@
 #include "device/cuda/list.h"
 
 #include "device/cuda/nvrtc.h"
-#include "device/gpu/device_id.h"
+#include "device/device_id.h"
 
 #include <raycontact/error.h>
 
@@ -87,12 +87,10 @@ Devices devices() {
 
 Listed find(std::string_view id) {
     const std::string named = "device '" + std::string(id) + "': ";
-    std::size_t index = 0;
-    if (!id.starts_with("cuda:") || !gpu::read_number(id.substr(5), index)) throw InputError(named + "give cuda:i");
+    const std::size_t index = DeviceId::read(id).index;
     const Devices all = devices();
     if (all.found.empty()) throw InputError(named + all.why_none);
-    if (index >= all.found.size())
-        throw InputError(named + "there is none; " + gpu::use_one_of("cuda:", all.found.size()));
+    if (index >= all.found.size()) throw InputError(named + "there is none; " + use_one_of("cuda:", all.found.size()));
     return all.found[index];
 }
 

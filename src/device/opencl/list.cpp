@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/list.h"
 
-#include "device/gpu/device_id.h"
+#include "device/device_id.h"
 
 #include <raycontact/error.h>
 
@@ -131,21 +131,17 @@ const std::vector<Listed>& parts(std::size_t index) {
 
 const Listed& find(std::string_view id) {
     const std::string named = "device '" + std::string(id) + "': ";
-    const auto slash = std::min(id.find('/'), id.size());
-    std::size_t index = 0, part = 0;
-    if (!id.starts_with("opencl:") || !gpu::read_number(id.substr(7, slash - 7), index)
-        || (slash < id.size() && !gpu::read_number(id.substr(slash + 1), part)))
-        throw InputError(named + "give opencl:i, or opencl:i/k for one core of it");
+    const auto [kind, index, part] = DeviceId::read(id);
     if (devices().empty())
         throw InputError(named + "no OpenCL driver is installed here (on Debian, of the CPU: pocl-opencl-icd)");
     if (index >= devices().size())
-        throw InputError(named + "there is none; " + gpu::use_one_of("opencl:", devices().size()));
-    if (slash == id.size()) return devices()[index];
+        throw InputError(named + "there is none; " + use_one_of("opencl:", devices().size()));
+    if (!part) return devices()[index];
     if (parts(index).empty()) throw InputError(named + "its driver does not divide it into cores; use it whole");
-    if (part >= parts(index).size())
+    if (*part >= parts(index).size())
         throw InputError(named + "it has no such core; "
-                         + gpu::use_one_of(std::string(id.substr(0, slash)) + "/", parts(index).size()));
-    return parts(index)[part];
+                         + use_one_of("opencl:" + std::to_string(index) + "/", parts(index).size()));
+    return parts(index)[*part];
 }
 
 } // namespace raycontact::opencl

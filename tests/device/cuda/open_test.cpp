@@ -47,7 +47,7 @@ TEST_F(Open, lists_what_the_driver_shows_before_opencl) {
 TEST_F(Open, what_is_not_there_is_bad_usage) {
     EXPECT_TRUE(contains(refusal("cuda:7"), "'cuda:7': there is none; use cuda:0"));
     for (const char* id : {"cuda:", "cuda:x", "cuda:0/0", "cuda:-1"})
-        EXPECT_TRUE(contains(refusal(id), std::string("'") + id + "': give cuda:i")) << id;
+        EXPECT_TRUE(contains(refusal(id), std::string("'") + id + "': give cpu, cpu/k, cuda:i")) << id;
     cuda.devices = 0;
     EXPECT_TRUE(contains(refusal(), "shows no device")) << refusal();
     cuda.fails = "cuInit";

@@ -51,5 +51,38 @@ TEST(Placer, SortsTheContactsOfEachPair) {
     }
 }
 
+// A vertex of a and one of b, each 0.5 m below a face that its ray leaves at an angle: cosine 0.5.
+TEST(Placer, MakesNormalDepthAndWeightByTheDirection) {
+    const std::shared_ptr<const Shape> shape = Shape::make(scenes::scene_model("gear", 902).mesh);
+    const ShapeData& data = shape->data();
+    const OpenDevice opened = open_device("cpu", 1);
+    const Pose quarter_turn{{0, -1, 0, 1, 0, 0, 0, 0, 1}, {}};
+    const std::vector<PlacedBody> bodies{{shape.get(), 0, 0, quarter_turn, {}}, {shape.get(), 0, 0, {}, {}}};
+    const std::vector<SlotPair> pairs{{0, 1}};
+    const std::vector<kernels::LocalContact> local{{0, 7, 3, 1, 0.5f, {1, 0, 0}}, {1, 9, 3, 1, 0.5f, {1, 0, 0}}};
+    const auto place = [&](Direction direction) {
+        std::vector<Contact> contacts;
+        Placer().run(*opened.executor, direction, bodies, pairs, local, contacts);
+        return contacts;
+    };
+    using Normal = std::array<float, 3>;
+    const auto reprojected = place(Direction::reprojected);
+    EXPECT_EQ(reprojected[0].normal, (Normal{-1, 0, 0})); // away from b's face
+    EXPECT_EQ(reprojected[1].normal, (Normal{0, 1, 0}));  // away from a's face, which is turned
+    const Vec3 &n0 = data.vertex_normals[7], &n1 = data.vertex_normals[9];
+    for (const Direction direction : {Direction::ray, Direction::weighted}) {
+        const auto contacts = place(direction);
+        EXPECT_EQ(contacts[0].normal, (Normal{float(-n0.y), float(n0.x), float(n0.z)})); // out of a, turned
+        EXPECT_EQ(contacts[1].normal, (Normal{float(-n1.x), float(-n1.y), float(-n1.z)}));
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(reprojected[i].depth, 0.5f);
+            EXPECT_EQ(reprojected[i].weight, 1);
+            EXPECT_EQ(contacts[i].depth, 1);
+            EXPECT_EQ(contacts[i].ray_length, 1);
+            EXPECT_EQ(contacts[i].weight, direction == Direction::ray ? 1 : data.vertex_areas[local[i].vertex]);
+        }
+    }
+}
+
 } // namespace
 } // namespace raycontact

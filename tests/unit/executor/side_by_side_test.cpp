@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <gtest/gtest.h>
 
 namespace raycontact {
@@ -14,6 +15,8 @@ TEST(SideBySide, RunsAllAtOnceEachOnItsOwnThread) {
     for (int run = 0; run < 50; ++run) {
         std::atomic<int> there{0};
         std::array<std::thread::id, 4> ids{};
+        if (run % 3 == 0) threads.wake();
+        if (run % 9 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2)); // they fall asleep again
         threads.run([&](std::size_t i) {
             ids[i] = std::this_thread::get_id();
             ++there;

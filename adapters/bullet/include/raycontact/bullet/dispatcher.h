@@ -50,7 +50,8 @@ struct PointKey {
 /// refresh() for a mesh that was changed in place. Not thread-safe, like Bullet's.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
-    /// Throws InputError when settings name a device this machine cannot use.
+    /// Throws InputError when settings name a device this machine cannot use. Direction `weighted` gives Bullet the
+    /// points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1). scene() has the weights.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
                                  const ManifoldSettings& manifolds = {});
     ~CollisionDispatcher() override;

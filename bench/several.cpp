@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// What several devices gain over one of them: a recording replayed by turns on the first device of a list and on all of
+// the list. Prints, for each method and schedule, medians over the runs of three ratios, one device over all: `device`,
+// the time of kernels (in each step that of the device that takes longest), `part`, the same with the host's share of
+// each device's work, and `narrow`, the whole narrow phase by the wall, with the merging of contacts.
+// Usage: raycontact_bench_several RECORDING DEVICES [RUNS [METHOD...]]
+#include <raycontact/device.h>
+#include <recording/replay.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rc = raycontact;
+
+namespace {
+
+// Milliseconds of all steps.
+struct Times {
+    double device = 0, part = 0, narrow = 0;
+    double moved = 0, bytes = 0; ///< pairs of a thousand, kilobytes, in a step
+    std::string hash;
+};
+
+Times replay(const std::string& file, const rc::Settings& settings) {
+    rc::recording::Reader reader(file);
+    const rc::recording::Replay result = rc::recording::replay(reader, {settings, false, {}});
+    Times times;
+    double pairs = 0;
+    for (const rc::recording::ReplayStep& step : result.steps) {
+        double busy = 0, ms = 0;
+        for (const rc::DeviceWork& work : step.work) {
+            busy = std::max(busy, work.busy_ms);
+            ms = std::max(ms, work.ms);
+        }
+        times.device += busy;
+        times.part += ms;
+        times.narrow += step.narrow_ms;
+        pairs += double(step.pairs);
+        times.moved += double(step.pairs_moved);
+        times.bytes += double(step.bytes_moved);
+    }
+    times.moved = 1000 * times.moved / std::max(1.0, pairs);
+    times.bytes /= 1000 * double(result.steps.size());
+    times.hash = result.hash;
+    return times;
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+void compare(const std::string& file, const std::string& devices, rc::Method method, rc::Schedule schedule, int runs) {
+    rc::Settings alone, shared;
+    alone.method = shared.method = method;
+    shared.schedule = schedule;
+    shared.devices = devices;
+    alone.devices = devices.substr(0, devices.find(','));
+    std::vector<double> device, part, narrow, one_ms, all_ms;
+    Times all;
+    for (int i = 0; i <= runs; ++i) { // the first is the warm-up
+        const Times one = replay(file, alone);
+        all = replay(file, shared);
+        if (one.hash != all.hash) throw std::runtime_error("the hashes differ; this must not be");
+        if (i == 0) continue;
+        device.push_back(one.device / all.device);
+        part.push_back(one.part / all.part);
+        narrow.push_back(one.narrow / all.narrow);
+        one_ms.push_back(one.narrow);
+        all_ms.push_back(all.narrow);
+    }
+    std::printf("%-11s %-9s %8.2f %8.2f %8.2f   %.2f..%.2f %10.0f %8.0f %11.2f %9.1f\n",
+                std::string(to_string(method)).c_str(), std::string(to_string(schedule)).c_str(), median(device),
+                median(part), median(narrow), *std::ranges::min_element(narrow), *std::ranges::max_element(narrow),
+                median(one_ms), median(all_ms), all.moved, all.bytes);
+    std::fflush(stdout);
+}
+
+int run(int count, char** words) {
+    if (count < 3) {
+        std::fprintf(stderr, "usage: raycontact_bench_several RECORDING DEVICES [RUNS [METHOD...]]\n");
+        return 2;
+    }
+    const int runs = count > 3 ? std::max(1, std::atoi(words[3])) : 5;
+    std::vector<rc::Method> methods = {rc::Method::standard, rc::Method::certified, rc::Method::iterative,
+                                       rc::Method::predictive};
+    if (count > 4) methods.clear();
+    for (int i = 4; i < count; ++i) methods.push_back(rc::method_from(words[i]));
+    std::printf("%s, %d runs by turns, one device over all\n", words[2], runs);
+    std::printf("%-11s %-9s %8s %8s %8s   %s %6s %8s %11s %9s\n", "method", "schedule", "device", "part", "narrow",
+                "least..most", "one ms", "all ms", "moved/1000", "kB/step");
+    for (const rc::Method method : methods)
+        for (const rc::Schedule schedule : {rc::Schedule::sticky, rc::Schedule::balanced})
+            compare(words[1], words[2], method, schedule, runs);
+    return 0;
+}
+
+} // namespace
+
+int main(int count, char** words) {
+    try {
+        return run(count, words);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "raycontact_bench_several: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <reproduce/experiments.h>
+#include <reproduce/phases.h>
+#include <reproduce/series.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace raycontact::reproduce {
+
+namespace {
+
+constexpr const char* scene = "avalanche";
+
+/// The second casts every ray, as the paper's does; the third is the library's own `standard`.
+std::vector<Settings> contestants(Caster caster) {
+    std::vector<Settings> all{as_in_the_paper(Method::iterative), by_default(Method::standard)};
+    all[1].skip_outside = false;
+    if (caster == Caster::bvh) all.push_back(by_default(Method::standard));
+    for (Settings& settings : all) settings.caster = caster;
+    return all;
+}
+
+Json measure(const Workshop& shop, Caster caster, double cost, const Tick& tick) {
+    const auto file = shop.recording(shop.base(scene), [](double) {});
+    std::vector<Follow> follow;
+    for (const Settings& settings : contestants(caster)) follow.push_back({file, settings});
+    Json result = Json::array();
+    for (std::size_t k = 0; k < follow.size(); ++k) result.push_back(Json::array());
+    side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
+        for (std::size_t k = 0; k < scenes.size(); ++k) result[k].push_back(scenes[k]->stats().narrow_ms);
+        tick(cost / shop.plan().avalanche.steps);
+    });
+    return result;
+}
+
+Outcome show(const std::vector<Json>& found) {
+    Outcome out;
+    Table table{"standard against iterative", {"caster", "standard", "best second", "mean"}, {}};
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const bool basic = k == 0;
+        const auto iterative = found[k][0].get<Series>(), standard = found[k][1].get<Series>();
+        const double best = best_second(standard, iterative), mean = sum(standard) / std::max(sum(iterative), 1e-9);
+        const std::string caster = basic ? "basic" : "bvh";
+        table.rows.push_back({caster, "every ray cast", fmt::format("{:.1f}", best), fmt::format("{:.1f}", mean)});
+        report::Plot plot{
+            "LGA13: time, caster " + caster,
+            "ms",
+            fmt::format("The paper: iterative up to 33 times as fast; here {:.1f} in the best second, {:.1f} "
+                        "over all steps.",
+                        best, mean),
+            {line("standard", standard), line("iterative", iterative)},
+            report::over_steps(1.0 / 60)};
+        if (!basic) {
+            const auto grids = found[k][2].get<Series>();
+            plot.lines.push_back(line("standard with grids", grids));
+            table.rows.push_back({caster, "with this library's grids",
+                                  fmt::format("{:.1f}", best_second(grids, iterative)),
+                                  fmt::format("{:.1f}", sum(grids) / std::max(sum(iterative), 1e-9))});
+        }
+        out.plots.push_back(plot);
+        if (basic)
+            out.numbers.push_back(compared(
+                "lga13", 33, best, "times as fast", Better::higher,
+                fmt::format(
+                    "best second of the avalanche, caster basic, constants fixed; mean {:.1f}. The paper says \"up "
+                    "to\", on a GPU and a scene that it does not name",
+                    mean)));
+    }
+    out.tables.push_back(table);
+    out.paragraphs = {
+        "Both methods follow the same recording with the same caster. standard casts every ray in full in "
+        "every step; iterative has the fixed constants of Figure 9."};
+    return out;
+}
+
+} // namespace
+
+Experiment lga13(const Workshop& shop) {
+    Experiment e;
+    e.name = "lga13";
+    e.title = "LGA13: iterative against standard";
+    for (const Caster caster : {Caster::basic, Caster::bvh}) {
+        Json settings{{"bodies", shop.plan().avalanche.bodies}, {"steps", shop.plan().avalanche.steps}};
+        for (const Settings& one : contestants(caster)) settings["methods"].push_back(to_json(one));
+        const double cost = Workshop::cost(shop.base(scene)) * (caster == Caster::basic ? 5 : 0.7);
+        e.parts.push_back({fmt::format("lga13-{}", to_string(caster)), shop.key("lga13", settings), cost,
+                           [&shop, caster, cost](const Tick& tick) { return measure(shop, caster, cost, tick); }});
+    }
+    e.show = show;
+    return e;
+}
+
+} // namespace raycontact::reproduce

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <report/plot.h>
+#include <reproduce/cache.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace raycontact::reproduce {
+
+using Series = std::vector<double>; ///< a number a step
+
+double sum(const Series& values);
+double median(Series values); ///< the upper one of two in the middle; 0 of none
+
+/// Means over at most 200 windows of equal length; a point lies at its window's middle step.
+report::Line line(std::string name, const Series& values);
+/// 100 x part / whole, window by window.
+report::Line percent_line(std::string name, const Series& part, const Series& whole);
+/// A dashed line all along a plot, at a number that the paper states.
+report::Line level(const report::Plot& plot, std::string name, double value);
+
+/// "12.3 %", with so many digits after the point.
+std::string percent(double value, int digits = 1);
+
+} // namespace raycontact::reproduce

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <reproduce/experiments.h>
+
+#include <recording/writer.h>
+#include <report/image.h>
+#include <report/render.h>
+#include <scenes/avalanche.h>
+#include <scenes/rain.h>
+#include <scenes/simulation.h>
+
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+
+namespace raycontact::reproduce {
+
+namespace {
+
+constexpr std::uint64_t small_animation = std::uint64_t{4} << 20; // recordings are kept to be followed, not looked at
+constexpr int jpeg_quality = 88;
+
+template <class SceneOptions>
+scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneOptions&),
+                                   const SimulationOptions& options) {
+    SceneOptions how;
+    how.bodies = options.size.bodies;
+    how.steps = options.size.steps;
+    how.seed = options.seed;
+    how.settings = options.settings;
+    if (options.one_manifold) how.response.manifolds = {btScalar(-1), btScalar(1e9), 0};
+    return make(how);
+}
+
+scenes::SceneDescription described(const SimulationOptions& options) {
+    if (options.scene == "avalanche") return described(scenes::avalanche, options);
+    if (options.scene == "rain") return described(scenes::rain, options);
+    throw std::logic_error("scene " + options.scene + " is not known; report this");
+}
+
+/// Records a simulation as it runs.
+class Record {
+public:
+    Record(const std::filesystem::path& file, const scenes::Simulation& scene)
+        : scene_(scene), writer_(file, info_of(scene), {.animation_bytes = small_animation}) {
+        for (const auto& shape : scene.log().shapes) writer_.add_shape(*shape);
+    }
+    void step() {
+        const auto& shapes = scene_.log().body_shape;
+        for (; bodies_ < shapes.size(); ++bodies_) writer_.add_body(shapes[bodies_]);
+        writer_.step(scene_.scene());
+    }
+    void finish() { writer_.finish(scene_.hash()); }
+
+private:
+    static recording::Info info_of(const scenes::Simulation& scene) {
+        const scenes::RunLog& log = scene.log();
+        return {log.scene, log.seed, scene.body_count(), log.dt, scene.description().settings, log.mesh_source};
+    }
+
+    const scenes::Simulation& scene_;
+    recording::Writer writer_;
+    std::size_t bodies_ = 0; ///< so far
+};
+
+std::string picture(const scenes::RunLog& log, std::uint32_t width) {
+    const report::Renderer renderer(log);
+    return report::base64(report::encode_jpeg(renderer.render(log.frames.back(), width, width * 9 / 16), jpeg_quality));
+}
+
+} // namespace
+
+std::vector<std::string> scene_names() {
+    return {"avalanche", "rain"};
+}
+
+Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
+              const Tick& tick) {
+    scenes::Simulation scene(described(options));
+    const scenes::RunLog& log = scene.log();
+    std::optional<Record> record;
+    if (!recording.empty()) record.emplace(recording, scene);
+    Json result{{"pairs", Json::array()},
+                {"contacts", Json::array()},
+                {"ray_length", Json::array()},
+                {"depth_length", Json::array()}};
+    for (std::uint32_t i = 0; i < options.size.steps; ++i) {
+        scene.step();
+        if (record) record->step();
+        double depth = 0;
+        for (const Contact& contact : scene.contacts()) depth += static_cast<double>(contact.depth);
+        result["pairs"].push_back(scene.stats().pairs);
+        result["contacts"].push_back(scene.stats().contacts);
+        result["ray_length"].push_back(scene.stats().ray_length);
+        result["depth_length"].push_back(depth);
+        tick(Workshop::cost(options) / options.size.steps);
+    }
+    if (record) record->finish();
+    std::uint64_t triangles = 0;
+    for (std::size_t i = 0; i < log.body_shape.size(); ++i)
+        if (log.body_moves[i]) triangles += log.shapes[log.body_shape[i]]->triangles().size();
+    result["triangles"] = triangles;
+    result["mesh_source"] = log.mesh_source;
+    result["hash"] = scene.hash();
+    if (picture_width > 0) result["picture"] = picture(log, picture_width);
+    return result;
+}
+
+} // namespace raycontact::reproduce

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/scene.h>
+#include <reproduce/experiment.h>
+#include <reproduce/plan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace raycontact::reproduce {
+
+/// All that decides a simulation.
+struct SimulationOptions {
+    std::string scene; ///< "avalanche" or "rain"
+    std::uint64_t seed = 1;
+    SceneSize size;
+    Settings settings;
+    /// Four points a pair of bodies, none kept longer than its contact: what contact reduction was in 2013. Else the
+    /// adapter's own manifolds, one for each patch of contacts.
+    bool one_manifold = false;
+};
+
+/// A scene that follows a recording.
+struct Follow {
+    std::filesystem::path recording;
+    Settings settings;
+};
+
+/// What all experiments share: how much to run, what is kept, recordings.
+class Workshop {
+public:
+    /// Throws InputError when the folder cannot be made.
+    Workshop(const Plan& plan, const std::filesystem::path& cache_folder);
+
+    const Plan& plan() const { return plan_; }
+    const Cache& cache() const { return cache_; }
+    /// A key with the program's commit and the machine, so that neither another build nor another machine finds it.
+    Json key(const std::string& what, Json settings) const;
+    Json key(const std::string& what, const SimulationOptions& options) const;
+
+    /// The simulation whose poses are the same for every method: by the library's defaults, whose contacts are exact.
+    SimulationOptions base(const std::string& scene) const;
+    /// Its Part: pairs, contacts, a picture; its recording is kept.
+    Part base_part(const std::string& scene) const;
+
+    /// The simulation's recording, made where it is missing or not whole.
+    std::filesystem::path recording(const SimulationOptions& options, const Tick& tick) const;
+    void drop_recording(const SimulationOptions& options) const;
+    /// Rough milliseconds of a simulation.
+    static double cost(const SimulationOptions& options);
+
+private:
+    std::filesystem::path recording_file(const SimulationOptions& options) const;
+    Json simulate_recorded(const SimulationOptions& options, bool picture, const Tick& tick) const;
+
+    Plan plan_;
+    Cache cache_;
+    Json here_;
+};
+
+/// Runs a simulation; writes a recording unless `recording` is empty. {"pairs", "contacts", "ray_length",
+/// "depth_length": a number a step; "triangles" of the moving bodies, "mesh_source", "hash", "picture"}.
+Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
+              const Tick& tick);
+
+Json to_json(const Settings& settings);
+
+/// All scenes do step after step in turn, so that a slower spell of the machine meets all alike. `look` sees them after
+/// each step, `scenes[k]` following `follow[k]`. The recordings must have the same number of steps.
+void side_by_side(const std::vector<Follow>& follow,
+                  const std::function<void(std::uint32_t step, std::span<Scene* const> scenes)>& look);
+
+} // namespace raycontact::reproduce

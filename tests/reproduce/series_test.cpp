@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <reproduce/phases.h>
+#include <reproduce/series.h>
+
+#include <gtest/gtest.h>
+
+namespace raycontact::reproduce {
+namespace {
+
+TEST(Series, WindowsKeepTheSumAndCoverAllSteps) {
+    Series values(1000, 0);
+    values[999] = 5; // windows of five steps
+    const report::Line found = line("name", values);
+    ASSERT_EQ(found.points.size(), 200u);
+    EXPECT_EQ(found.points.front().first, 0);
+    EXPECT_EQ(found.points.back().first, 999);
+    EXPECT_EQ(found.points.back().second, 1);
+    EXPECT_EQ(found.points[1].first, 7);
+}
+
+TEST(Series, PercentOfNothingIsZero) {
+    EXPECT_EQ(percent_line("", {1, 1}, {4, 0}).points[0].second, 25);
+    EXPECT_EQ(percent_line("", {1, 1}, {4, 0}).points[1].second, 0);
+}
+
+TEST(Phases, SecondsWithManyFullLooksAreB) {
+    Series full(180, 1), pairs(180, 10);
+    for (std::size_t i = 60; i < 120; ++i) full[i] = 9;
+    const std::vector<Phase> found = phases(full, pairs);
+    EXPECT_EQ(found[59], Phase::c);
+    EXPECT_EQ(found[60], Phase::b);
+    EXPECT_EQ(found[119], Phase::b);
+    EXPECT_EQ(found[120], Phase::c);
+    Series slow(180, 1), fast(180, 1);
+    for (std::size_t i = 60; i < 120; ++i) slow[i] = 3;
+    EXPECT_NEAR(speed_up(slow, fast, found, Phase::b), 3, 1e-6);
+    EXPECT_NEAR(speed_up(slow, fast, found, Phase::c), 1, 1e-6);
+    EXPECT_NEAR(best_second(slow, fast), 3, 1e-6);
+}
+
+TEST(Phases, WithoutPairsOrDifferencesEverythingIsFinite) {
+    EXPECT_EQ(phases({0, 0}, {0, 0})[0], Phase::c);
+    EXPECT_EQ(phases({1, 1}, {2, 2})[0], Phase::b);
+    EXPECT_EQ(speed_up({0, 0}, {0, 0}, {Phase::c, Phase::c}, Phase::b), 1);
+    EXPECT_EQ(best_second({0}, {0}), 1);
+}
+
+} // namespace
+} // namespace raycontact::reproduce
