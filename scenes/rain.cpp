@@ -39,7 +39,7 @@ SceneDescription rain(const RainOptions& options) {
 
     CircleSource source;
     const std::pair<std::string, std::uint32_t> models[] = {
-        {options.model, 902}, {"torus", 2130}, {"gear", 3456}, {"knot", 3458}};
+        {options.model, 902}, {"torus", 2130}, {"star", 3456}, {"knot", 3458}};
     scene.mesh_source = "one of four in turn:";
     for (const auto& [kind, triangles] : models) {
         const Model model = scene_model(kind, triangles);

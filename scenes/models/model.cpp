@@ -19,6 +19,7 @@ Model procedural(Mesh mesh, const char* what) {
 Model scene_model(std::string_view kind, std::uint32_t triangles) {
     if (kind == "knot") return procedural(knot(triangles), "trefoil knot");
     if (kind == "gear") return procedural(gear(triangles), "gear");
+    if (kind == "star") return procedural(star(triangles), "star of six arms");
     if (kind == "torus") return procedural(bumpy_torus(triangles), "bumpy torus");
     if (kind == "sphere") return procedural(bumpy_sphere(triangles), "bumpy sphere");
     if (kind != "bunny") {
@@ -43,7 +44,7 @@ Mesh stood_up(Mesh mesh) {
 }
 
 std::vector<std::string> model_kinds() {
-    return {"bunny", "knot", "gear", "torus", "sphere"};
+    return {"bunny", "knot", "gear", "torus", "star", "sphere"};
 }
 
 } // namespace raycontact::scenes

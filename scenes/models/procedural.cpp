@@ -47,32 +47,20 @@ double bumpy_radius(const Vec3& d) {
     return 1 + 0.27 * (x.sine * y.cosine + y.sine * z.cosine + z.sine * x.cosine);
 }
 
-} // namespace
-
-void normalise(Mesh& mesh) {
-    Vec3 low = mesh.vertices.at(0), high = low;
-    for (const Vec3& v : mesh.vertices) {
-        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    const Vec3 centre = mass_of(mesh.vertices, mesh.triangles).centre;
-    // Rounded to float32 so that a mesh written to any format and read again is the same mesh. Volatile because g++ 12
-    // at -O2 vectorises the coordinates and drops the pair of conversions: the golden hashes tell.
-    const auto place = [extent](double value, double middle) {
-        const volatile float rounded = static_cast<float>((value - middle) / extent);
-        return static_cast<double>(rounded);
+/// Distance from the middle of the star in a unit direction: six rounded arms along the axes.
+double star_radius(const Vec3& d) {
+    const auto arm = [](double c) {
+        const double square = c * c, fourth = square * square;
+        return fourth * fourth * fourth;
     };
-    for (Vec3& v : mesh.vertices) v = {place(v.x, centre.x), place(v.y, centre.y), place(v.z, centre.z)};
+    return 0.36 + 0.64 * (arm(d.x) + arm(d.y) + arm(d.z));
 }
 
-namespace {
-
-/// Rings and two poles; radius(unit direction) is the distance from the middle.
-template <class Radius>
-Mesh sphere_of_rings(std::uint32_t triangles, const char* name, Radius radius_at) {
-    const std::uint32_t points = ring_points("sphere", triangles, 8);
-    Mesh mesh{name + std::to_string(triangles), {}, {}};
+/// A sphere of rings, drawn out to the distance `radius_in` of each unit direction.
+Mesh drawn_out_sphere(const char* kind, std::uint32_t triangles, std::uint32_t least,
+                      double (*radius_in)(const Vec3& direction)) {
+    const std::uint32_t points = ring_points(kind, triangles, least);
+    Mesh mesh{std::string(kind) + "-" + std::to_string(triangles), {}, {}};
     // Triangles near equilateral: rings sqrt(3) / 2 of the points' spacing apart.
     const double rows = std::sqrt(points * 0.8660254037844386 * 0.7853981633974483);
     const std::uint32_t ring_count =
@@ -80,8 +68,8 @@ Mesh sphere_of_rings(std::uint32_t triangles, const char* name, Radius radius_at
     std::vector<double> weights;
     for (std::uint32_t k = 0; k < ring_count; ++k)
         weights.push_back(sine_cosine(0.5 * (k + 1) / (ring_count + 1)).sine);
-    const auto add = [&](const Vec3& direction) {
-        const double radius = radius_at(direction);
+    const auto add = [&mesh, radius_in](const Vec3& direction) {
+        const double radius = radius_in(direction);
         mesh.vertices.push_back({radius * direction.x, radius * direction.y, radius * direction.z});
     };
     const auto counts = share_out(points, weights, 3);
@@ -110,12 +98,33 @@ Mesh sphere_of_rings(std::uint32_t triangles, const char* name, Radius radius_at
 
 } // namespace
 
+void normalise(Mesh& mesh) {
+    Vec3 low = mesh.vertices.at(0), high = low;
+    for (const Vec3& v : mesh.vertices) {
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    const Vec3 centre = mass_of(mesh.vertices, mesh.triangles).centre;
+    // Rounded to float32 so that a mesh written to any format and read again is the same mesh. Volatile because g++ 12
+    // at -O2 vectorises the coordinates and drops the pair of conversions: the golden hashes tell.
+    const auto place = [extent](double value, double middle) {
+        const volatile float rounded = static_cast<float>((value - middle) / extent);
+        return static_cast<double>(rounded);
+    };
+    for (Vec3& v : mesh.vertices) v = {place(v.x, centre.x), place(v.y, centre.y), place(v.z, centre.z)};
+}
+
 Mesh bumpy_sphere(std::uint32_t triangles) {
-    return sphere_of_rings(triangles, "sphere-", bumpy_radius);
+    return drawn_out_sphere("sphere", triangles, 8, bumpy_radius);
 }
 
 Mesh round_sphere(std::uint32_t triangles) {
-    return sphere_of_rings(triangles, "round-sphere-", [](const Vec3&) { return 1.0; });
+    return drawn_out_sphere("round-sphere", triangles, 8, [](const Vec3&) { return 1.0; });
+}
+
+Mesh star(std::uint32_t triangles) {
+    return drawn_out_sphere("star", triangles, 400, star_radius);
 }
 
 Mesh bumpy_torus(std::uint32_t triangles) {

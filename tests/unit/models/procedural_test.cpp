@@ -64,13 +64,15 @@ struct Kind {
 constexpr Kind kinds[] = {{"sphere", 8, 0xbbbad71726cace4b},
                           {"torus", 18, 0x95f03ac60333de60},
                           {"gear", 48, 0xc3d962c6ff80ec13},
-                          {"knot", 60, 0x1b3d0333ebf8308a}};
+                          {"knot", 60, 0x1b3d0333ebf8308a},
+                          {"star", 400, 0x26fe6993e586806f}};
 
 } // namespace
 
 TEST(Procedural, EveryEvenCountFromTheLeast) {
     for (const Kind& kind : kinds)
-        for (std::uint32_t triangles = kind.least; triangles <= 320; triangles += 2) expect_good(kind.name, triangles);
+        for (std::uint32_t triangles = kind.least; triangles <= std::max(320u, kind.least + 100); triangles += 2)
+            expect_good(kind.name, triangles);
 }
 
 TEST(Procedural, CountsOfThePaperAndLargeOnes) {
