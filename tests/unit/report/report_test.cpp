@@ -140,7 +140,7 @@ TEST_F(Report, WhatCannotBeShownIsSaid) {
     scenes::RunLog log = small_log();
     EXPECT_THROW(picture_png(log, 3, 160, 90), InputError);
     EXPECT_THROW(picture_png(log, 0, 0, 90), InputError);
-    log.frames[0].poses.pop_back();
+    log.frames[0].poses.emplace_back(); // of no body
     EXPECT_THROW(write_report(folder_, log), InputError);
     log = small_log();
     log.body_shape[2] = 9;
