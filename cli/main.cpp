@@ -50,8 +50,8 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (app.get_subcommands().empty()) {
-        throw raycontact::InputError(
-            "a subcommand is required: devices, mesh, collide, run, replay, reproduce or bench (see raycontact --help)");
+        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, run, replay, reproduce or "
+                                     "bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return fine;

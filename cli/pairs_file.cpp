@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/pairs_file.h"
 
+#include "cli/json_file.h"
+
 #include <raycontact/error.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -21,26 +19,6 @@ using Json = nlohmann::json;
 using raycontact::InputError;
 
 constexpr std::array<std::string_view, 6> known_keys{"a", "b", "pose_a", "pose_b", "scale_a", "scale_b"};
-
-std::string read_text(const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder, not a pairs file");
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string() + ": cannot be opened: " + std::strerror(errno));
-    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (stream.bad()) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
-    return text;
-}
-
-/// The parser's own words without its error code, short enough for one line.
-std::string words_of(const Json::exception& error) {
-    std::string text = error.what();
-    if (const auto end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
-    constexpr std::size_t most = 160;
-    if (text.size() > most) text = text.substr(0, most) + " ...";
-    return text;
-}
 
 /// The document, refused while it is read when it is nested deeper than a pose needs or gives a key twice: what comes
 /// back is small, and nothing of it has been dropped.
@@ -116,7 +94,7 @@ double read_scale(const Json& pair, const std::string& key, const std::string& w
 } // namespace
 
 std::vector<QueryPair> read_pairs_file(const std::filesystem::path& file) {
-    const Json document = parse(file, read_text(file));
+    const Json document = parse(file, read_text_file(file, "a pairs file"));
     if (!document.is_array()) {
         throw InputError(file.string() + ": must be an array of pairs, is " + document.type_name());
     }
@@ -127,7 +105,7 @@ std::vector<QueryPair> read_pairs_file(const std::filesystem::path& file) {
         if (!pair.is_object()) throw InputError(where + ": must be an object, is " + pair.type_name());
         for (const auto& [key, value] : pair.items()) {
             if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end()) {
-                throw InputError(where + ": the key " + Json(key).dump(-1, ' ', true, Json::error_handler_t::replace)
+                throw InputError(where + ": the key " + quoted(key)
                                  + " is not known; known are a, b, pose_a, pose_b, scale_a, scale_b");
             }
         }

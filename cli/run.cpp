@@ -5,12 +5,11 @@
 #include "cli/out_folder.h"
 #include "cli/progress.h"
 #include "cli/record.h"
+#include "cli/run_scene.h"
 #include "cli/summary.h"
 
 #include <raycontact/error.h>
 #include <report/report.h>
-#include <scenes/avalanche.h>
-#include <scenes/rain.h>
 #include <scenes/simulation.h>
 
 #include <fmt/format.h>
@@ -22,7 +21,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,9 +31,8 @@ using raycontact::InputError;
 using namespace raycontact::scenes;
 
 struct RunOptions {
-    std::string scene, out, record;
-    std::optional<std::uint32_t> steps, bodies; ///< the scene's own where not given
-    std::uint64_t seed = 1;
+    RunScene scene;
+    std::string out, record;
     bool json = false;
     raycontact::Settings settings;
 };
@@ -121,28 +118,11 @@ void check_record(const std::string& file) {
     if (ending != ".glb") throw InputError("--record: \"" + file + "\" does not end in .glb; name a .glb file");
 }
 
-/// One of the paper's scenes.
-template <class Options>
-SceneDescription named(SceneDescription (*make)(const Options&), const RunOptions& options) {
-    Options how;
-    how.bodies = options.bodies.value_or(how.bodies);
-    how.steps = options.steps.value_or(how.steps);
-    how.seed = options.seed;
-    how.settings = options.settings;
-    return make(how);
-}
-
-SceneDescription describe(const RunOptions& options) {
-    if (options.scene == "avalanche") return named(avalanche, options);
-    if (options.scene == "rain") return named(rain, options);
-    throw InputError("SCENE: \"" + options.scene + "\" is not known; scenes are: avalanche, rain");
-}
-
 void run(const RunOptions& options) {
     check_common_options(options.settings);
     if (!options.out.empty()) make_out_folder(options.out);
     const auto start = std::chrono::steady_clock::now();
-    Simulation scene(describe(options));
+    Simulation scene(describe_scene(options.scene, options.settings));
     const SceneDescription& description = scene.description();
     Recorder recorder(options.record, scene);
     Progress progress(description.name, description.steps);
@@ -157,15 +137,17 @@ void run(const RunOptions& options) {
 
     print_warnings(scene.log().rows);
     const Json result = summary(options, scene, wall.count());
+    // File names are in it, which need not be text.
+    const std::string text = result.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (!options.out.empty()) {
         RunLog log = scene.log();
-        log.summary_json = result.dump();
+        log.summary_json = text;
         write_out(options.out, "steps.csv", steps_csv(log.rows));
         std::cerr << "drawing the report\n";
         raycontact::report::write_report(options.out, log);
         std::cerr << "report: " << (std::filesystem::path(options.out) / "report.html").string() << '\n';
     }
-    std::cout << (options.json ? result.dump() + "\n" : for_a_person(result));
+    std::cout << (options.json ? text + "\n" : for_a_person(result));
 }
 
 } // namespace
@@ -173,23 +155,7 @@ void run(const RunOptions& options) {
 void add_run(CLI::App& app) {
     CLI::App* command = app.add_subcommand("run", "Simulate a scene: Bullet's response to RayContact's contacts");
     auto options = std::make_shared<RunOptions>();
-    command
-        ->add_option(
-            "SCENE", options->scene,
-            "avalanche: concave meshes in a cubic grid fall on a slab; rain: a source on a circle lets go ten a "
-            "second, of four shapes")
-        ->required();
-    command->add_option("--steps", options->steps, "steps of 1/60 s")
-        ->type_name("N")
-        ->default_str("avalanche 600, rain 3000")
-        ->check(CLI::Range(1u, 10'000'000u));
-    command->add_option("--bodies", options->bodies, "moving bodies")
-        ->type_name("N")
-        ->default_str("avalanche 512, rain 500")
-        ->check(CLI::Range(1u, 1'000'000u));
-    command->add_option("--seed", options->seed, "of the bodies' small offsets and tilts; same seed, same hash")
-        ->type_name("S")
-        ->capture_default_str();
+    add_scene_options(*command, options->scene);
     command
         ->add_option("--record", options->record,
                      "write a recording there: for `raycontact replay`, and any glTF viewer")

@@ -3,6 +3,6 @@
 
 #include <CLI/CLI.hpp>
 
-/// `raycontact run SCENE [--steps N] [--bodies N] [--seed S] [--record FILE] [--out DIR] [--json]` and the common
-/// options.
+/// `raycontact run SCENE|FILE.json|--mesh FILE... [--steps N] [--bodies N] [--seed S] [--record FILE] [--out DIR]
+/// [--json]` and the common options.
 void add_run(CLI::App& app);

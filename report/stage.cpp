@@ -29,6 +29,11 @@ Box world_box(const Shape& shape, const Pose& pose) {
     return box;
 }
 
+/// As the slabs of scenes are: what is drawn as an endless plane must not have a shape of its own.
+bool is_box(const Shape& shape) {
+    return shape.vertices().size() == 8 && shape.triangles().size() == 12;
+}
+
 Vec3 body_centre(const Shape& shape, const Pose& pose) {
     return transform_point(pose, shape.centre());
 }
@@ -47,14 +52,19 @@ Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
     stage.is_ground.assign(frame.poses.size(), false);
     std::size_t up = 2;
     double widest = 0, ground_height = 0;
+    std::vector<Box> drawn; // bodies that stand still and are drawn as they are
     for (std::size_t body = 0; body < frame.poses.size(); ++body) {
         if (log.body_moves[body]) continue;
-        const Box box = world_box(*log.shapes[log.body_shape[body]], frame.poses[body]);
+        const Shape& shape = *log.shapes[log.body_shape[body]];
+        const Box box = world_box(shape, frame.poses[body]);
         std::array<double, 3> extent{};
         for (std::size_t i = 0; i < 3; ++i) extent[i] = box.high[i] - box.low[i];
         const auto thin = static_cast<std::size_t>(std::min_element(extent.begin(), extent.end()) - extent.begin());
         const double wide = std::min(extent[(thin + 1) % 3], extent[(thin + 2) % 3]);
-        if (wide < 2 * extent[thin]) continue; // a post or a block, not a ground
+        if (!is_box(shape) || wide < 2 * extent[thin]) { // a block, a post or anything with a shape of its own
+            drawn.push_back(box);
+            continue;
+        }
         stage.is_ground[body] = true;
         if (wide > widest) {
             widest = wide;
@@ -62,6 +72,7 @@ Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
             ground_height = box.high[thin];
         }
     }
+    if (log.plane) up = 2;
     stage.axes = {(up + 1) % 3, (up + 2) % 3, up};
 
     std::array<double, 3> sum{};
@@ -74,12 +85,13 @@ Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame) {
         lowest = std::min(lowest, centre[up] - half_diagonal(shape));
         ++count;
     }
+    for (const Box& box : drawn) lowest = std::min(lowest, box.low[up]);
     // Whole metres, so that the ground's grid stays that of the world.
     if (count > 0) {
         stage.origin = {std::floor(sum[0] / count), std::floor(sum[1] / count), std::floor(sum[2] / count)};
         if (widest == 0) ground_height = lowest;
     }
-    if (log.plane) ground_height = *log.plane; // of a scene whose up is z
+    if (log.plane) ground_height = *log.plane;
     stage.ground = static_cast<float>(ground_height - components(stage.origin)[up]);
     return stage;
 }

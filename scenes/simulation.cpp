@@ -155,8 +155,11 @@ const Inertia& Simulation::State::inertia_of(const BodyStart& start) {
     inertia = {start.density, 0, btVector3(0, 0, 0)};
     if (start.density == 0) return inertia;
     const bullet::MeshShape& shape = *shapes[start.shape];
+    const MeshReport& report = shape.shape()->report();
+    const Vec3 &low = report.box_min, &high = report.box_max;
+    const bool flat = !(report.volume > 0) && (low.x == high.x || low.y == high.y || low.z == high.z);
     inertia.mass = btScalar(start.density * bullet::mass_properties(*shape.shape()).volume);
-    if (!(inertia.mass > 0) || !std::isfinite(inertia.mass))
+    if (flat || !(inertia.mass > 0) || !std::isfinite(inertia.mass))
         throw InputError(description.name + ": the mesh " + shape.shape()->name()
                          + " has no volume, so it cannot move; give a closed mesh, or one that is not flat");
     shape.calculateLocalInertia(inertia.mass, inertia.moments);

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <scenes/own.h>
+
+#include <raycontact/error.h>
+#include <scenes/centred_shape.h>
+#include <scenes/grid.h>
+#include <scenes/ground.h>
+#include <scenes/random.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycontact::scenes {
+
+namespace {
+
+constexpr std::uint32_t most_bodies = 1u << 20;
+
+void check(const OwnOptions& o) {
+    const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+    if (o.files.empty()) throw InputError("own meshes: none given; name at least one file");
+    if (o.bodies < 1 || o.bodies > most_bodies)
+        throw InputError("own meshes: " + std::to_string(o.bodies) + " bodies; choose 1 to "
+                         + std::to_string(most_bodies));
+    if (o.size && !positive(*o.size)) throw InputError("own meshes: the size must be a positive number of metres");
+    if (!positive(o.density)) throw InputError("own meshes: the density must be positive");
+    if (o.ground && o.plane) throw InputError("own meshes: the ground is either a mesh or the plane");
+}
+
+std::string in_words(const std::string& name, const Shape& shape) {
+    return name + " (" + std::to_string(shape.vertices().size()) + " vertices and "
+           + std::to_string(shape.triangles().size()) + " triangles)";
+}
+
+} // namespace
+
+SceneDescription own(const OwnOptions& options) {
+    check(options);
+    SceneDescription scene;
+    scene.name = "own";
+    scene.seed = options.seed;
+    scene.steps = options.steps;
+    scene.settings = options.settings;
+    scene.response = options.response;
+    double diameter = 0, largest = 0, smallest = Region::inf;
+    for (const std::filesystem::path& file : options.files) {
+        const CentredShape mesh = centred_shape(load_mesh(file), options.size);
+        diameter = std::max(diameter, 2 * mesh.shape->radius());
+        largest = std::max(largest, mesh.extent);
+        smallest = std::min(smallest, mesh.extent);
+        scene.mesh_source += (scene.shapes.empty() ? "" : "; ") + in_words(file.filename().string(), *mesh.shape);
+        scene.shapes.push_back({mesh.shape, bullet::Bounds::box});
+    }
+    if (options.files.size() > 1) scene.mesh_source.insert(0, "one of these in turn: ");
+    scene.response.slop *= smallest;
+    scene.depth_limit *= smallest;
+
+    // 0.05 apart, of which the offsets of two neighbours take 0.04 at most.
+    Grid grid{options.bodies, 1.05 * diameter, 0.02 * diameter, 0.55 * diameter};
+    std::shared_ptr<const Shape> ground;
+    Vec3 middle; // of the grid
+    if (options.ground) {
+        ground = Shape::make(load_mesh(*options.ground));
+        const Vec3 low = ground->box_min(), high = ground->box_max();
+        middle = {(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
+        grid.bottom += high.z;
+    }
+    Random random(options.seed);
+    for (const btTransform& pose : grid.poses(random)) {
+        BodyStart body;
+        body.shape = static_cast<std::uint32_t>(scene.bodies.size() % options.files.size());
+        body.pose = pose;
+        body.pose.getOrigin() += btVector3(btScalar(middle.x), btScalar(middle.y), 0);
+        body.density = options.density;
+        scene.bodies.push_back(body);
+    }
+
+    const double top = grid.top() + diameter;
+    if (ground) {
+        BodyStart body;
+        body.shape = static_cast<std::uint32_t>(scene.shapes.size());
+        body.density = 0;
+        scene.shapes.push_back({ground, bullet::Bounds::vertices});
+        scene.bodies.push_back(body);
+        scene.region = {ground->box_min(), {ground->box_max().x, ground->box_max().y, top}};
+    } else if (options.plane) {
+        scene.plane = true;
+        scene.region.low.z = 0;
+        scene.region.high.z = top;
+    } else {
+        add_slab(scene, std::max(10 * largest, 2.5 * grid.spacing * grid.side()), top, std::max(2.0, 2 * largest));
+    }
+    return scene;
+}
+
+} // namespace raycontact::scenes

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <scenes/description.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace raycontact::scenes {
+
+/// A user's own meshes, dropped from a grid like the avalanche, in turn. z is up. The grid is so wide that no body
+/// touches another at the start. Where the ground is a mesh its body is the last, above whose middle the grid is.
+struct OwnOptions {
+    std::vector<std::filesystem::path> files; ///< meshes that fall, at least one
+    std::optional<double> size; ///< longest edge of each mesh's box, metres; as in the file where not given
+    std::optional<std::filesystem::path> ground; ///< a mesh as its file places it; without, the avalanche's slab ...
+    bool plane = false;                          ///< ... or an endless plane z = 0, whose contacts are not counted
+    std::uint32_t bodies = 64;
+    std::uint32_t steps = 600; ///< planned, of 1/60 s
+    std::uint64_t seed = 1;    ///< of the small offsets and tilts
+    double density = 1000;     ///< kg/m^3
+    Settings settings;         ///< of RayContact
+    /// Its slop is that of bodies of 1 m, and becomes smaller or larger with the smallest.
+    Response response;
+};
+
+/// Throws InputError for options out of range, and as load_mesh does.
+SceneDescription own(const OwnOptions& options);
+
+} // namespace raycontact::scenes

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// `run` with a user's meshes, and the scenes other than the avalanche.
+#include "expect.h"
+
+#include <fstream>
+#include <iterator>
+
+namespace {
+
+using nlohmann::json;
+
+class RunOwn : public testing::Test {
+protected:
+    RunOwn() {
+        folder_.write("cube.obj", cube_obj());
+        folder_.write("ramp.obj", "v -20 -20 0\nv 20 -20 0\nv 20 20 2\nv -20 20 2\nv -20 -20 -3\nv 20 -20 -3\n"
+                                  "v 20 20 -3\nv -20 20 -3\nf 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\n"
+                                  "f 3 7 8 4\nf 4 8 5 1\n");
+        folder_.write("wedge.obj", "v 0 0 0\nv 3 0 0\nv 0 3 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    }
+    json run(std::vector<std::string> words) const {
+        words.insert(words.begin(), "run");
+        words.emplace_back("--json");
+        const auto result = run_program(words, folder_.path());
+        EXPECT_EQ(result.status, 0) << result.err;
+        return json::parse(result.out);
+    }
+    void refused(std::vector<std::string> words, const std::string& named) const {
+        words.insert(words.begin(), "run");
+        expect_refused(run_program(words, folder_.path()), named);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(RunOwn, MeshesFallOnASlab) {
+    const json log = run({"--mesh", "cube.obj", "wedge.obj", "--bodies", "8", "--size", "0.5", "--steps", "240"});
+    EXPECT_EQ(log["scene"], "own");
+    EXPECT_EQ(log["bodies"], 8);
+    EXPECT_GT(log["contacts"].get<int>(), 0);
+    EXPECT_EQ(log["below_ground"], 0);
+    EXPECT_EQ(log["flown_off"], 0);
+    EXPECT_DOUBLE_EQ(log["depth_limit"].get<double>(), 0.01); // 2 % of the size
+    EXPECT_LT(log["median_speed_last_second"].get<double>(), 0.1);
+    for (const char* text : {"cube.obj", "8 vertices and 12 triangles", "wedge.obj", "in turn"})
+        EXPECT_NE(log["mesh_source"].get<std::string>().find(text), std::string::npos) << text;
+    EXPECT_EQ(run({"--mesh", "cube.obj", "wedge.obj", "--bodies", "8", "--size", "0.5", "--steps", "240", "--threads",
+                   "3"})["hash"],
+              log["hash"]);
+}
+
+TEST_F(RunOwn, FallOnAMeshOfOnesOwn) {
+    const json log = run({"--mesh", "cube.obj", "--bodies", "4", "--steps", "120", "--ground", "ramp.obj"});
+    EXPECT_GT(log["contacts"].get<int>(), 0);
+    EXPECT_EQ(log["below_ground"], 0);
+    EXPECT_EQ(log["flown_off"], 0);
+    EXPECT_NE(log["hash"], run({"--mesh", "cube.obj", "--bodies", "4", "--steps", "120"})["hash"]);
+}
+
+TEST_F(RunOwn, ThePlaneStopsThemAndIsNotCounted) {
+    folder_.write("one cube.obj", cube_obj());
+    const json log = run({"--mesh", "one cube.obj", "--bodies", "1", "--steps", "240", "--ground", "plane", "--out",
+                          "out", "--record", "fall.glb"});
+    EXPECT_EQ(log["contacts"], 0);
+    EXPECT_EQ(log["pairs_max"], 0);
+    EXPECT_EQ(log["below_ground"], 0);
+    EXPECT_EQ(log["flown_off"], 0);
+    EXPECT_LT(log["median_speed_last_second"].get<double>(), 0.05); // it has been stopped
+    std::ifstream in(folder_.path() / "out/report.html");
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("run --mesh &#39;one cube.obj&#39; --bodies 1 --ground plane --steps 240 --seed 1"),
+              std::string::npos)
+        << html.substr(std::min(html.size(), html.find("raycontact run")), 200);
+    const auto replay = run_program({"replay", "fall.glb", "--json"}, folder_.path());
+    EXPECT_EQ(replay.status, 0) << replay.err;
+    EXPECT_EQ(json::parse(replay.out)["hash_reproduced"], true);
+}
+
+TEST_F(RunOwn, DensityChangesNothingButMass) {
+    const json light = run({"--mesh", "cube.obj", "--bodies", "1", "--steps", "5", "--density", "1"});
+    EXPECT_EQ(run({"--mesh", "cube.obj", "--bodies", "1", "--steps", "5"})["hash"],
+              light["hash"]); // nothing is hit yet
+    const std::vector<std::string> two{"--mesh", "cube.obj", "--bodies", "2", "--steps", "120"};
+    auto lighter = two;
+    lighter.insert(lighter.end(), {"--density", "1"});
+    EXPECT_NE(run(two)["hash"], run(lighter)["hash"]); // rounding of other masses
+}
+
+TEST_F(RunOwn, RainHasAReportAndARecording) {
+    const json log = run({"rain", "--steps", "120", "--out", "out", "--record", "rain.glb"});
+    EXPECT_EQ(log["scene"], "rain");
+    EXPECT_EQ(log["bodies"], 20); // ten a second
+    EXPECT_GT(log["contacts"].get<int>(), 0);
+    EXPECT_EQ(csv_rows(folder_.path() / "out/steps.csv").size(), 120u);
+    EXPECT_GT(std::filesystem::file_size(folder_.path() / "out/report.html"), 10000u);
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path() / "out/pictures/step-119.png"));
+    const auto replay = run_program({"replay", "rain.glb", "--json"}, folder_.path());
+    EXPECT_EQ(replay.status, 0) << replay.err;
+    const json again = json::parse(replay.out);
+    EXPECT_EQ(again["hash"], log["hash"]);
+    EXPECT_EQ(again["bodies"], 20);
+    EXPECT_EQ(run({"rain", "--steps", "120", "--bodies", "9"})["bodies"], 9);
+}
+
+TEST_F(RunOwn, BadUsage) {
+    refused({"--mesh"}, "--mesh");
+    refused({"--mesh", "missing.obj"}, "missing.obj");
+    refused({"rain", "--mesh", "cube.obj"}, "--mesh");
+    for (const char* option : {"--size", "--density"}) {
+        for (const char* value : {"0", "-1", "nan", "inf", "much"})
+            refused({"--mesh", "cube.obj", option, value}, option);
+        refused({"avalanche", option, "1"}, option);
+        refused({"scene.json", option, "1"}, option);
+    }
+    refused({"--mesh", "cube.obj", "--ground", "missing.obj"}, "missing.obj");
+    refused({"rain", "--ground", "plane"}, "--ground");
+    folder_.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    refused({"--mesh", "sheet.obj"}, "sheet.obj");
+    folder_.write("point.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n");
+    refused({"--mesh", "point.obj"}, "point.obj");
+}
+
+} // namespace
