@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <regex>
 #include <sstream>
 
 using namespace raycontact;
@@ -92,6 +91,13 @@ TEST_P(Architecture, fuses_only_in_product_error) {
     EXPECT_EQ(joined(report.inexact), "");
 }
 
+// The number in front of `what` in a line, 0 where there is none.
+std::size_t number_before(const std::string& line, const std::string& what) {
+    const auto end = line.find(what);
+    if (end == std::string::npos) return 0;
+    return std::stoul(line.substr(line.find_last_not_of("0123456789", end - 1) + 1));
+}
+
 // Bytes of local memory that each kernel takes, the functions it calls included, as the assembler of a cubin says.
 std::map<std::string, std::size_t> local_bytes(const std::string& architecture) {
     const std::string log =
@@ -100,14 +106,15 @@ std::map<std::string, std::size_t> local_bytes(const std::string& architecture) 
             .log;
     std::map<std::string, std::size_t> bytes;
     std::string kernel;
-    const std::regex entry("Compiling entry function '(\\w+)'"), own("(\\d+) bytes stack frame"),
-        all("(\\d+) bytes cumulative stack size");
+    const std::string entry = "Compiling entry function '";
     std::istringstream lines(log);
     for (std::string line; std::getline(lines, line);) {
-        std::smatch found;
-        if (std::regex_search(line, found, entry)) bytes[kernel = found[1]] = 0;
-        if (std::regex_search(line, found, own) || std::regex_search(line, found, all))
-            bytes[kernel] = std::max<std::size_t>(bytes[kernel], std::stoul(found[1]));
+        if (const auto at = line.find(entry); at != std::string::npos) {
+            const auto name = at + entry.size();
+            bytes[kernel = line.substr(name, line.find('\'', name) - name)] = 0;
+        }
+        for (const char* what : {" bytes stack frame", " bytes cumulative stack size"})
+            bytes[kernel] = std::max(bytes[kernel], number_before(line, what));
     }
     return bytes;
 }
