@@ -67,6 +67,7 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
         bodies.push_back(scene.add(test.shape, poses[k]));
     }
     const BodyId plane = scene.add(slab());
+    pairs.reserve(bodies.size());
     for (const BodyId body : bodies) pairs.emplace_back(body, plane);
     const Vec3 low = test.shape->box_min(), high = test.shape->box_max();
     const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});

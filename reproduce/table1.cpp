@@ -113,7 +113,7 @@ Experiment table1(const Workshop& shop) {
     Experiment e;
     e.name = "table1";
     e.title = "Table 1: deviation of penalty forces on a plane";
-    const Plan plan = shop.plan();
+    const Plan& plan = shop.plan();
     for (const Object& object : objects) {
         const Json settings{{"object", object.name}, {"orientations", plan.orientations}, {"depths", plan.depths}};
         const double cost = 0.3 * plan.orientations * plan.depths;

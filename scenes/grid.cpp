@@ -10,8 +10,8 @@ std::uint32_t Grid::side() const {
 }
 
 double Grid::top() const {
-    const std::uint32_t layer = side() * side();
-    return bottom + ((places - 1) / layer) * spacing;
+    const std::uint32_t layers_below = (places - 1) / (side() * side());
+    return bottom + layers_below * spacing;
 }
 
 std::vector<btTransform> Grid::poses(Random& random) const {

@@ -9,7 +9,9 @@
 
 #include <raycontact/contact.h>
 
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <tuple>
 #include <vector>
@@ -49,6 +51,19 @@ private:
     reference::Random random_{5};
 };
 
+/// The bits of a contact's numbers; == would take -0 for 0.
+inline std::array<std::uint64_t, 8> bits(const Contact& c) {
+    const auto of = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value)}; };
+    return {of(c.normal[0]),
+            of(c.normal[1]),
+            of(c.normal[2]),
+            of(c.ray_length),
+            of(c.weight),
+            std::bit_cast<std::uint64_t>(c.point.x),
+            std::bit_cast<std::uint64_t>(c.point.y),
+            std::bit_cast<std::uint64_t>(c.point.z)};
+}
+
 /// All contacts, bit for bit.
 inline ::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
     if (found.size() != expected.size())
@@ -57,10 +72,7 @@ inline ::testing::AssertionResult same(const std::vector<Contact>& found, const 
         const Contact &a = found[i], &b = expected[i];
         if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
                 != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
-            || std::memcmp(&a.ray_length, &b.ray_length, sizeof a.ray_length) != 0
-            || std::memcmp(&a.weight, &b.weight, sizeof a.weight) != 0
-            || std::memcmp(&a.normal, &b.normal, sizeof a.normal) != 0
-            || std::memcmp(&a.point, &b.point, sizeof a.point) != 0)
+            || bits(a) != bits(b))
             return ::testing::AssertionFailure() << "contact " << i << " differs";
     }
     return ::testing::AssertionSuccess();

@@ -136,6 +136,7 @@ TEST(weighted, contacts_are_those_of_ray) {
     const auto subjects = pointers(closed_subjects());
     Random random(20080101);
     std::vector<Placement> placements;
+    placements.reserve(200);
     for (int i = 0; i < 200; ++i) placements.push_back(random_placement(subjects, random));
     Settings settings;
     settings.direction = Direction::ray;

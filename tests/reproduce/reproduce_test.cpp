@@ -45,9 +45,8 @@ Json numbers_without_times(const fs::path& file) {
 
 std::set<std::string> all_ids() {
     std::set<std::string> ids{"speedup.basic", "speedup.stackless", "lga13", "triangles.rain"};
-    for (const std::string object : {"sphere", "bunny", "irregular"})
-        for (const std::string direction : {"ray", "weighted", "reprojected"})
-            ids.insert("table1." + object + "." + direction);
+    for (const std::string object : {"table1.sphere.", "table1.bunny.", "table1.irregular."})
+        for (const std::string direction : {"ray", "weighted", "reprojected"}) ids.insert(object + direction);
     for (const std::string scene : {"avalanche", "rain"})
         for (const std::string what : {"table2.", "wrong_rays.", "lengths.", "devices.two.", "pairs."})
             ids.insert(what + scene);
