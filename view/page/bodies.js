@@ -3,7 +3,7 @@ const instanceFloats = 10; // place, turn, tint
 
 function bodyTint(body, shape, shapes) {
   if (shape.radius > 6 * shapes.smallest) return [0.62, 0.64, 0.66]; // the ground
-  const hue = (shapes.indexOf(shape) * 0.382 + 0.57) % 1, light = 0.62 + 0.16 * ((body * 0.618) % 1);
+  const hue = (shapes.indexOf(shape) * 0.382 + 0.57 + 0.1 * ((body * 0.618) % 1)) % 1, light = 0.6 + 0.2 * ((body * 0.755) % 1);
   const part = k => light * (1 - 0.42 * Math.max(0, Math.min(1, Math.abs((hue * 6 + k) % 6 - 3) - 1)));
   return [part(0), part(4), part(2)];
 }

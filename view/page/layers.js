@@ -19,6 +19,7 @@ class Layers {
   constructor(gl, layers, size) {
     this.gl = gl; this.layers = layers;
     this.normalLength = 0.5 * size; // metres; size: a typical body's radius
+    this.pointSize = 0.05 * size;
     this.steps = layers.steps.map(s => s.step);
     this.shader = compile(gl, layerVertex, layerFragment);
     this.cache = new Map();
@@ -64,13 +65,13 @@ class Layers {
     const put = (to, place, colour, alpha) => to.push(...place, ...colour, alpha);
     for (const c of found.contacts) {
       const colour = this.colour(c, by);
+      if (shown.includes('hits')) put(points, c.hit, [0.08, 0.08, 0.1], 1);
       if (shown.includes('rays')) { put(lines, c.point, colour, 1); put(lines, c.hit, colour, 1); }
       if (shown.includes('normals')) {
         put(lines, c.point, [0.9, 0.2, 0.75], 1);
         put(lines, c.point.map((p, axis) => p + this.normalLength * c.normal[axis]), [0.9, 0.2, 0.75], 1);
       }
       if (shown.includes('contacts')) put(points, c.point, colour, 1);
-      if (shown.includes('hits')) put(points, c.hit, [1, 1, 1], 1);
     }
     if (shown.includes('predictions'))
       for (const p of found.predictions) {
@@ -96,12 +97,14 @@ class Layers {
     return {array, buffer, kind, count: numbers.length / 7};
   }
 
-  draw(toClip, pixelRatio) {
+  draw(toClip, pixelsAtOne, pixelRatio) {
     if (!this.buffers) return 0;
     const gl = this.gl, {program, uniforms} = this.shader;
     gl.useProgram(program);
     gl.uniformMatrix4fv(uniforms.toClip, false, toClip);
-    gl.uniform1f(uniforms.size, 5 * pixelRatio);
+    gl.uniform1f(uniforms.size, this.pointSize);
+    gl.uniform1f(uniforms.scale, pixelsAtOne);
+    gl.uniform1f(uniforms.least, 2.5 * pixelRatio);
     gl.disable(gl.DEPTH_TEST);
     let drawn = 0;
     for (const {array, kind, count} of this.buffers) {

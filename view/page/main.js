@@ -1,7 +1,7 @@
 // Draws when something changed, and once more in full detail when nothing did for a while.
 const recording = JSON.parse(element('recording').textContent);
 const canvas = element('stage');
-const gl = canvas.getContext('webgl2', {antialias: true, powerPreference: 'high-performance'});
+const gl = canvas.getContext('webgl2', {alpha: false, antialias: true, powerPreference: 'high-performance'});
 if (!gl) throw new Error('This page needs WebGL 2, which this browser does not offer here. Try a current Firefox, Chrome or Safari with graphics acceleration.');
 
 const shapes = await Promise.all(recording.shapes.map(decodeShape));
@@ -62,7 +62,7 @@ async function draw(now) {
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   const toClip = camera.matrix();
   bodies.draw(controls.kept(), controls.kept() * motion.stride, camera, toClip, detail, element('clear').checked);
-  const marks = layerStep === null ? 0 : layers.draw(toClip, ratio);
+  const marks = layerStep === null ? 0 : layers.draw(toClip, height * focal, ratio);
   controls.say(recording, layerStep);
   legend(names, by);
   ++frames;

@@ -33,12 +33,12 @@ const layerVertex = `#version 300 es
 layout(location=0) in vec3 place;
 layout(location=1) in vec4 tint;
 uniform mat4 toClip;
-uniform float size;
+uniform float size, scale, least; // metres; pixels a metre at distance 1; pixels
 out vec4 colour;
 void main() {
   colour = tint;
   gl_Position = toClip * vec4(place, 1.0);
-  gl_PointSize = size;
+  gl_PointSize = clamp(size * scale / gl_Position.w, least, 3.0 * least);
 }`;
 const layerFragment = `#version 300 es
 precision mediump float;
