@@ -6,6 +6,7 @@
 #include "cli/replay.h"
 #include "cli/reproduce.h"
 #include "cli/run.h"
+#include "cli/view.h"
 
 #include <raycontact/error.h>
 
@@ -40,6 +41,7 @@ int run_program(int argc, char** argv) {
     add_collide(app);
     add_run(app);
     add_replay(app);
+    add_view(app);
     add_reproduce(app);
     add_bench(app);
     try {
@@ -50,8 +52,8 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (app.get_subcommands().empty()) {
-        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, run, replay, reproduce or "
-                                     "bench (see raycontact --help)");
+        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, run, replay, view, reproduce "
+                                     "or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return fine;

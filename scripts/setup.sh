@@ -11,7 +11,8 @@ packages_build=(
 )
 packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd locales
-    python3-pip) # brings the CUDA compiler that the kernels are checked with
+    python3-pip # brings the CUDA compiler that the kernels are checked with
+    chromium python3) # open the pages
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact bench peers`, both optional
 packages_all=(clang clang-tidy oclgrind valgrind)
 

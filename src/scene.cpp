@@ -3,6 +3,7 @@
 
 #include "body_slots.h"
 #include "broadphase/sweep_and_prune.h"
+#include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "pose_fault.h"
 #include "shape/shape_data.h"
@@ -228,6 +229,15 @@ const StepStats& Scene::stats() const {
 }
 std::span<const Pair> Scene::pairs() const {
     return state_->pairs;
+}
+std::uint32_t Scene::device_of_pair(std::size_t i) const {
+    if (i >= state_->pairs.size())
+        throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; the last step had "
+                         + std::to_string(state_->pairs.size()));
+    return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
+}
+std::vector<Prediction> Scene::predictions() const {
+    return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies, state_->contacts);
 }
 
 } // namespace raycontact

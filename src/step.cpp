@@ -131,6 +131,13 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     return failed.empty() && !moving.pairs.empty();
 }
 
+std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) {
+    std::vector<KeptRay> rays;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (parts_.has(i)) parts_[i].list_kept_rays(bodies, rays);
+    return rays;
+}
+
 // Each part has the contacts of its own pairs, in order.
 void NarrowPhase::merge(std::vector<Contact>& contacts) {
     contacts.clear();

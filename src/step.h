@@ -24,6 +24,8 @@ public:
     /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but broad_ms.
     void step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, std::vector<Contact>& contacts,
               StepStats& stats);
+    /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
+    std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
 
 private:

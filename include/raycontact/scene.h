@@ -4,6 +4,7 @@
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
 #include <raycontact/device.h>
+#include <raycontact/prediction.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
@@ -93,6 +94,11 @@ public:
     const StepStats& stats() const;
     /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;
+    /// Which entry of stats().work found the contacts of pairs()[i]. Throws InputError for another i.
+    std::uint32_t device_of_pair(std::size_t i) const;
+    /// What the last step of method `predictive` expects to touch next; sorted as contacts; none of other methods. Read
+    /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go.
+    std::vector<Prediction> predictions() const;
 
 private:
     struct State;

@@ -54,6 +54,11 @@ void Part::put_in(std::span<const PlacedBody> bodies, std::span<const std::byte>
     pipeline_.put_in(update(bodies, pairs_), bytes);
 }
 
+void Part::list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRay>& rays) {
+    pipeline_.list_kept_rays(update(bodies, pairs_), rays);
+    for (const auto& added : adopted_) added->pipeline.list_kept_rays(update(bodies, added->pairs), rays);
+}
+
 void Part::count(StepStats& stats) const {
     pipeline_.count(update(bodies_, pairs_), stats);
     for (const auto& added : adopted_) added->pipeline.count(update(bodies_, added->pairs), stats);

@@ -34,6 +34,9 @@ public:
     /// Adds such state. Call it before the begin() that first has these pairs, with the same bodies.
     void put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
 
+    /// Adds the rays kept for the next step; bodies as in the last step.
+    void list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRay>& rays);
+
     /// Adds what the last step did.
     void count(StepStats& stats) const;
     /// The device's work since the last call.

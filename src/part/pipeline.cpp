@@ -66,6 +66,11 @@ void Pipeline::put_in(const Update& last, std::span<const std::byte> bytes) {
     if (!bytes.empty()) coherent_.put_in(last.device, last.shapes, last.bodies, bytes);
 }
 
+void Pipeline::list_kept_rays(const Update& last, std::vector<KeptRay>& rays) {
+    if (finds(last) == Finds::coherent)
+        coherent_.list_kept_rays(last.device, last.shapes, last.bodies, last.pairs, rays);
+}
+
 void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];

@@ -25,6 +25,8 @@ public:
     std::vector<std::byte> take_out(const Update& last, std::span<const SlotPair> pairs);
     void put_in(const Update& last, std::span<const std::byte> bytes);
 
+    void list_kept_rays(const Update& last, std::vector<KeptRay>& rays);
+
     /// Adds what the last step did.
     void count(const Update& last, StepStats& stats) const;
     /// Forgets what the methods kept.

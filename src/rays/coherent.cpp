@@ -258,13 +258,37 @@ void CoherentRays::cast(const Update& update, RayBatch& batch) {
     list_candidates(update, batch);
 }
 
+std::vector<kernels::Candidate> CoherentRays::read_candidates(Device& device) {
+    std::vector<kernels::Candidate> candidates(candidates_kept_);
+    const Piece piece = candidates_.piece(candidates);
+    if (!candidates.empty()) device.queue().read({&piece, 1});
+    return candidates;
+}
+
+void CoherentRays::list_kept_rays(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                                  std::span<const SlotPair> pairs, std::vector<KeptRay>& rays) {
+    const std::vector<kernels::Candidate> candidates = read_candidates(device);
+    for (const SlotPair& pair : pairs) {
+        const std::optional<std::size_t> place = table_.place(pair);
+        for (std::uint32_t d = 0; place && d < 2; ++d) {
+            const Kept& own = table_.hot(*place).kept[d];
+            const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
+            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
+            const auto& blocks = source.shape->data().vertex_blocks;
+            for (const auto& candidate : std::span(candidates).subspan(own.first, own.count)) {
+                const kernels::uint lane = candidate.vertex_lane - first;
+                rays.push_back(
+                    {pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], candidate.triangle});
+            }
+        }
+    }
+}
+
 std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& shapes,
                                               std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
     std::vector<std::byte> bytes;
     if (packed_ != shapes.packed()) return bytes;
-    std::vector<kernels::Candidate> candidates(candidates_kept_);
-    const Piece piece = candidates_.piece(candidates);
-    if (!candidates.empty()) device.queue().read({&piece, 1});
+    const std::vector<kernels::Candidate> candidates = read_candidates(device);
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
         if (!place) continue;

@@ -4,6 +4,7 @@
 #include "pairs/displacement.h"
 #include "pairs/pair_table.h"
 #include "rays/block_search.h"
+#include "rays/kept_ray.h"
 #include "rays/ray_batch.h"
 
 #include <raycontact/scene.h>
@@ -30,6 +31,10 @@ public:
     /// Adds such state, before the step that first has these pairs; bodies as in that step.
     void put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
                 std::span<const std::byte> bytes);
+
+    /// Adds what is kept for some pairs of the last step; bodies as in it.
+    void list_kept_rays(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
+                        std::span<const SlotPair> pairs, std::vector<KeptRay>& rays);
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
@@ -63,6 +68,7 @@ private:
         PairState state;
         Hot hot;
     };
+    std::vector<kernels::Candidate> read_candidates(Device& device);
     Kept& kept(std::uint32_t directed) { return table_.hot(directed / 2).kept[directed % 2]; }
 
     PairTable<PairState, Hot> table_;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/view.h"
+
+#include "cli/common_options.h"
+#include "cli/progress.h"
+
+#include <raycontact/error.h>
+#include <view/motion.h>
+#include <view/view.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+extern char** environ;
+
+namespace {
+
+using namespace raycontact;
+using Json = nlohmann::ordered_json;
+
+struct ViewCommand {
+    std::string file, out;
+    bool no_open = false, json = false;
+    std::optional<std::uint32_t> layer_every, every;
+    Settings settings;
+};
+
+// Layers of about so many steps, and about so many poses, keep the page at a size that a browser opens at once.
+constexpr std::uint32_t layer_steps = 60, most_poses = 800'000;
+
+bool has_screen() {
+    return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
+
+/// Whether the desktop took the file.
+bool open_in_browser(const std::string& file) {
+    std::string program = "xdg-open", argument = std::filesystem::absolute(file).string();
+    char* arguments[] = {program.data(), argument.data(), nullptr};
+    pid_t child = 0;
+    if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) return false;
+    int status = 0;
+    return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+void write_page(const std::string& file, const std::string& html) {
+    std::ofstream out(file, std::ios::binary);
+    if (!out)
+        throw InputError("--out: " + file + " cannot be written; name a file in a folder that exists and is yours");
+    out << html;
+    if (!out.flush()) throw std::runtime_error(file + ": writing failed; is the disk full?");
+}
+
+void view_recording(const CLI::App& command, const ViewCommand& given) {
+    recording::Reader reader(given.file);
+    const std::filesystem::path source(given.file);
+    const std::string out =
+        given.out.empty() ? std::filesystem::path(source).replace_extension(".html").string() : given.out;
+    std::error_code ignored;
+    if (std::filesystem::equivalent(out, source, ignored))
+        throw InputError("--out: " + out + " is the recording itself; name another file");
+
+    view::ViewOptions options;
+    options.settings = recorded_unless_given(command, given.settings, reader.info().settings);
+    options.layer_every = given.layer_every.value_or((reader.steps() + layer_steps - 1) / layer_steps);
+    const auto bodies = static_cast<std::uint32_t>(reader.bodies().size());
+    options.stride = given.every.value_or(view::stride_for(bodies, reader.steps(), most_poses));
+    Progress progress("view", view::work_of(reader, options));
+    options.progress = [&](std::uint32_t done) { progress.show(done); };
+    const view::View page = make_view(reader, options);
+    progress.done();
+    write_page(out, page.html);
+
+    if (given.json) {
+        std::cout << Json{{"file", out},
+                          {"bytes", page.html.size()},
+                          {"motion_bytes", page.motion_bytes},
+                          {"shape_bytes", page.shape_bytes},
+                          {"layer_bytes", page.layer_bytes},
+                          {"bodies", bodies},
+                          {"steps", reader.steps()},
+                          {"every", options.stride},
+                          {"layers_every", options.layer_every},
+                          {"contacts", page.contacts},
+                          {"predictions", page.predictions},
+                          {"method", to_string(options.settings.method)}}
+                         .dump(-1, ' ', false, Json::error_handler_t::replace)
+                  << '\n';
+    } else {
+        constexpr double mega = 1e6;
+        std::cout << fmt::format("{}: {:.1f} MB (poses {:.1f}, shapes {:.1f}, layers {:.1f}); {} bodies, {} steps\n",
+                                 out, double(page.html.size()) / mega, double(page.motion_bytes) / mega,
+                                 double(page.shape_bytes) / mega, double(page.layer_bytes) / mega, bodies,
+                                 reader.steps());
+    }
+    if (given.no_open || given.json) return;
+    if (!has_screen() || !open_in_browser(out))
+        std::cerr << "open " << out << " in a browser (no desktop was found to open it with)\n";
+}
+
+} // namespace
+
+void add_view(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("view", "Make one HTML file with a 3D view of a recording, and open it in the browser");
+    auto given = std::make_shared<ViewCommand>();
+    command->add_option("RECORDING", given->file, "a file made by `raycontact run --record` or by a Recorder")
+        ->required();
+    command->add_option("--out", given->out, "the page to write; default: beside the recording, with the ending .html")
+        ->type_name("FILE");
+    command
+        ->add_option("--layers-every", given->layer_every,
+                     "find contacts, rays, normals and predictions in every N-th step, 0: none; default: about "
+                         + std::to_string(layer_steps) + " steps")
+        ->type_name("N");
+    command
+        ->add_option("--every", given->every,
+                     "keep the poses of every N-th step; default: every step, fewer in long recordings of many bodies")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 1'000'000u));
+    command->add_flag("--no-open", given->no_open, "only write the file");
+    command->add_flag("--json", given->json, "print one JSON object on stdout; opens nothing");
+    add_common_options(*command, given->settings);
+    command->footer("The layers are found anew, with the recording's method unless --method is given; predictions "
+                    "need --method predictive.\nIn the address, #step=120&layers=contacts,rays&clear names a moment.\n"
+                    "Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
+    command->callback([command, given] { view_recording(*command, *given); });
+}

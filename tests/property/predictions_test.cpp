@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Scene tells of predictions and of devices agrees with what it counts, on one device and on two.
+#include "property/crowds.h"
+
+#include <raycontact/error.h>
+#include <raycontact/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <tuple>
+
+namespace raycontact::reference {
+namespace {
+
+template <class T>
+auto key_of(const T& c) {
+    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
+}
+
+double distance(const Vec3& a, const Vec3& b) {
+    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+// Steps a crowd; returns all predictions, step by step.
+std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, Method method, std::uint64_t& counted) {
+    Settings settings;
+    settings.method = method;
+    settings.devices = devices;
+    Scene scene(settings);
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (int i = 0; i < 3; ++i)
+        for (const auto& shape : crowd_shapes(Kind::concave, 1)) shapes.push_back(shape);
+    Random random(7);
+    const std::vector<Pose> homes = touching_poses(shapes, 0.9, random);
+    std::vector<Mover> movers;
+    std::vector<BodyId> bodies;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        movers.emplace_back(Course::drift, homes[i], 1.0, random);
+        bodies.push_back(scene.add(shapes[i], homes[i]));
+    }
+    std::vector<std::vector<Prediction>> found;
+    for (int step = 0; step < 20; ++step) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) scene.set_pose(bodies[i], movers[i].next(random));
+        scene.step();
+        found.push_back(scene.predictions());
+        EXPECT_EQ(found.back().size(), scene.stats().predictions) << "step " << step;
+        counted += scene.stats().predictions;
+        for (const Prediction& p : found.back()) {
+            EXPECT_FALSE(std::ranges::binary_search(scene.contacts(), key_of(p), {}, key_of<Contact>));
+            const BodyId source = scene.body_in(p.vertex_body == VertexBody::a ? p.body_a : p.body_b);
+            EXPECT_LT(distance(p.point, scene.pose(source).translation), 1e-9 + scene.shape(source).radius());
+        }
+        for (std::size_t i = 0; i < scene.pairs().size(); ++i)
+            EXPECT_LT(scene.device_of_pair(i), scene.stats().work.size());
+        EXPECT_THROW(static_cast<void>(scene.device_of_pair(scene.pairs().size())), InputError);
+    }
+    return found;
+}
+
+bool same(const Prediction& p, const Prediction& q) {
+    return key_of(p) == key_of(q) && p.triangle == q.triangle && distance(p.point, q.point) == 0
+           && distance(p.ahead, q.ahead) == 0;
+}
+
+TEST(Predictions, AreThoseThatAreCounted) {
+    std::uint64_t counted = 0;
+    predictions_of("cpu", Method::predictive, counted);
+    EXPECT_GT(counted, 50u);
+}
+
+TEST(Predictions, AreTheSameOnTwoDevices) {
+    std::uint64_t counted = 0;
+    const auto one = predictions_of("cpu", Method::predictive, counted);
+    const auto two = predictions_of("cpu/0,cpu/1", Method::predictive, counted);
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_TRUE(std::ranges::equal(one[i], two[i], same)) << "step " << i;
+}
+
+TEST(Predictions, OtherMethodsHaveNone) {
+    for (const Method method : {Method::standard, Method::iterative, Method::certified}) {
+        std::uint64_t counted = 0;
+        for (const auto& step : predictions_of("cpu", method, counted)) EXPECT_TRUE(step.empty()) << to_string(method);
+    }
+}
+
+} // namespace
+} // namespace raycontact::reference

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.h"
+#include "reference/meshes.h"
+
+#include <raycontact/error.h>
+#include <recording/writer.h>
+#include <view/page.h>
+#include <view/view.h>
+
+#include <gtest/gtest.h>
+
+namespace raycontact::view {
+namespace {
+
+// Two boxes that overlap for ten steps.
+void record(const std::string& file, const std::string& scene, std::uint32_t steps) {
+    recording::Info info;
+    info.scene = scene;
+    info.mesh_source = "boxes </script><!-- of a \"test\"";
+    recording::Writer writer(file, info);
+    writer.add_shape(*Shape::make(reference::box_mesh({0.5, 0.5, 0.5})));
+    const BodyId a = writer.add_body(0), b = writer.add_body(0);
+    for (std::uint32_t i = 0; i < steps; ++i) {
+        std::vector<Pose> poses(2);
+        poses[1].translation = {0.2, 0.1, 0.99 - 0.001 * i};
+        writer.step(poses, std::vector<Pair>{{a, b}});
+    }
+    writer.finish("0123456789abcdef");
+}
+
+nlohmann::json data_of(const std::string& html) {
+    const std::string start = "id=\"recording\">";
+    const std::size_t from = html.find(start) + start.size();
+    return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
+}
+
+TEST(Page, NeedsNothingElseAndEscapesNames) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "a.glb", name = "</script><script>alert(1)</script>";
+    record(file, name, 10);
+    recording::Reader reader(file);
+    const std::string html = make_view(reader, {}).html;
+    for (const char* outside : {"http://", "https://", "src=", "@import", "alert(1)</script>"})
+        EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+    EXPECT_NE(html.find("<title>&lt;/script>"), std::string::npos);
+    EXPECT_EQ(data_of(html)["scene"], name);
+    EXPECT_EQ(data_of(html)["meshSource"], "boxes </script><!-- of a \"test\"");
+}
+
+TEST(Page, HasEveryLayerStepAndCount) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "a.glb";
+    record(file, "boxes", 10);
+    recording::Reader reader(file);
+    ViewOptions options;
+    options.layer_every = 4;
+    std::uint32_t told = 0;
+    options.progress = [&](std::uint32_t done) { told = done; };
+    const View view = make_view(reader, options);
+    EXPECT_EQ(told, work_of(reader, options));
+    const nlohmann::json data = data_of(view.html);
+    std::uint64_t contacts = 0;
+    std::vector<std::uint32_t> steps;
+    for (const auto& layer : data["layers"]["steps"]) {
+        steps.push_back(layer["step"]);
+        contacts += layer["contacts"].get<std::uint64_t>();
+        EXPECT_EQ(layer["contacts"], data["layers"]["contacts"][steps.back()]);
+    }
+    EXPECT_EQ(steps, (std::vector<std::uint32_t>{0, 4, 8}));
+    EXPECT_EQ(contacts, view.contacts);
+    EXPECT_GT(contacts, 0u);
+    EXPECT_EQ(data["layers"]["pairs"].size(), 10u);
+    EXPECT_EQ(data["bodies"].size(), 2u);
+}
+
+TEST(Page, WithoutLayersOrSteps) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "a.glb", empty = folder.path() / "b.glb";
+    record(file, "boxes", 3);
+    record(empty, "nothing", 0);
+    recording::Reader reader(file), empty_reader(empty);
+    ViewOptions options;
+    options.layer_every = 0;
+    EXPECT_TRUE(data_of(make_view(reader, options).html)["layers"].is_null());
+    EXPECT_THROW(static_cast<void>(make_view(empty_reader, options)), InputError);
+}
+
+} // namespace
+} // namespace raycontact::view

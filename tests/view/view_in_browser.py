@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""view_in_browser.py CHROMIUM RAYCONTACT [RECORDING]: opens the view of a recording as a person would.
+
+Prints frames a second while it plays at 640 x 400 pixels, and fails below 4 (10 is what a quiet machine must reach)."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser  # noqa: E402
+
+STATE = "document.documentElement?.dataset.state"
+
+
+def data(browser, name):
+    return float(browser.value(f"document.documentElement.dataset.{name}"))
+
+
+def click(browser, name):
+    browser.value(f"document.getElementById('{name}').click()")
+
+
+def open_page(browser, page, fragment=""):
+    browser.open(page, fragment)
+    browser.wait_for(STATE)
+    assert browser.value(STATE) == "ready", browser.value("document.getElementById('problem').textContent")
+
+
+def colours(browser):
+    """How many different colours the picture has, of a grid of its pixels."""
+    return browser.value("""(() => {
+        const stage = document.getElementById('stage'), copy = document.createElement('canvas');
+        copy.width = 64; copy.height = 40;
+        return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {
+            const flat = copy.getContext('2d');
+            flat.drawImage(stage, 0, 0, 64, 40);
+            const bytes = flat.getImageData(0, 0, 64, 40).data, seen = new Set();
+            for (let i = 0; i < bytes.length; i += 4) seen.add(bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2]);
+            done(seen.size);
+        })));
+    })()""")
+
+
+def main(chromium, raycontact, recording=None):
+    with tempfile.TemporaryDirectory() as folder:
+        if recording is None:
+            recording = os.path.join(folder, "run.glb")
+            subprocess.run([raycontact, "run", "avalanche", "--bodies", "48", "--steps", "240", "--record", recording,
+                            "--json"], check=True, capture_output=True)
+        page = os.path.join(folder, "view.html")
+        subprocess.run([raycontact, "view", recording, "--out", page, "--method", "predictive", "--json"], check=True,
+                       capture_output=True)
+        browser = Browser(chromium)
+        try:
+            check(browser, page)
+        finally:
+            browser.close()
+
+
+def check(browser, page):
+    for width, height in ((1280, 800), (400, 700)):
+        browser.size(width, height)
+        open_page(browser, page)
+        wide = browser.value("document.documentElement.scrollWidth")
+        assert wide <= width, f"at {width} pixels the page scrolls sideways: {wide}"
+        low = browser.value("document.getElementById('controls').getBoundingClientRect().bottom")
+        assert low <= height + 1, f"at {width} x {height} the controls end at {low}"
+
+    # Layers, by the address and by hand.
+    browser.size(1280, 800)
+    open_page(browser, page, "#step=100&layers=contacts,rays&clear")
+    browser.wait_for("+document.documentElement.dataset.step === 100")
+    browser.wait_for("+document.documentElement.dataset.marks > 0")
+    marks = data(browser, "marks")
+    click(browser, "layer-predictions")
+    browser.wait_for(f"+document.documentElement.dataset.marks > {marks}")
+    said = browser.value("document.getElementById('said').textContent")
+    assert "step 100 of" in said and "contacts" in said, said
+    assert not browser.value("document.getElementById('legend').hidden")
+
+    # Step by step, and a drag of the pointer.
+    click(browser, "forward")
+    browser.wait_for("+document.documentElement.dataset.step === 101")
+    click(browser, "back")
+    browser.wait_for("+document.documentElement.dataset.step === 100")
+    frames = data(browser, "frames")
+    for kind, x in (("mousePressed", 300), ("mouseMoved", 420), ("mouseReleased", 420)):
+        browser.call("Input.dispatchMouseEvent", type=kind, x=x, y=250, button="left", buttons=1, clickCount=1)
+    browser.wait_for(f"+document.documentElement.dataset.frames > {frames}")
+
+    # Real time at 640 x 400: the panel below takes the rest of the height.
+    browser.size(640, 400)
+    open_page(browser, page)
+    panel = browser.value("document.getElementById('controls').offsetHeight")
+    browser.size(640, 400 + panel)
+    time.sleep(0.5)
+    canvas = browser.value("document.getElementById('stage').width + 'x' + document.getElementById('stage').height")
+    assert canvas in ("640x400", "640x401"), canvas  # the panel's height is no whole number
+    click(browser, "play")
+    time.sleep(1.5)  # the level of detail finds its place
+    start, frames, step = time.monotonic(), data(browser, "frames"), data(browser, "step")
+    time.sleep(2)
+    seconds = time.monotonic() - start
+    rate = (data(browser, "frames") - frames) / seconds
+    moved = (data(browser, "step") - step) / seconds
+    print(f"{rate:.1f} frames a second at {canvas}, {data(browser, 'triangles'):.0f} triangles, "
+          f"{moved:.0f} steps a second")
+    assert rate > 4, rate
+    assert 45 < moved < 75, f"{moved} steps a second are not real time"
+    assert colours(browser) > 8, "the picture is empty"
+
+    assert not browser.problems, browser.problems
+    assert not browser.outside_requests(), browser.outside_requests()
+
+
+main(*sys.argv[1:])

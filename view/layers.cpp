@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <view/layers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raycontact::view {
+
+namespace {
+
+using Triple = std::array<double, 3>;
+
+Triple triple(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+std::uint16_t part_of(double value, double low, double high) {
+    const double part = high > low ? (value - low) / (high - low) : 0;
+    return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
+}
+
+std::uint16_t octahedral(const Triple& v) {
+    const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
+    if (!(sum > 0)) return 0x8080;
+    double x = v[0] / sum, y = v[1] / sum;
+    if (v[2] < 0) {
+        const double folded = (1 - std::fabs(y)) * (x < 0 ? -1 : 1);
+        y = (1 - std::fabs(x)) * (y < 0 ? -1 : 1);
+        x = folded;
+    }
+    const auto byte = [](double a) { return static_cast<unsigned>(std::lround(127.5 + 127.5 * a)) & 255U; };
+    return static_cast<std::uint16_t>(byte(x) | byte(y) << 8);
+}
+
+std::uint32_t device_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+    const auto slots = [](const Pair& pair) { return std::pair(slot_of(pair.first), slot_of(pair.second)); };
+    const auto pairs = scene.pairs();
+    const auto at = std::ranges::lower_bound(pairs, std::pair(a, b), {}, slots);
+    return scene.device_of_pair(static_cast<std::size_t>(at - pairs.begin()));
+}
+
+} // namespace
+
+std::uint32_t LayerReader::vertex_of(const Shape& shape, std::uint32_t file_vertex) {
+    auto& own = vertices_[&shape];
+    if (own.empty())
+        for (std::uint32_t v = 0; v < shape.vertex_index().size(); ++v) own.emplace(shape.vertex_index()[v], v);
+    return own.at(file_vertex);
+}
+
+LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
+    LayerStep layer{step, {}, {}};
+    const auto start = [&](const auto& found) {
+        const BodyId body = scene.body_in(found.vertex_body == VertexBody::a ? found.body_a : found.body_b);
+        Segment segment;
+        segment.device = device_of(scene, found.body_a, found.body_b);
+        segment.point = triple(found.point);
+        const Shape& shape = scene.shape(body);
+        const Vec3& outward = shape.vertex_normals()[vertex_of(shape, found.vertex)];
+        segment.direction = triple(transform_point({scene.pose(body).rotation, {}}, outward));
+        return segment;
+    };
+    for (const Contact& contact : scene.contacts()) {
+        Segment segment = start(contact);
+        for (double& part : segment.direction) part = -part; // rays go inward
+        segment.length = double(contact.ray_length);
+        for (std::size_t i = 0; i < 3; ++i) segment.normal[i] = double(contact.normal[i]);
+        segment.depth = double(contact.depth);
+        layer.contacts.push_back(segment);
+    }
+    for (const Prediction& prediction : scene.predictions()) {
+        Segment segment = start(prediction);
+        const Triple ahead = triple(prediction.ahead);
+        for (std::size_t i = 0; i < 3; ++i) segment.length += (ahead[i] - segment.point[i]) * segment.direction[i];
+        segment.length = std::max(segment.length, 0.0); // a little behind, where a walk passed an edge
+        layer.predictions.push_back(segment);
+    }
+    return layer;
+}
+
+LayerScale scale_of(const std::vector<LayerStep>& steps) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    LayerScale scale;
+    scale.low.fill(far);
+    scale.high.fill(-far);
+    for (const LayerStep& step : steps)
+        for (const auto* segments : {&step.contacts, &step.predictions})
+            for (const Segment& segment : *segments) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    scale.low[axis] = std::min(scale.low[axis], segment.point[axis]);
+                    scale.high[axis] = std::max(scale.high[axis], segment.point[axis]);
+                }
+                scale.length = std::max(scale.length, segment.length);
+                scale.depth = std::max(scale.depth, segment.depth);
+            }
+    if (!(scale.low[0] <= scale.high[0])) scale.low = scale.high = {};
+    return scale;
+}
+
+Bytes columns(const std::vector<Segment>& segments, const LayerScale& scale, bool contacts) {
+    Bytes bytes;
+    const auto column = [&](auto number_of) {
+        std::vector<std::uint16_t> numbers;
+        for (const Segment& segment : segments) numbers.push_back(number_of(segment));
+        const Bytes split = split_bytes(numbers);
+        bytes.insert(bytes.end(), split.begin(), split.end());
+    };
+    column([](const Segment& s) { return static_cast<std::uint16_t>(s.device); });
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        column([&](const Segment& s) { return part_of(s.point[axis], scale.low[axis], scale.high[axis]); });
+    column([](const Segment& s) { return octahedral(s.direction); });
+    column([&](const Segment& s) { return part_of(s.length, 0, scale.length); });
+    if (!contacts) return bytes;
+    column([](const Segment& s) { return octahedral(s.normal); });
+    column([&](const Segment& s) { return part_of(s.depth, 0, scale.depth); });
+    return bytes;
+}
+
+} // namespace raycontact::view

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <view/blob.h>
+
+#include <raycontact/scene.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace raycontact::view {
+
+/// What is drawn of one contact or prediction; world frame, metres.
+struct Segment {
+    std::uint32_t device = 0;          ///< entry of StepStats::work
+    std::array<double, 3> point{};     ///< the vertex
+    std::array<double, 3> direction{}; ///< unit: of the ray; of a prediction: ahead, against the ray
+    double length = 0;                 ///< from the vertex to the hit, or to the face ahead
+    std::array<double, 3> normal{};    ///< unit, from body A to body B; contacts only
+    double depth = 0;                  ///< contacts only
+};
+
+/// The contacts and predictions of one step.
+struct LayerStep {
+    std::uint32_t step = 0;
+    std::vector<Segment> contacts, predictions;
+};
+
+/// Reads LayerSteps from a scene.
+class LayerReader {
+public:
+    /// Of the step that the scene has just done.
+    LayerStep read(const Scene& scene, std::uint32_t step);
+
+private:
+    std::uint32_t vertex_of(const Shape& shape, std::uint32_t file_vertex);
+
+    std::map<const Shape*, std::map<std::uint32_t, std::uint32_t>> vertices_; ///< by index of the file
+};
+
+/// Over what the 16 bits of a number are spread.
+struct LayerScale {
+    std::array<double, 3> low{}, high{}; ///< of points, metres
+    double length = 0, depth = 0;        ///< the largest, metres
+};
+LayerScale scale_of(const std::vector<LayerStep>& steps);
+
+/// Columns of 16 bits for the page, one after another, each split into lower and upper bytes: device, x, y, z,
+/// direction, length; of contacts also normal and depth. Directions are two bytes on an octahedron (Meyer et al. 2010).
+Bytes columns(const std::vector<Segment>& segments, const LayerScale& scale, bool contacts);
+
+} // namespace raycontact::view

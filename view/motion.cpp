@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <view/motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raycontact::view {
+
+namespace {
+
+// Unit, x y z w, of a rotation row by row (Shepperd 1978: the largest part first, so that nothing is divided by a small
+// number).
+std::array<double, 4> quaternion_of(const std::array<double, 9>& r) {
+    const double trace = r[0] + r[4] + r[8];
+    const double squares[4] = {r[0], r[4], r[8], trace};
+    const auto largest = static_cast<std::size_t>(std::max_element(squares, squares + 4) - squares);
+    std::array<double, 4> q{};
+    if (largest == 3) {
+        q = {r[7] - r[5], r[2] - r[6], r[3] - r[1], 1 + trace};
+    } else {
+        const std::size_t i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
+        q[i] = 1 + r[4 * i] - r[4 * j] - r[4 * k];
+        q[j] = r[3 * i + j] + r[3 * j + i];
+        q[k] = r[3 * i + k] + r[3 * k + i];
+        q[3] = r[3 * k + j] - r[3 * j + k];
+    }
+    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (double& part : q) part /= length;
+    return q;
+}
+
+std::uint16_t quantised(double part) {
+    return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
+}
+
+struct Kept {
+    std::array<double, 3> place{};
+    std::array<double, 4> turn{0, 0, 0, 1};
+};
+
+} // namespace
+
+std::uint32_t stride_for(std::uint32_t bodies, std::uint32_t steps, std::uint64_t poses) {
+    std::uint64_t stride = 1;
+    while (bodies * ((steps + stride - 1) / stride) > poses && stride < steps) ++stride;
+    return static_cast<std::uint32_t>(stride);
+}
+
+Motion read_motion(recording::Reader& reader, std::uint32_t stride,
+                   const std::function<void(std::uint32_t)>& progress) {
+    const std::vector<recording::Body>& bodies = reader.bodies();
+    Motion motion;
+    motion.stride = stride;
+    motion.bodies = static_cast<std::uint32_t>(bodies.size());
+    motion.kept = (reader.steps() + stride - 1) / stride;
+    std::vector<Kept> kept(bodies.size() * motion.kept);
+    std::vector<Pose> poses;
+    std::vector<Pair> pairs;
+    constexpr double far = std::numeric_limits<double>::infinity();
+    motion.low.fill(far);
+    motion.high.fill(-far);
+    for (std::uint32_t i = 0; i < reader.steps(); ++i) {
+        // Every step: a body may come and go between two that are kept, and reading in order is cheap.
+        reader.read_step(i, poses, pairs);
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            if (!bodies[b].alive(i) || (i % stride != 0 && bodies[b].first_step != i)) continue;
+            const Pose& pose = poses[slot_of(bodies[b].id)];
+            const std::uint32_t at = i / stride;
+            Kept now{{pose.translation.x, pose.translation.y, pose.translation.z}, quaternion_of(pose.rotation)};
+            Kept* const own = &kept[b * motion.kept];
+            if (bodies[b].first_step == i) std::fill(own, own + at, now);
+            const auto& last = own[at == 0 ? 0 : at - 1].turn; // both signs are the same turn: take the nearer one
+            const double same =
+                now.turn[0] * last[0] + now.turn[1] * last[1] + now.turn[2] * last[2] + now.turn[3] * last[3];
+            if (same < 0)
+                for (double& part : now.turn) part = -part;
+            own[at] = now;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                motion.low[axis] = std::min(motion.low[axis], now.place[axis]);
+                motion.high[axis] = std::max(motion.high[axis], now.place[axis]);
+            }
+        }
+        if (progress) progress(i + 1);
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const std::uint32_t end = std::min(bodies[b].end_step, reader.steps());
+        if (end <= bodies[b].first_step) continue; // it came and went between two steps
+        const auto last = kept.begin() + static_cast<std::ptrdiff_t>(b * motion.kept + (end - 1) / stride);
+        std::fill(last, kept.begin() + static_cast<std::ptrdiff_t>((b + 1) * motion.kept), *last);
+    }
+    if (!(motion.low[0] <= motion.high[0])) motion.low = motion.high = {};
+    motion.numbers.resize(kept.size() * numbers_a_pose);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (std::size_t i = 0; i < motion.kept; ++i) {
+            const Kept& from = kept[b * motion.kept + i];
+            std::uint16_t* const to = &motion.numbers[b * numbers_a_pose * motion.kept + i];
+            for (std::size_t n = 0; n < numbers_a_pose; ++n) {
+                const double extent = n < 3 ? motion.high[n] - motion.low[n] : 2;
+                const double above = n < 3 ? from.place[n] - motion.low[n] : from.turn[n - 3] + 1;
+                to[n * motion.kept] = quantised(extent > 0 ? above / extent : 0);
+            }
+        }
+    return motion;
+}
+
+std::vector<std::uint16_t> differences(const Motion& motion) {
+    std::vector<std::uint16_t> result = motion.numbers;
+    for (std::size_t i = 1; i < result.size(); ++i)
+        if (i % motion.kept != 0) result[i] = static_cast<std::uint16_t>(motion.numbers[i] - motion.numbers[i - 1]);
+    return result;
+}
+
+} // namespace raycontact::view
