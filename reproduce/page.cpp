@@ -16,14 +16,14 @@ body{margin:0;background:#fbfaf8;color:#23262b;font:16px/1.55 system-ui,"DejaVu 
 main{max-width:1180px;margin:0 auto;padding:28px 16px 48px}
 h1{font-size:28px;line-height:1.2;margin:0 0 10px}h2{font-size:20px;margin:44px 0 8px}h3{font-size:15px;margin:18px 0 6px}
 .short{padding:10px 14px;background:#fff3d6;border:1px solid #e0b64c;border-radius:8px}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));gap:14px;margin:14px 0}
+.plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,440px),1fr));gap:14px;margin:14px 0}
 .plot{margin:0;padding:12px 14px 8px;background:#fff;border:1px solid #e4e1dc;border-radius:10px}
 .plot figcaption{font-size:14px;display:flex;gap:4px 10px;flex-wrap:wrap;align-items:baseline}
 .plot p,.soft,.unit,.key{color:#6a7079;font-size:13px}.plot p{margin:2px 0}
 .key{white-space:nowrap}.key i{display:inline-block;width:14px;height:3px;margin-right:5px;vertical-align:middle}
 svg{display:block;width:100%;height:auto}.tick,.label{fill:#6a7079;font-size:11.5px}
 .grid{stroke:#e4e1dc}.axis,.notch{stroke:#6a7079}.line{fill:none;stroke-width:1.6;stroke-linejoin:round}
-.wide{overflow-x:auto}table{border-collapse:collapse;background:#fff;border:1px solid #e4e1dc;font-size:14px;width:100%}
+.wide{overflow-x:auto}table{border-collapse:collapse;background:#fff;border:1px solid #e4e1dc;font-size:14px;width:100%;min-width:min(900px,210vw)}
 th,td{text-align:left;vertical-align:top;padding:5px 10px;border-bottom:1px solid #e4e1dc}
 .passed,.reached{color:#00704f;font-weight:bold}.missed{color:#b03a00;font-weight:bold}.open{color:#6a7079;font-weight:bold}
 .view{width:100%;height:min(80vh,720px);border:1px solid #e4e1dc;border-radius:10px}
