@@ -28,12 +28,19 @@ struct Table {
     std::vector<std::vector<std::string>> rows; ///< as long as head
 };
 
+/// A page with a 3D view, zlib-compressed, in base64 (view::blob).
+struct PackedView {
+    std::string name; ///< a word, unique on the page
+    std::string html;
+};
+
 /// What a reader gets to see of an experiment.
 struct Outcome {
     std::vector<Number> numbers;
     std::vector<report::Plot> plots;
     std::vector<Table> tables;
-    std::vector<std::string> pictures;   ///< JPEG, base64
+    std::vector<std::string> pictures; ///< JPEG, base64
+    std::vector<PackedView> views;
     std::vector<std::string> paragraphs; ///< what was done, what differs and why
 };
 

@@ -22,7 +22,7 @@ struct Page {
     std::vector<std::string> not_run; ///< names of experiments
 };
 
-/// One HTML document with everything inside: no link to another host, no script.
+/// One HTML document with everything inside: no link to another host. Without scripts it lacks the 3D views alone.
 std::string make_page(const Page& page);
 
 } // namespace raycontact::reproduce

@@ -24,6 +24,7 @@ Plan quick_plan() {
     plan.avalanche = {343, 300};
     plan.rain = {80, 480};
     plan.seeds = 1;
+    plan.thresholds = {0.01};
     plan.orientations = 100;
     plan.depths = 10;
     plan.picture_width = 1280;
@@ -36,18 +37,19 @@ Plan tiny_plan() {
     plan.avalanche = {8, 90};
     plan.rain = {6, 90};
     plan.seeds = 2;
+    plan.thresholds = {0.01};
     plan.orientations = 6;
     plan.depths = 3;
     plan.picture_width = 96;
     return plan;
 }
 
-Settings as_in_the_paper(Method method) {
+Settings as_in_the_paper(Method method, double displacement_threshold) {
     Settings settings;
     settings.method = method;
-    settings.displacement_threshold = constants::displacement_threshold;
+    settings.displacement_threshold = displacement_threshold;
     settings.confidence = constants::confidence;
-    settings.distance_extension = constants::distance_extension;
+    settings.distance_extension = constants::confidence * displacement_threshold;
     settings.max_iterations = constants::max_iterations;
     settings.cast_lost_walks = false;
     return settings;

@@ -19,6 +19,16 @@ namespace {
 constexpr std::uint64_t small_animation = std::uint64_t{4} << 20; // recordings are kept to be followed, not looked at
 constexpr int jpeg_quality = 88;
 
+/// Bullet as it comes: its solver's defaults, the friction of two bodies of 0.5 each, at most four points a pair, none
+/// kept longer than its contact.
+scenes::Response paper_response() {
+    scenes::Response response;
+    response.manifolds = {btScalar(-1), btScalar(1e9), 0};
+    response.friction = 0.25;
+    response.bullet_defaults = true;
+    return response;
+}
+
 template <class SceneOptions>
 scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneOptions&),
                                    const SimulationOptions& options) {
@@ -27,7 +37,7 @@ scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneO
     how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
-    if (options.one_manifold) how.response.manifolds = {btScalar(-1), btScalar(1e9), 0};
+    if (options.paper_response) how.response = paper_response();
     return make(how);
 }
 

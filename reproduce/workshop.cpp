@@ -50,7 +50,7 @@ Json Workshop::key(const std::string& what, const SimulationOptions& o) const {
                           {"seed", o.seed},
                           {"bodies", o.size.bodies},
                           {"steps", o.size.steps},
-                          {"one_manifold", o.one_manifold},
+                          {"paper_response", o.paper_response},
                           {"settings", to_json(o.settings)}});
 }
 

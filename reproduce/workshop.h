@@ -21,9 +21,9 @@ struct SimulationOptions {
     std::uint64_t seed = 1;
     SceneSize size;
     Settings settings;
-    /// Four points a pair of bodies, none kept longer than its contact: what contact reduction was in 2013. Else the
-    /// adapter's own manifolds, one for each patch of contacts.
-    bool one_manifold = false;
+    /// Bullet as it comes: its solver's defaults, and four points a pair of bodies, none kept longer than its contact:
+    /// what contact reduction was in 2013. Else the scene's own response.
+    bool paper_response = false;
 };
 
 /// A scene that follows a recording.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/experiments.h>
+#include <reproduce/packed_view.h>
 #include <reproduce/series.h>
 
 #include <recording/replay.h>
@@ -117,8 +118,8 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
         "poses. Constants fixed: displacementThreshold {} m, confidence {}, distanceExtension {} m, maxIt {}, "
         "the same for both methods, and no full cast for a walk that ends nowhere.",
         scene, shop.plan().size(scene).bodies, shop.plan().size(scene).steps, base["mesh_source"].get<std::string>(),
-        constants::displacement_threshold, constants::confidence, constants::distance_extension,
-        constants::max_iterations)};
+        constants::displacement_threshold, constants::confidence,
+        constants::confidence * constants::displacement_threshold, constants::max_iterations)};
     return out;
 }
 
@@ -137,8 +138,13 @@ Experiment wrong_rays(const Workshop& shop, const std::string& scene) {
     const double cost = 2 * Workshop::cost(shop.base(scene));
     e.parts = {shop.base_part(scene),
                {"wrong-rays-" + scene, shop.key("wrong rays", settings), cost,
-                [&shop, scene, cost](const Tick& tick) { return compare(shop, scene, cost, tick); }}};
-    e.show = [&shop, scene](const std::vector<Json>& found) { return show(shop, scene, found[0], found[1]); };
+                [&shop, scene, cost](const Tick& tick) { return compare(shop, scene, cost, tick); }},
+               view_part(shop, scene)};
+    e.show = [&shop, scene](const std::vector<Json>& found) {
+        Outcome out = show(shop, scene, found[0], found[1]);
+        out.views.push_back({"view-" + scene, found[2].get<std::string>()});
+        return out;
+    };
     return e;
 }
 
