@@ -7,13 +7,13 @@
 #include <string>
 
 /// Records a simulation as it runs; does nothing where no file was asked for.
-class Recorder {
+class RunRecorder {
 public:
     /// Throws InputError when the file cannot be made. An empty name: nothing is recorded.
-    Recorder(const std::string& file, const raycontact::scenes::Simulation& scene);
-    ~Recorder();
-    Recorder(const Recorder&) = delete;
-    Recorder& operator=(const Recorder&) = delete;
+    RunRecorder(const std::string& file, const raycontact::scenes::Simulation& scene);
+    ~RunRecorder();
+    RunRecorder(const RunRecorder&) = delete;
+    RunRecorder& operator=(const RunRecorder&) = delete;
 
     void step();   ///< after each step of the scene
     void finish(); ///< says on standard error what was written and what it cost

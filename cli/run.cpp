@@ -124,7 +124,7 @@ void run(const RunOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     Simulation scene(describe_scene(options.scene, options.settings));
     const SceneDescription& description = scene.description();
-    Recorder recorder(options.record, scene);
+    RunRecorder recorder(options.record, scene);
     Progress progress(description.name, description.steps);
     for (std::uint32_t i = 0; i < description.steps; ++i) {
         scene.step();

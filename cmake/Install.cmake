@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs and exports raycontact::raycontact, raycontact::bullet where it is built, and the program.
+# Installs and exports raycontact::raycontact, raycontact::recording and raycontact::bullet where they are built, and the
+# program.
 option(RAYCONTACT_INSTALL "Make install rules" ${PROJECT_IS_TOP_LEVEL})
 if(NOT RAYCONTACT_INSTALL)
     return()
@@ -10,6 +11,11 @@ set(raycontact_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/raycontact)
 install(TARGETS raycontact EXPORT raycontactTargets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/raycontact DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT raycontactTargets NAMESPACE raycontact:: DESTINATION ${raycontact_config_folder})
+set(RAYCONTACT_HAS_RECORDING OFF)
+if(TARGET raycontact_recording)
+    set(RAYCONTACT_HAS_RECORDING ON)
+    install(TARGETS raycontact_recording EXPORT raycontactTargets)
+endif()
 # In an export set of its own: the core is of use where Bullet is not installed.
 set(RAYCONTACT_HAS_BULLET OFF)
 if(TARGET raycontact_bullet)

@@ -200,6 +200,13 @@ std::uint32_t Scene::body_count() const {
     return state_->slots.count();
 }
 
+std::vector<BodyId> Scene::bodies() const {
+    std::vector<BodyId> ids;
+    for (BodySlot slot = 0; slot < state_->slots.end(); ++slot)
+        if (state_->slots.is_taken(slot)) ids.push_back(state_->slots.id_in(slot));
+    return ids;
+}
+
 std::span<const Contact> Scene::step() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();

@@ -7,9 +7,9 @@
 
 namespace raycontact {
 
-/// Where method `predictive` expects a contact: a vertex that is not in contact, and the triangle of the other body that
-/// it would enter through if it moved on along its outward normal (Lehericey et al. 2013, section 3.1). The next step
-/// follows its ray from that triangle.
+/// Where method `predictive` expects a contact: a vertex that is not in contact, and the triangle of the other body
+/// that it would enter through if it moved on along its outward normal (Lehericey et al. 2013, section 3.1). The next
+/// step follows its ray from that triangle.
 struct Prediction {
     std::uint32_t body_a = 0; ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;

@@ -76,6 +76,8 @@ public:
     /// The body that a contact names by its slot. Throws InputError if the slot has none, as after remove().
     BodyId body_in(std::uint32_t slot) const;
     std::uint32_t body_count() const;
+    /// Of all bodies, by slot.
+    std::vector<BodyId> bodies() const;
     /// Changes method, caster, direction or thresholds between two steps; forgets what the last method kept. Throws
     /// InputError for settings that make no sense, and for another device or number of threads.
     void set_settings(const Settings& settings);

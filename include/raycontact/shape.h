@@ -13,7 +13,7 @@ struct ShapeData;
 
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to read from any thread.
-class Shape {
+class Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. Deterministic: equal input gives equal bits. Throws InputError for a mesh without area.
     static std::shared_ptr<const Shape> make(const PreparedMesh& mesh);

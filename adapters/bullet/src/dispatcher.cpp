@@ -5,6 +5,7 @@
 #include <plane.h>
 #include <query.h>
 #include <raycontact/error.h>
+#include <world_recorder.h>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -89,6 +90,7 @@ struct CollisionDispatcher::State {
     std::vector<std::pair<Slots, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs;
     std::vector<PlaneContact> below;
+    std::unique_ptr<WorldRecorder> recorder; ///< null: nothing is recorded
 };
 
 CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
@@ -136,10 +138,12 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         s.take(*s.ours[i], info);
     }
 
+    s.objects.refresh_pinned(s.dispatch);
     s.sort_batch();
     s.stats.pairs = s.work.size();
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
+    if (s.recorder) s.recorder->step();
     s.hand_out();
     for (std::size_t i = 0; i < s.work.size(); ++i) {
         if (i + 8 < s.work.size()) __builtin_prefetch(s.work[i + 8]);
@@ -313,6 +317,15 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
     throw InputError("CollisionDispatcher::add_body: the object has no triangle mesh; only meshes need to be added");
 }
 
+void CollisionDispatcher::record(const std::filesystem::path& file, const RecorderOptions& options) {
+    state_->recorder.reset(); // it may be of the same file
+    state_->recorder = std::make_unique<WorldRecorder>(file, state_->scene, options);
+}
+void CollisionDispatcher::finish_recording() {
+    if (!state_->recorder) return;
+    state_->recorder->finish();
+    state_->recorder.reset();
+}
 void CollisionDispatcher::remove_body(const btCollisionObject& object) {
     state_->objects.pin(object, false);
 }

@@ -110,9 +110,18 @@ void Objects::release(const btCollisionObject* object) {
     }
 }
 
+void Objects::refresh_pinned(std::uint64_t dispatch) {
+    for (const auto& [object, record] : pinned_) refresh(*object, *record, dispatch);
+}
 void Objects::pin(const btCollisionObject& object, bool pinned) {
     const auto i = records_.find(&object);
     if (i == records_.end()) return;
+    if (i->second.pinned != pinned) {
+        if (pinned)
+            pinned_.emplace_back(&object, &i->second);
+        else
+            std::erase_if(pinned_, [&](const auto& one) { return one.first == &object; });
+    }
     i->second.pinned = pinned;
     if (!pinned && i->second.uses == 0) {
         drop_bodies(i->second);

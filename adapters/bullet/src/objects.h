@@ -55,6 +55,8 @@ public:
     }
     void release(const btCollisionObject* object);
     void pin(const btCollisionObject& object, bool pinned);
+    /// Also those that no pair needs now: the scene has their poses, and so has a recording.
+    void refresh_pinned(std::uint64_t dispatch);
 
     ShapeCache& shapes() { return shapes_; }
 
@@ -68,6 +70,7 @@ private:
     Scene& scene_;
     ShapeCache shapes_;
     std::unordered_map<const btCollisionObject*, Object> records_;
+    std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
     std::uint64_t versions_ = 0;
 };
 

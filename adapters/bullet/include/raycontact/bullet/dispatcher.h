@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/recorder.h>
 #include <raycontact/scene.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 
 namespace raycontact::bullet {
@@ -71,6 +73,13 @@ public:
     /// The batch: contacts(), pairs() and stats() of the last dispatch.
     const Scene& scene() const;
     const DispatcherStats& stats() const;
+
+    /// Records the meshes from the next dispatch on, for `raycontact view` and `replay`; see Recorder. A mesh is in the
+    /// recording while it is in scene(): add_body() keeps it there even when nothing is near it. options.dt: of a
+    /// dispatch. Throws InputError when the file cannot be made, or RayContact was built without recordings.
+    void record(const std::filesystem::path& file, const RecorderOptions& options = {});
+    /// Ends the recording with its hash. Does nothing where there is none.
+    void finish_recording();
 
     /// For points of RayContact's manifolds.
     static PointKey key(const btManifoldPoint& point);
