@@ -2,6 +2,7 @@
 #include "cli/run.h"
 
 #include "cli/common_options.h"
+#include "cli/gimpact_turns.h"
 #include "cli/out_folder.h"
 #include "cli/progress.h"
 #include "cli/record.h"
@@ -122,7 +123,9 @@ void run(const RunOptions& options) {
     check_common_options(options.settings);
     if (!options.out.empty()) make_out_folder(options.out);
     const auto start = std::chrono::steady_clock::now();
-    Simulation scene(describe_scene(options.scene, options.settings));
+    SceneDescription described = describe_scene(options.scene, options.settings);
+    if (!options.out.empty()) described.frames = raycontact::report::film_frames;
+    Simulation scene(std::move(described));
     const SceneDescription& description = scene.description();
     RunRecorder recorder(options.record, scene);
     Progress progress(description.name, description.steps);
@@ -144,7 +147,7 @@ void run(const RunOptions& options) {
         log.summary_json = text;
         write_out(options.out, "steps.csv", steps_csv(log.rows));
         std::cerr << "drawing the report\n";
-        raycontact::report::write_report(options.out, log);
+        raycontact::report::write_report(options.out, log, compare_with_gimpact(log));
         std::cerr << "report: " << (std::filesystem::path(options.out) / "report.html").string() << '\n';
     }
     std::cout << (options.json ? text + "\n" : for_a_person(result));

@@ -40,11 +40,16 @@ svg{display:block;width:100%;height:auto;touch-action:pan-y}
 .tick,.label{fill:var(--soft);font-size:11.5px;font-variant-numeric:tabular-nums}
 .line{fill:none;stroke-width:1.6;stroke-linejoin:round}.s0{stroke:var(--c0)}.s1{stroke:var(--c1)}
 .cursor line{stroke:var(--soft);stroke-dasharray:3 3}.cursor circle{fill:var(--card);stroke-width:2}
+.film{margin:22px auto 0;max-width:860px}.film img{display:block;width:100%;height:auto;border-radius:10px}
+.film figcaption,.soft{color:var(--soft);font-size:14px}
+@media(prefers-reduced-motion:reduce){.film{display:none}}
+.wide{overflow-x:auto}
 table{border-collapse:collapse;width:100%;background:var(--card);border:1px solid var(--rule);border-radius:10px;overflow:hidden;font-size:15px}
 td,th{padding:7px 14px;text-align:left;border-top:1px solid var(--rule);vertical-align:top}
 thead th{border-top:0;font-size:13px;color:var(--soft);font-weight:500}
 td.value{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap;font-weight:600;overflow-wrap:anywhere}
 td.meaning{color:var(--soft)}
+@media(max-width:560px){main{padding:20px 12px 32px}td,th{padding:6px 8px}td.meaning,th:nth-child(4){display:none}td.value{white-space:normal}}
 pre{background:var(--mark);padding:13px 16px;border-radius:10px;overflow-x:auto;font:14px/1.5 ui-monospace,"DejaVu Sans Mono",monospace;margin:0}
 footer{margin-top:34px;color:var(--soft);font-size:13.5px}
 )css";
@@ -96,13 +101,14 @@ std::string strip(const std::vector<Still>& stills) {
 }
 
 std::string table(const std::vector<Row>& rows) {
-    std::string html = "<table><thead><tr><th>figure</th><th style=\"text-align:right\">value</th><th>unit</th>"
-                       "<th>what it is</th></tr></thead><tbody>\n";
+    std::string html =
+        "<div class=\"wide\"><table><thead><tr><th>figure</th><th style=\"text-align:right\">value</th><th>unit</th>"
+        "<th>what it is</th></tr></thead><tbody>\n";
     for (const Row& row : rows)
         html +=
             fmt::format("<tr><td>{}</td><td class=\"value\">{}</td><td>{}</td><td class=\"meaning\">{}</td></tr>\n",
                         escape_html(row.name), escape_html(row.value), escape_html(row.unit), escape_html(row.meaning));
-    return html + "</tbody></table>\n";
+    return html + "</tbody></table></div>\n";
 }
 
 } // namespace
@@ -114,9 +120,17 @@ std::string make_page(const Page& page) {
             + "</style></head>\n<body><main>\n";
     html += "<h1>" + escape_html(page.title) + "</h1>\n<p class=\"lead\">" + escape_html(page.summary) + "</p>\n";
     if (!page.stills.empty()) html += strip(page.stills);
+    if (!page.film.empty())
+        html += fmt::format("<figure class=\"film\"><img alt=\"{0}\" src=\"data:image/webp;base64,{1}\"><figcaption>{0}"
+                            "</figcaption></figure>\n",
+                            escape_html(page.film_caption), base64(page.film));
     html += "<h2>Step by step</h2>\n<div class=\"plots\">\n";
     for (const Plot& plot : page.plots) html += plot_figure(plot);
     html += "</div>\n<h2>Figures of the whole run</h2>\n" + table(page.rows);
+    if (!page.zeros.empty()) html += "<p class=\"soft\">" + escape_html(page.zeros) + "</p>\n";
+    if (!page.comparison.rows.empty())
+        html += "<h2>" + escape_html(page.comparison.title) + "</h2>\n" + table(page.comparison.rows)
+                + "<p class=\"soft\">" + escape_html(page.comparison.note) + "</p>\n";
     html += "<h2>The same run again</h2>\n<pre>" + escape_html(page.command) + "</pre>\n";
     html += "<footer>" + escape_html(page.footer) + "</footer>\n</main>\n";
     html += "<script type=\"application/json\" id=\"data\">" + plot_data(page.plots) + "</script>\n<script>" + script

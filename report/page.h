@@ -19,13 +19,24 @@ struct Row {
     std::string name, value, unit, meaning;
 };
 
+/// The same question put to someone else.
+struct Comparison {
+    std::string title;
+    std::vector<Row> rows; ///< none: no comparison
+    std::string note;      ///< what was compared, and what not
+};
+
 /// All that goes on the page; every text is made safe by make_page.
 struct Page {
     std::string title;
     std::string summary;
     std::vector<Still> stills;
+    std::string film; ///< the bytes of an animated WebP; empty: none
+    std::string film_caption;
     std::vector<Plot> plots; ///< over the same steps
     std::vector<Row> rows;
+    std::string zeros; ///< what would be rows of zeros, in one sentence; empty: none
+    Comparison comparison;
     std::string command; ///< that makes the same run again
     std::string footer;
 };

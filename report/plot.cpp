@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 namespace raycontact::report {
@@ -31,7 +32,15 @@ Axis lower_axis(const Plot& plot) {
     const std::vector<double> all_x = all(plot, &std::pair<double, double>::first);
     if (plot.logarithmic) return logarithmic_axis(all_x);
     const auto [first, last] = std::minmax_element(all_x.begin(), all_x.end());
-    return all_x.empty() ? linear_axis(0, 1, 6, 1) : linear_axis(*first, *last, 6, 1);
+    if (all_x.empty()) return linear_axis(0, 1, 6, 1);
+    Axis axis = linear_axis(*first, *last, 6, 1);
+    // The last step has a number of its own, in place of one that stands too near.
+    if (axis.ticks.size() > 1 && axis.last > axis.ticks.back()) {
+        const double spacing = axis.ticks[1] - axis.ticks[0];
+        if (axis.last - axis.ticks.back() < 0.6 * spacing) axis.ticks.pop_back();
+        axis.ticks.push_back(axis.last);
+    }
+    return axis;
 }
 
 double largest(const Plot& plot) {
@@ -104,6 +113,15 @@ std::string note_of(const Plot& plot) {
            + fmt::format(" The axis stops below a few spikes; the largest is {} {}.", readable(most), plot.unit);
 }
 
+/// Nothing where the title has said it.
+std::string unit_of(const Plot& plot) {
+    const auto lower = [](std::string text) {
+        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+        return text;
+    };
+    return lower(plot.title) == lower(plot.unit) ? "" : plot.unit;
+}
+
 /// Lines of at most so many characters: SVG does not break text by itself.
 std::vector<std::string> broken(const std::string& text, std::size_t most) {
     std::vector<std::string> lines;
@@ -140,7 +158,7 @@ std::string plot_figure(const Plot& plot) {
         "<figure class=\"plot\"><figcaption><b>{}</b> <span class=\"unit\">{}</span>{}<output></output></figcaption>"
         "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" data-left=\"{}\" data-right=\"{}\" "
         "data-top=\"{}\" data-bottom=\"{}\">{}<g class=\"cursor\"></g></svg><p>{}</p></figure>\n",
-        escape_html(plot.title), escape_html(plot.unit),
+        escape_html(plot.title), escape_html(unit_of(plot)),
         legend(plot,
                [](std::size_t colour, const std::string& name) {
                    return fmt::format("<span class=\"key\"><i class=\"s{}\"></i>{}</span>", colour, name);
@@ -165,7 +183,7 @@ std::string plot_svg(const std::vector<Plot>& plots) {
         double y = 20;
         svg += fmt::format("<g transform=\"translate({} {})\"><text x=\"{}\" y=\"{}\"><tspan class=\"title\">{}</tspan>"
                            " <tspan class=\"soft\">{}</tspan></text>\n",
-                           column, row_top, left, y, escape_html(plot.title), escape_html(plot.unit));
+                           column, row_top, left, y, escape_html(plot.title), escape_html(unit_of(plot)));
         if (!names.empty()) svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", left, y += legend_row, names);
         y += title_row - 20;
         svg += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", y, drawing(plot));

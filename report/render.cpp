@@ -19,7 +19,6 @@
 namespace raycontact::report {
 namespace {
 
-constexpr std::uint32_t side = 2;         ///< side x side primary rays a pixel
 constexpr std::uint32_t ambient_rays = 3; ///< per primary ray
 const Float3 sun_direction = unit({-0.62f, -0.38f, 0.84f});
 constexpr Float3 sun_light{3.0f, 2.75f, 2.35f}; // linear, warm against the blue of the sky
@@ -79,6 +78,7 @@ struct View {
     float reach = 1;             ///< radius about the pile within which the ground is drawn in full, metres
     Point2 middle;               ///< of the pile
     float pixel = 0;             ///< width at distance 1
+    std::uint32_t side = 2;      ///< side x side primary rays a pixel
 };
 
 RTCRayHit ray_from(Float3 origin, Float3 direction, float near) {
@@ -264,19 +264,17 @@ struct Renderer::State {
         return scene;
     }
 
+    void look_at(const std::vector<Ball>& balls, std::uint32_t width, std::uint32_t height, View& view) const;
+    Image draw(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height, View& view) const;
+
     const scenes::RunLog& log;
     RTCDevice device;
     std::vector<RTCScene> shapes;
 };
 
-Renderer::Renderer(const scenes::RunLog& log) : state_(std::make_unique<State>(log)) {}
-Renderer::~Renderer() = default;
-
-Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const {
-    View view;
-    view.stage = make_stage(state_->log, frame);
-    view.poses = frame.poses;
-    const auto balls = moving_balls(view.stage, state_->log, frame);
+/// Camera and what goes with it.
+void Renderer::State::look_at(const std::vector<Ball>& balls, std::uint32_t width, std::uint32_t height,
+                              View& view) const {
     view.camera = frame_balls(balls, view.stage.ground, width, height);
     view.pixel = 2 * view.camera.half_height / static_cast<float>(height);
     for (const Ball& ball : balls) {
@@ -286,10 +284,15 @@ Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uin
     for (const Ball& ball : balls)
         view.reach = std::max({view.reach, std::fabs(ball.centre.x - view.middle.x) + ball.radius,
                                std::fabs(ball.centre.y - view.middle.y) + ball.radius});
-    for (std::size_t body = 0; body < frame.poses.size(); ++body)
-        view.colours.push_back(state_->log.body_moves[body] ? body_colour(body) : Float3{0.5f, 0.5f, 0.5f});
-    view.scene = state_->scene_of(frame, view.stage);
+}
 
+Image Renderer::State::draw(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height, View& view) const {
+    view.poses = frame.poses;
+    for (std::size_t body = 0; body < frame.poses.size(); ++body)
+        view.colours.push_back(log.body_moves[body] ? body_colour(body) : Float3{0.5f, 0.5f, 0.5f});
+    view.scene = scene_of(frame, view.stage);
+
+    const std::uint32_t side = view.side;
     const std::size_t pixels = std::size_t{width} * height;
     Layers layers{width,
                   height,
@@ -308,8 +311,8 @@ Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uin
                 for (std::uint32_t k = 0; k < side * side; ++k) {
                     const Point2 jitter = inside(k);
                     const std::uint32_t column = k % side, row = k / side;
-                    const float u = static_cast<float>(x) + (static_cast<float>(column) + jitter.x) / side;
-                    const float v = static_cast<float>(y) + (static_cast<float>(row) + jitter.y) / side;
+                    const float u = static_cast<float>(x) + (static_cast<float>(column) + jitter.x) / float(side);
+                    const float v = static_cast<float>(y) + (static_cast<float>(row) + jitter.y) / float(side);
                     const Float3 direction =
                         view.camera.direction(u / static_cast<float>(width), v / static_cast<float>(height));
                     const Shade s = shade(view, direction, here, k);
@@ -320,7 +323,7 @@ Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uin
                     sum.position += s.position;
                     if (dot(s.normal, s.normal) > 0) ++hits;
                 }
-                constexpr float share = 1.0f / (side * side);
+                const float share = 1.0f / float(side * side);
                 layers.albedo[here] = share * sum.albedo;
                 layers.extra[here] = share * sum.extra;
                 if (hits > 0) {
@@ -333,6 +336,28 @@ Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uin
     rtcReleaseScene(view.scene);
     smooth_light(layers, view.camera.eye, view.pixel);
     return develop_layers(layers);
+}
+
+Renderer::Renderer(const scenes::RunLog& log) : state_(std::make_unique<State>(log)) {}
+Renderer::~Renderer() = default;
+
+Image Renderer::render(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const {
+    View view;
+    view.stage = make_stage(state_->log, frame);
+    state_->look_at(moving_balls(view.stage, state_->log, frame), width, height, view);
+    return state_->draw(frame, width, height, view);
+}
+
+Image Renderer::render_for_film(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const {
+    const auto& frames = state_->log.frames;
+    View view;
+    view.stage = make_stage(state_->log, frames.back());
+    std::vector<Ball> balls;
+    for (const scenes::Frame* seen : {&frames.front(), &frames[frames.size() / 2], &frames.back()})
+        for (const Ball& ball : moving_balls(view.stage, state_->log, *seen)) balls.push_back(ball);
+    view.side = 1;
+    state_->look_at(balls, width, height, view);
+    return state_->draw(frame, width, height, view);
 }
 
 } // namespace raycontact::report

@@ -19,6 +19,8 @@ public:
     Renderer& operator=(const Renderer&) = delete;
 
     Image render(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const;
+    /// Seen from one place that has all frames of the run in view, with a quarter of the rays: for a film.
+    Image render_for_film(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height) const;
 
 private:
     struct State;

@@ -2,6 +2,7 @@
 #include <report/report.h>
 
 #include <raycontact/error.h>
+#include <report/film.h>
 #include <report/image.h>
 #include <report/page.h>
 #include <report/render.h>
@@ -16,9 +17,9 @@
 namespace raycontact::report {
 namespace {
 
-constexpr std::uint32_t picture_width = 960, picture_height = 540;
+constexpr std::uint32_t picture_width = 1920, picture_height = 1080, film_width = 640, film_height = 360;
 constexpr std::size_t most_pictures = 8;
-constexpr int jpeg_quality = 90; // in the page; the files beside it are PNG
+constexpr int jpeg_quality = 82; // in the page; the files beside it are PNG
 
 void write_file(const std::filesystem::path& file, const std::string& bytes) {
     std::ofstream out(file, std::ios::binary | std::ios::trunc);
@@ -113,13 +114,30 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
         plots.push_back(load);
         plots.push_back(time);
     }
+    std::erase_if(plots, [](const Plot& plot) { // nothing of the kind happened
+        return std::ranges::all_of(plot.lines, [](const Line& line) {
+            return std::ranges::all_of(line.points, [](const auto& point) { return !(std::fabs(point.second) > 0); });
+        });
+    });
     for (Plot& plot : plots) plot.over = over_steps(log.dt);
     return plots;
 }
 
+/// As long as the run where it can be shown so; nothing for a run with a few frames.
+std::string film_of(const scenes::RunLog& log, const Renderer& renderer) {
+    if (log.frames.size() < 3) return {};
+    std::vector<Image> images;
+    const std::size_t every = (log.frames.size() + film_frames - 1) / film_frames;
+    for (std::size_t k = 0; k < log.frames.size(); k += every)
+        images.push_back(renderer.render_for_film(log.frames[k], film_width, film_height));
+    const double seconds = static_cast<double>(log.rows.size()) * log.dt;
+    const double each = 1000 * seconds / static_cast<double>(images.size());
+    return encode_webp(images, static_cast<int>(std::clamp(each, 60.0, 220.0)));
+}
+
 } // namespace
 
-void write_report(const std::filesystem::path& folder, const scenes::RunLog& log) {
+void write_report(const std::filesystem::path& folder, const scenes::RunLog& log, const Comparison& comparison) {
     check(log);
     const std::filesystem::path pictures = folder / "pictures";
     std::error_code error;
@@ -129,6 +147,7 @@ void write_report(const std::filesystem::path& folder, const scenes::RunLog& log
     Page page;
     describe(log, page);
     page.plots = plots_of(log);
+    page.comparison = comparison;
     const Renderer renderer(log);
     for (const std::size_t k : chosen_frames(log.frames.size())) {
         const scenes::Frame& frame = log.frames[k];
@@ -136,6 +155,11 @@ void write_report(const std::filesystem::path& folder, const scenes::RunLog& log
         write_file(pictures / fmt::format("step-{:03}.png", frame.step), encode_png(image));
         page.stills.push_back({encode_jpeg(image, jpeg_quality),
                                fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
+    }
+    page.film = film_of(log, renderer);
+    if (!page.film.empty()) {
+        write_file(pictures / "film.webp", page.film);
+        page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
     }
     write_file(folder / "report.html", make_page(page));
 }

@@ -67,6 +67,9 @@ constexpr Known known[] = {
     {"cast_lost_walks", "Lost walks are cast", "", "in full, where following a ray ended nowhere"},
     {"devices", "Devices", "", "that cast the rays"},
     {"schedule", "Schedule", "", "which device a pair is on"},
+    {"pairs_moved", "Pairs moved", "pairs", "from one device to another, in all steps together"},
+    {"bytes_moved", "State moved", "bytes", "what was kept for them"},
+    {"devices_lost", "Devices lost", "", "that failed; others cast their pairs in full"},
     {"hash", "Hash", "", "XXH64 over every contact of every step: the same on every device and thread count"},
 };
 
@@ -199,6 +202,13 @@ void describe(const scenes::RunLog& log, Page& page) {
                                      as_text((*at)["median"], k.scale), k.unit, k.meaning});
     for (const auto& [key, value] : figures)
         page.rows.push_back({key, as_text(value, 1), "", "as `run --json` prints it"});
+
+    // A row of zeros says little, a sentence of them that nothing of the kind happened.
+    const auto nothing = [](const Row& row) { return row.value == "0" && row.name != "Seed"; };
+    for (const Row& row : page.rows)
+        if (nothing(row)) page.zeros += (page.zeros.empty() ? "None, or 0: " : ", ") + row.name;
+    if (!page.zeros.empty()) page.zeros += ".";
+    std::erase_if(page.rows, nothing);
 
     page.command = "raycontact run " + (log.arguments.empty() ? "SCENE" : log.arguments)
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)

@@ -7,7 +7,7 @@ packages_build=(
     libtbb-dev nlohmann-json3-dev libxxhash-dev                        # the library
     ocl-icd-opencl-dev opencl-c-headers                                # its OpenCL devices; it builds without them
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev zlib1g-dev # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev zlib1g-dev # the program, its scenes and report
 )
 packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd locales

@@ -99,10 +99,40 @@ TEST_F(Report, PicturesDecodeAndShowSomething) {
     write_report(folder_, small_log());
     for (const char* name : {"step-000.png", "step-010.png", "step-019.png"}) {
         const Image image = decode(bytes_of(folder_ / "pictures" / name));
-        EXPECT_EQ(image.width, 960u);
-        EXPECT_EQ(image.height, 540u);
+        EXPECT_EQ(image.width, 1920u);
+        EXPECT_EQ(image.height, 1080u);
         EXPECT_GT(contrast(image), 10) << name;
     }
+}
+
+TEST_F(Report, TheFilmIsAnAnimationOfAllFrames) {
+    scenes::RunLog log = small_log();
+    write_report(folder_, log);
+    const std::string film = bytes_of(folder_ / "pictures" / "film.webp"), html = bytes_of(folder_ / "report.html");
+    ASSERT_GT(film.size(), 1000u);
+    EXPECT_EQ(film.substr(0, 4) + film.substr(8, 4), "RIFFWEBP");
+    EXPECT_NE(film.find("ANIM"), std::string::npos);
+    std::size_t frames = 0;
+    for (std::size_t at = 0; (at = film.find("ANMF", at)) != std::string::npos; ++at) ++frames;
+    EXPECT_EQ(frames, log.frames.size());
+    EXPECT_NE(html.find("data:image/webp;base64," + base64(film)), std::string::npos);
+    EXPECT_NE(html.find("prefers-reduced-motion"), std::string::npos);
+}
+
+TEST_F(Report, SaysNothingTwiceAndNoZeros) {
+    scenes::RunLog log = small_log();
+    for (scenes::StepRow& row : log.rows) row.median_speed = 0;
+    log.summary_json = R"({"bodies": 9, "walks": 0, "seed": 0, "predictions": 0, "contacts": 12})";
+    write_report(folder_, log, {"Beside another", {{"other", "3.5", "s", "slower"}}, "a note"});
+    const std::string html = bytes_of(folder_ / "report.html");
+    EXPECT_NE(html.find("<b>Pairs</b> <span class=\"unit\"></span>"), std::string::npos);
+    EXPECT_EQ(html.find("Median speed"), std::string::npos); // nothing moved
+    EXPECT_EQ(html.find("<td>Walks</td>"), std::string::npos);
+    EXPECT_NE(html.find("None, or 0: Walks, Predictions."), std::string::npos);
+    EXPECT_NE(html.find("<td>Seed</td>"), std::string::npos);
+    EXPECT_NE(html.find(">19</text>"), std::string::npos); // the axes end at the last step
+    EXPECT_NE(html.find("Beside another"), std::string::npos);
+    EXPECT_NE(html.find("<td>other</td><td class=\"value\">3.5</td>"), std::string::npos);
 }
 
 TEST_F(Report, APictureIsTheSameEveryTimeAndFollowsTheBodies) {
