@@ -17,14 +17,20 @@ constexpr Direction directions[] = {Direction::ray, Direction::weighted, Directi
 
 struct Object {
     const char* name;
-    double paper[3]; ///< ray, weighted, reprojected; percent
+    double paper[3]; ///< ray, weighted, reprojected; percent; the first is 0 if the paper has no such object
 };
-constexpr Object objects[] = {{"sphere", {3.97, 2.66, 0}}, {"bunny", {22.0, 16.5, 0}}, {"irregular", {27.0, 20.6, 0}}};
+constexpr Object objects[] = {
+    {"sphere", {3.97, 2.66, 0}}, {"bunny", {22.0, 16.5, 0}}, {"irregular", {27.0, 20.6, 0}}, {"bumpy", {0, 0, 0}}};
+bool in_the_paper(const Object& object) {
+    return object.paper[0] > 0;
+}
 
 scenes::Model model_of(const std::string& name) {
     if (name == "bunny") return scenes::scene_model("bunny", 902);
-    // As lumpy as the paper's pig; chosen before its figure was seen.
-    if (name == "irregular") return scenes::scene_model("sphere", 2166);
+    // An animal with uneven triangles, as the paper's pig; chosen before its figure was seen.
+    if (name == "irregular") return scenes::scene_model("bunny", 2166);
+    // The first choice for it; even triangles turned out to make a smooth mesh of it.
+    if (name == "bumpy") return scenes::scene_model("sphere", 2166);
     scenes::Model model;
     model.mesh = scenes::round_sphere(136);
     model.source = "a sphere of 70 vertices in rings, evenly spread";
@@ -70,7 +76,9 @@ Outcome show(const Plan& plan, const std::vector<Json>& found) {
             }
             // Re-projected forces all point along the plane's normal: one line for all would lie on the axis.
             if (directions[d] != Direction::reprojected) plot.lines.push_back(line);
-            row.push_back(fmt::format("{:.2f} % (paper {:.2f})", ours, object.paper[d]));
+            row.push_back(fmt::format("{:.2f} %", ours));
+            if (!in_the_paper(object)) continue;
+            row.back() += fmt::format(" (paper {:.2f})", object.paper[d]);
             const std::string id = std::string("table1.") + object.name + "." + word;
             std::string why =
                 fmt::format("{} orientations x {} depths up to a tenth of the size; ", plan.orientations, plan.depths);
@@ -92,6 +100,7 @@ Outcome show(const Plan& plan, const std::vector<Json>& found) {
         table.rows.push_back(row);
     }
     for (const Object& object : objects) {
+        if (!in_the_paper(object)) continue;
         report::Line paper{"paper", {}, 9, true};
         for (const double part : {parts[0], parts[std::size(parts) - 1]})
             paper.points.emplace_back(100 * part, object.paper[0]);
@@ -103,7 +112,11 @@ Outcome show(const Plan& plan, const std::vector<Json>& found) {
         "Each object is pressed into a plane (the top of a wide closed slab) in random orientations and "
         "evenly spaced depths, as in Figure 13. The contacts of a scene with each direction act as penalty "
         "forces: depth along the normal, times the weight. The table shows the mean of |tangential| / "
-        "|normal| over all cases with contacts."};
+        "|normal| over all cases with contacts.",
+        "irregular was a bumpy sphere at first, chosen for its bumps; its triangles are even, so plain rays deviate "
+        "little, and it now stands in a row of its own. The bunny of 1 085 vertices took its place before its figure "
+        "was "
+        "seen."};
     return out;
 }
 
