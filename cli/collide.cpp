@@ -59,7 +59,9 @@ private:
 };
 
 Json to_json(const Contact& contact) {
-    return {{"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
+    constexpr const char* features[] = {"vertex", "edge", "inside"};
+    return {{"feature", features[static_cast<std::size_t>(contact.feature)]},
+            {"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
             {"vertex", contact.vertex},
             {"triangle", contact.triangle},
             {"point", {contact.point.x, contact.point.y, contact.point.z}},

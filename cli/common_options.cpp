@@ -107,6 +107,11 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
         "weight) or reprojected",
         "WORD", std::string(to_string(settings.direction)),
         [&](const std::string& word) { settings.direction = direction_from(word); });
+    add_word(command, "--features",
+             "what can be in contact: vertices (the paper's rule) or edges (vertices and edges, so that no two closed "
+             "meshes intersect unnoticed)",
+             "WORD", std::string(to_string(settings.features)),
+             [&](const std::string& word) { settings.features = features_from(word); });
     add_length(command, settings, &Settings::displacement_threshold, "--displacement-threshold",
                "metres a pair may move before it is looked at in full again; auto: chosen for each pair");
     add_setting(command, settings, &Settings::confidence, "--confidence",

@@ -52,6 +52,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"method", to_string(settings.method)},
                 {"caster", to_string(settings.caster)},
                 {"direction", to_string(settings.direction)},
+                {"features", to_string(settings.features)},
                 {"devices", chosen_devices(settings)},
                 {"schedule", to_string(settings.schedule)},
                 {"work", work_of_devices(replay.steps)},

@@ -63,6 +63,7 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"method", to_string(options.settings.method)},
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
+        {"features", to_string(options.settings.features)},
         {"devices", chosen_devices(options.settings)},
         {"schedule", to_string(options.settings.schedule)},
         {"work", work_of_devices(log.rows)},

@@ -47,6 +47,16 @@ Settings read_settings(const Json& document) {
     }
     settings.devices = document.at("device").get<std::string>();
     settings.threads = document.at("threads").get<std::uint32_t>();
+    // Recordings from before edges could be in contact lack it.
+    if (const auto at = document.find("features"); at != document.end()) {
+        try {
+            settings.features = features_from(at->get<std::string>());
+        } catch (const InputError& error) {
+            throw UnknownSetting(error.what());
+        }
+    } else {
+        settings.features = Features::vertices;
+    }
     // Recordings from before these settings existed lack them; none of theirs depends on one (method standard).
     read_if_there(document, "displacement_threshold", settings.displacement_threshold);
     read_if_there(document, "confidence", settings.confidence);
@@ -114,6 +124,7 @@ Bytes encode_info(const Info& info) {
                      {"method", to_string(info.settings.method)},
                      {"caster", to_string(info.settings.caster)},
                      {"direction", to_string(info.settings.direction)},
+                     {"features", to_string(info.settings.features)},
                      {"device", info.settings.devices},
                      {"threads", info.settings.threads},
                      {"displacement_threshold", length(info.settings.displacement_threshold)},

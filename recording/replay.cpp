@@ -12,7 +12,7 @@ namespace raycontact::recording {
 namespace {
 
 auto ray_of(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
+    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing);
 }
 
 } // namespace
@@ -70,7 +70,7 @@ double WrongRays::percent() const {
 
 bool must_agree(const Settings& recorded, const Settings& used) {
     const auto exact = [](Method method) { return method == Method::standard || method == Method::certified; };
-    if (used.direction != recorded.direction) return false;
+    if (used.direction != recorded.direction || used.features != recorded.features) return false;
     if (exact(used.method) && exact(recorded.method)) return true;
     return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
            && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance

@@ -99,6 +99,7 @@ Json to_json(const Settings& s) {
     return {{"method", to_string(s.method)},
             {"caster", to_string(s.caster)},
             {"direction", to_string(s.direction)},
+            {"features", to_string(s.features)},
             {"displacement_threshold", length(s.displacement_threshold)},
             {"confidence", s.confidence},
             {"culling_distance", length(s.culling_distance)},

@@ -20,6 +20,8 @@ constexpr std::array casters{std::pair{Caster::basic, std::string_view("basic")}
 constexpr std::array directions{std::pair{Direction::ray, std::string_view("ray")},
                                 std::pair{Direction::weighted, std::string_view("weighted")},
                                 std::pair{Direction::reprojected, std::string_view("reprojected")}};
+constexpr std::array features{std::pair{Features::vertices, std::string_view("vertices")},
+                              std::pair{Features::edges, std::string_view("edges")}};
 constexpr std::array schedules{std::pair{Schedule::balanced, std::string_view("balanced")},
                                std::pair{Schedule::sticky, std::string_view("sticky")},
                                std::pair{Schedule::counted, std::string_view("counted")}};
@@ -77,6 +79,9 @@ Caster caster_from(std::string_view word) {
 Direction direction_from(std::string_view word) {
     return find(directions, word, "direction");
 }
+Features features_from(std::string_view word) {
+    return find(features, word, "features");
+}
 Schedule schedule_from(std::string_view word) {
     return find(schedules, word, "schedule");
 }
@@ -88,6 +93,9 @@ std::string_view to_string(Caster caster) {
 }
 std::string_view to_string(Direction direction) {
     return name_of(directions, direction);
+}
+std::string_view to_string(Features which) {
+    return name_of(features, which);
 }
 std::string_view to_string(Schedule schedule) {
     return name_of(schedules, schedule);

@@ -11,25 +11,40 @@
 
 namespace raycontact {
 
-/// The body of the pair that the feature (here always a vertex) belongs to: the source of the ray.
-enum class VertexBody : std::uint32_t { a = 0, b = 1 };
+/// The body of the pair that the feature belongs to: the source of the ray.
+enum class VertexBody : std::uint8_t { a = 0, b = 1 };
 
-/// A vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008; Lehericey et al.
-/// 2013, sections 2.1 and 3.2).
+/// What of the source is in contact.
+enum class Feature : std::uint8_t {
+    vertex = 0, ///< a vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)
+    edge = 1,   ///< an end of a piece of an edge that lies inside the other mesh (docs/edges.md)
+    inside = 2, ///< the whole body lies inside the other mesh; its deepest vertex stands for it
+};
+
+/// A vertex or a piece of an edge inside the other mesh (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and
+/// 3.2; edges after Knott and Pai 2003).
 struct Contact {
     std::uint32_t body_a = 0; ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
-    VertexBody vertex_body = VertexBody::a;
-    bool is_new = true;            ///< the last step had no contact with this key in this pair
-    std::uint32_t vertex = 0;      ///< source vertex, index of its file
+    VertexBody vertex_body = VertexBody::a; ///< whose vertex or edge it is
+    Feature feature = Feature::vertex;
+    bool is_new = true;         ///< the last step had no contact with this key in this pair
+    std::uint32_t crossing = 0; ///< of an edge: which end it is, see edge_start; 0 for other features
+    /// Source vertex, index of its file. Of an edge: 3 x its lowest triangle in the file + its first corner there.
+    std::uint32_t vertex = 0;
     std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file
-    Vec3 point;                    ///< the source vertex, world frame, metres
+    Vec3 point;                    ///< the source vertex, or the end of the piece; world frame, metres
     std::array<float, 3> normal{}; ///< unit, world frame, from A to B
     float depth = 0;               ///< > 0, metres along the normal (section 3.2: r . n)
-    float ray_length = 0;          ///< |r|, metres from the vertex to the hit
-    /// Direction `weighted`: the vertex's share of its surface, m^2 (Shape::vertex_areas). Other directions: 1.
+    float ray_length = 0;          ///< |r|, metres from the point to the hit
+    /// Direction `weighted`: the share of the source's surface, m^2 (Shape::vertex_areas; of an edge, a sixth of the
+    /// area of its two triangles). Other directions: 1.
     float weight = 1;
 };
+
+/// Contact::crossing of an edge: the number of the crossing at which the piece ends, counted from the edge's first
+/// corner; or, where it ends at a vertex, one of these.
+inline constexpr std::uint32_t edge_start = 0xfffffffeu, edge_end = 0xffffffffu;
 
 /// A contact that the last step had and this step does not have. Read it before the next add(), which may give the slot
 /// of a removed body to another body.
@@ -37,17 +52,19 @@ struct LostContact {
     std::uint32_t body_a = 0; ///< its slot; body_a < body_b
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
-    std::uint32_t vertex = 0; ///< source vertex, index of its file
+    Feature feature = Feature::vertex;
+    std::uint32_t crossing = 0;
+    std::uint32_t vertex = 0; ///< as Contact::vertex
 };
 
 /// Names the same physical contact from step to step, unique within its pair: source body ('a' or 'b'), feature type
-/// (0 vertex), feature index, as 2 + 8 hex digits.
+/// (0 vertex, 1 edge, 2 inside), feature index (8 hex digits) and, for an edge, its crossing (8 hex digits).
 std::string contact_key(const Contact& contact);
 std::string contact_key(const LostContact& contact);
 
 /// XXH64 over every contact of every step in order; the same for every device, caster and thread count.
-/// Layout per contact: step, body_a, body_b, vertex_body, vertex, triangle as little-endian uint32; normal, depth,
-/// ray_length and, with direction `weighted` alone, weight as float32 bits; point as float64 bits.
+/// Layout per contact: step, body_a, body_b, vertex_body + 2 x feature, vertex, triangle as little-endian uint32;
+/// normal, depth, ray_length and, with direction `weighted` alone, weight as float32 bits; point as float64 bits.
 class ContactHash {
 public:
     /// direction: of the contacts that will be added.

@@ -29,6 +29,12 @@ enum class Direction {
     reprojected, ///< along the normal of the face that was hit, depth = r . n (paper section 3.2, equation 2)
 };
 
+/// Which features of a mesh can be in contact.
+enum class Features {
+    vertices, ///< vertices alone: the rule of Hermann et al. 2008 and the paper (section 2.1)
+    edges,    ///< vertices and sharp edges: no two closed meshes can intersect unnoticed (docs/edges.md)
+};
+
 /// Which of several devices a pair is on.
 enum class Schedule {
     balanced, ///< where it came first, unless devices are loaded unevenly for several steps: then pairs move
@@ -40,6 +46,7 @@ struct Settings {
     Method method = Method::certified;
     Caster caster = Caster::bvh;
     Direction direction = Direction::reprojected;
+    Features features = Features::vertices;
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
@@ -78,10 +85,12 @@ void check_settings(const Settings& settings);
 Method method_from(std::string_view word);
 Caster caster_from(std::string_view word);
 Direction direction_from(std::string_view word);
+Features features_from(std::string_view word);
 Schedule schedule_from(std::string_view word);
 std::string_view to_string(Method);
 std::string_view to_string(Caster);
 std::string_view to_string(Direction);
+std::string_view to_string(Features);
 std::string_view to_string(Schedule);
 
 } // namespace raycontact

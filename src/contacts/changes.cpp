@@ -2,19 +2,20 @@
 #include "contacts/changes.h"
 
 #include <cstdint>
-#include <utility>
+#include <tuple>
 
 namespace raycontact {
 
 namespace {
 
-// What contacts are sorted by, in two words.
-using Order = std::pair<std::uint64_t, std::uint64_t>;
+// What contacts are sorted by, in three words.
+using Order = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
 
 template <class Key>
 Order order_of(const Key& key) {
-    return {std::uint64_t{key.body_a} << 32 | key.body_b,
-            std::uint64_t{static_cast<std::uint32_t>(key.vertex_body)} << 32 | key.vertex};
+    const std::uint64_t source =
+        static_cast<std::uint64_t>(key.vertex_body) << 8 | static_cast<std::uint8_t>(key.feature);
+    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.crossing};
 }
 
 } // namespace
@@ -35,7 +36,8 @@ void Changes::mark(std::span<Contact> contacts) {
     lost_.insert(lost_.end(), previous_.begin() + static_cast<std::ptrdiff_t>(old), previous_.end());
     previous_.resize(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i)
-        previous_[i] = {contacts[i].body_a, contacts[i].body_b, contacts[i].vertex_body, contacts[i].vertex};
+        previous_[i] = {contacts[i].body_a,  contacts[i].body_b,   contacts[i].vertex_body,
+                        contacts[i].feature, contacts[i].crossing, contacts[i].vertex};
 }
 
 } // namespace raycontact

@@ -13,12 +13,16 @@ namespace raycontact {
 static_assert(sizeof(Contact) <= 72);
 
 std::string contact_key(const Contact& contact) {
-    return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.vertex});
+    return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.feature,
+                                   contact.crossing, contact.vertex});
 }
 
 std::string contact_key(const LostContact& contact) {
-    char text[11];
-    std::snprintf(text, sizeof text, "%c0%08x", contact.vertex_body == VertexBody::a ? 'a' : 'b', contact.vertex);
+    char text[19];
+    const int length = std::snprintf(text, sizeof text, "%c%u%08x", contact.vertex_body == VertexBody::a ? 'a' : 'b',
+                                     static_cast<unsigned>(contact.feature), contact.vertex);
+    if (contact.feature == Feature::edge)
+        std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), "%08x", contact.crossing);
     return text;
 }
 
@@ -39,8 +43,8 @@ void ContactHash::add(std::uint32_t step, std::span<const Contact> contacts) {
         const auto put = [&to](auto bits) { // little-endian on every machine
             for (std::size_t i = 0; i < sizeof bits; ++i) *to++ = static_cast<unsigned char>(bits >> (8 * i));
         };
-        for (const auto word : {step, c.body_a, c.body_b, std::uint32_t(c.vertex_body), c.vertex, c.triangle})
-            put(word);
+        const std::uint32_t source = std::uint32_t(c.vertex_body) + 2 * std::uint32_t(c.feature);
+        for (const auto word : {step, c.body_a, c.body_b, source, c.vertex, c.triangle}) put(word);
         for (const float x : {c.normal[0], c.normal[1], c.normal[2], c.depth, c.ray_length})
             put(std::bit_cast<std::uint32_t>(x));
         if (weighted_) put(std::bit_cast<std::uint32_t>(c.weight));
