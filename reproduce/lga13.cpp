@@ -13,11 +13,16 @@ namespace {
 
 constexpr const char* scene = "avalanche";
 
-/// The second casts every ray, as the paper's does; the third is the library's own `standard`.
+/// The first two cast every ray of a full look, as the paper's do; the others are spared some by the library's grids.
 std::vector<Settings> contestants(Caster caster) {
     std::vector<Settings> all{as_in_the_paper(Method::iterative), by_default(Method::standard)};
     all[1].skip_outside = false;
-    if (caster == Caster::bvh) all.push_back(by_default(Method::standard));
+    if (caster == Caster::bvh) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            all.push_back(all[k]);
+            all.back().skip_outside = true;
+        }
+    }
     for (Settings& settings : all) settings.caster = caster;
     return all;
 }
@@ -53,11 +58,12 @@ Outcome show(const std::vector<Json>& found) {
             {line("standard", standard), line("iterative", iterative)},
             report::over_steps(1.0 / 60)};
         if (!basic) {
-            const auto grids = found[k][2].get<Series>();
-            plot.lines.push_back(line("standard with grids", grids));
-            table.rows.push_back({caster, "with this library's grids",
-                                  fmt::format("{:.1f}", best_second(grids, iterative)),
-                                  fmt::format("{:.1f}", sum(grids) / std::max(sum(iterative), 1e-9))});
+            const auto first = found[k][2].get<Series>(), second = found[k][3].get<Series>();
+            plot.lines.push_back(line("standard with grids", second));
+            plot.lines.push_back(line("iterative with grids", first));
+            table.rows.push_back({caster, "both with this library's grids",
+                                  fmt::format("{:.1f}", best_second(second, first)),
+                                  fmt::format("{:.1f}", sum(second) / std::max(sum(first), 1e-9))});
         }
         out.plots.push_back(plot);
         if (basic)
@@ -71,7 +77,7 @@ Outcome show(const std::vector<Json>& found) {
     out.tables.push_back(table);
     out.paragraphs = {
         "Both methods follow the same recording with the same caster. standard casts every ray in full in "
-        "every step; iterative has the fixed constants of Figure 9."};
+        "every step; iterative has the fixed constants of Figure 9 and casts every ray of a full look."};
     return out;
 }
 

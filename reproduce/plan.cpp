@@ -52,6 +52,7 @@ Settings as_in_the_paper(Method method, double displacement_threshold) {
     settings.distance_extension = constants::confidence * displacement_threshold;
     settings.max_iterations = constants::max_iterations;
     settings.cast_lost_walks = false;
+    settings.skip_outside = false; // grids are not the paper's
     return settings;
 }
 
