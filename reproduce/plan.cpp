@@ -22,7 +22,7 @@ Plan quick_plan() {
     Plan plan;
     plan.name = "quick";
     plan.avalanche = {343, 300};
-    plan.rain = {80, 480};
+    plan.rain = {160, 960};
     plan.seeds = 1;
     plan.thresholds = {0.01};
     plan.orientations = 100;
