@@ -181,6 +181,7 @@ raycontact::Settings recorded_unless_given(const CLI::App& command, const raycon
     keep("--distance-extension", &Settings::distance_extension);
     keep("--max-iterations", &Settings::max_iterations);
     keep("--walk-casts", &Settings::cast_lost_walks);
+    settings.skip_outside = recorded.skip_outside; // no option changes it
     check_common_options(settings);
     return settings;
 }

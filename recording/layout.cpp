@@ -64,6 +64,7 @@ Settings read_settings(const Json& document) {
     read_if_there(document, "distance_extension", settings.distance_extension);
     read_if_there(document, "max_iterations", settings.max_iterations);
     read_if_there(document, "cast_lost_walks", settings.cast_lost_walks);
+    read_if_there(document, "skip_outside", settings.skip_outside);
     check_settings(settings);
     return settings;
 }
@@ -133,6 +134,7 @@ Bytes encode_info(const Info& info) {
                      {"distance_extension", length(info.settings.distance_extension)},
                      {"max_iterations", info.settings.max_iterations},
                      {"cast_lost_walks", info.settings.cast_lost_walks},
+                     {"skip_outside", info.settings.skip_outside},
                      {"mesh_source", info.mesh_source}});
 }
 

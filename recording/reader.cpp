@@ -215,6 +215,7 @@ void Reader::State::read_blocks() {
     if (!described) fail_damaged(data, "the side chunk is empty");
     if (at < committed) fail_damaged(at, "something follows the end block");
     give_ids(version, events, bodies);
+    if (info.bodies == 0) info.bodies = static_cast<std::uint32_t>(bodies.size()); // it began with an empty scene
     for (const Body& body : bodies) slots = std::max(slots, slot_of(body.id) + std::size_t{1});
 }
 

@@ -75,7 +75,7 @@ bool must_agree(const Settings& recorded, const Settings& used) {
     return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
            && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance
            && used.distance_extension == recorded.distance_extension && used.max_iterations == recorded.max_iterations
-           && used.cast_lost_walks == recorded.cast_lost_walks;
+           && used.cast_lost_walks == recorded.cast_lost_walks && used.skip_outside == recorded.skip_outside;
 }
 
 Replay replay(Reader& reader, const ReplayOptions& options) {

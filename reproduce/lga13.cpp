@@ -13,11 +13,16 @@ namespace {
 
 constexpr const char* scene = "avalanche";
 
-/// The second casts every ray, as the paper's does; the third is the library's own `standard`.
+/// The first two cast every ray of a full look, as the paper's do; the others are spared some by the library's grids.
 std::vector<Settings> contestants(Caster caster) {
     std::vector<Settings> all{as_in_the_paper(Method::iterative), by_default(Method::standard)};
     all[1].skip_outside = false;
-    if (caster == Caster::bvh) all.push_back(by_default(Method::standard));
+    if (caster == Caster::bvh) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            all.push_back(all[k]);
+            all.back().skip_outside = true;
+        }
+    }
     for (Settings& settings : all) settings.caster = caster;
     return all;
 }
@@ -33,6 +38,17 @@ Json measure(const Workshop& shop, Caster caster, double cost, const Tick& tick)
         tick(cost / shop.plan().avalanche.steps);
     });
     return result;
+}
+
+constexpr std::size_t second = 60; // steps
+
+double of_second(const Series& standard, const Series& iterative, std::size_t from) {
+    double a = 0, b = 0;
+    for (std::size_t i = from; i < std::min(from + second, standard.size()); ++i) {
+        a += standard[i];
+        b += iterative[i];
+    }
+    return a / std::max(b, 1e-9);
 }
 
 Outcome show(const std::vector<Json>& found) {
@@ -53,25 +69,29 @@ Outcome show(const std::vector<Json>& found) {
             {line("standard", standard), line("iterative", iterative)},
             report::over_steps(1.0 / 60)};
         if (!basic) {
-            const auto grids = found[k][2].get<Series>();
+            const auto spared = found[k][2].get<Series>(), grids = found[k][3].get<Series>();
             plot.lines.push_back(line("standard with grids", grids));
-            table.rows.push_back({caster, "with this library's grids",
-                                  fmt::format("{:.1f}", best_second(grids, iterative)),
-                                  fmt::format("{:.1f}", sum(grids) / std::max(sum(iterative), 1e-9))});
+            plot.lines.push_back(line("iterative with grids", spared));
+            table.rows.push_back({caster, "both with this library's grids",
+                                  fmt::format("{:.1f}", best_second(grids, spared)),
+                                  fmt::format("{:.1f}", sum(grids) / std::max(sum(spared), 1e-9))});
         }
         out.plots.push_back(plot);
         if (basic)
             out.numbers.push_back(compared(
                 "lga13", 33, best, "times as fast", Better::higher,
                 fmt::format(
-                    "best second of the avalanche, caster basic, constants fixed; mean {:.1f}. The paper says \"up "
-                    "to\", on a GPU and a scene that it does not name",
-                    mean)));
+                    "best second of the avalanche, caster basic, constants fixed, both cast every ray; mean {:.1f}. It "
+                    "grows as the pile comes to rest and fewer pairs are looked at in full: {:.1f} in the first "
+                    "second, "
+                    "{:.1f} in the last. The paper says \"up to\", on a GPU and a scene that it does not name",
+                    mean, of_second(standard, iterative, 0),
+                    of_second(standard, iterative, standard.size() - std::min(standard.size(), second)))));
     }
     out.tables.push_back(table);
     out.paragraphs = {
         "Both methods follow the same recording with the same caster. standard casts every ray in full in "
-        "every step; iterative has the fixed constants of Figure 9."};
+        "every step; iterative has the fixed constants of Figure 9 and casts every ray of a full look."};
     return out;
 }
 

@@ -29,6 +29,10 @@ th,td{text-align:left;vertical-align:top;padding:5px 10px;border-bottom:1px soli
 .view{width:100%;height:min(80vh,720px);border:1px solid #e4e1dc;border-radius:10px}
 button{font:inherit;padding:6px 16px;border:1px solid #6a7079;border-radius:8px;background:#fff;cursor:pointer}
 img{display:block;width:100%;height:auto;border-radius:10px;margin:14px 0}
+@media(max-width:700px){.numbers,.numbers tbody,.numbers tr,.numbers td{display:block}.numbers{min-width:0}
+.numbers tr{padding:8px 10px;border-bottom:1px solid #e4e1dc}.numbers tr:first-child{display:none}.numbers td{padding:0;border:0}
+.numbers td:first-child{font-weight:bold;overflow-wrap:anywhere}.numbers td:nth-child(n+2):nth-child(-n+5){display:inline;margin-right:10px}
+.numbers td:nth-child(2)::before{content:"paper "}.numbers td:nth-child(3)::before{content:"ours "}.numbers td:last-child{color:#6a7079}}
 )css";
 
 // A view is unpacked when it is asked for: until then it costs the reader nothing.
@@ -60,8 +64,9 @@ std::string table(const Table& t) {
 }
 
 std::string verdicts(const std::vector<Number>& numbers) {
-    std::string html = "<div class=\"wide\"><table><tr><th>number</th><th>paper</th><th>ours</th><th>unit</th>"
-                       "<th>verdict</th><th>how ours was measured, and what differs</th></tr>\n";
+    std::string html =
+        "<div class=\"wide\"><table class=\"numbers\"><tr><th>number</th><th>paper</th><th>ours</th><th>unit</th>"
+        "<th>verdict</th><th>how ours was measured, and what differs</th></tr>\n";
     for (const Number& n : numbers) {
         const std::string word(to_string(n.verdict));
         html +=

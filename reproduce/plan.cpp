@@ -22,7 +22,7 @@ Plan quick_plan() {
     Plan plan;
     plan.name = "quick";
     plan.avalanche = {343, 300};
-    plan.rain = {80, 480};
+    plan.rain = {160, 960};
     plan.seeds = 1;
     plan.thresholds = {0.01};
     plan.orientations = 100;
@@ -52,6 +52,7 @@ Settings as_in_the_paper(Method method, double displacement_threshold) {
     settings.distance_extension = constants::confidence * displacement_threshold;
     settings.max_iterations = constants::max_iterations;
     settings.cast_lost_walks = false;
+    settings.skip_outside = false; // grids are not the paper's
     return settings;
 }
 

@@ -18,7 +18,7 @@ struct Plan {
     std::string name = "full"; ///< "full", "quick" or "tiny"
     SceneSize avalanche{512, 600};
     SceneSize rain{500, 3000};
-    std::uint32_t seeds = 5;                         ///< 1, 2, ...; for lengths and table2
+    std::uint32_t seeds = 5;                          ///< 1, 2, ...; for lengths and table2
     std::vector<double> thresholds{0.01, 0.02, 0.08}; ///< metres, beside the fixed one; for lengths
     std::uint32_t orientations = 400, depths = 20;
     std::uint32_t picture_width = 1920;
@@ -44,8 +44,8 @@ inline constexpr double confidence = 2;                ///< so cullingDist (equa
 inline constexpr std::uint32_t max_iterations = 16;    ///< maxIt
 } // namespace constants
 
-/// A method as the paper has it: the constants above, distanceExtension as long as cullingDist, and no full cast for a
-/// walk that ends nowhere. displacement_threshold: metres.
+/// A method as the paper has it: the constants above, distanceExtension as long as cullingDist, no full cast for a walk
+/// that ends nowhere, and a ray for every vertex inside the bounds. displacement_threshold: metres.
 Settings as_in_the_paper(Method method, double displacement_threshold = constants::displacement_threshold);
 /// A method as the library runs it unless told otherwise.
 Settings by_default(Method method);

@@ -8,7 +8,9 @@
 #include <reproduce/write_file.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
+#include <string_view>
 
 namespace raycontact::reproduce {
 
@@ -43,6 +45,38 @@ void run(const Workshop& shop, const Experiment& experiment, const Options& opti
     options.end();
 }
 
+/// Headings that differ in their load alone become one, with its range.
+std::vector<std::string> merged(const std::vector<std::string>& headings) {
+    struct Merged {
+        std::string before, after;
+        std::string least, most; ///< the loads as they were printed
+    };
+    constexpr std::string_view mark = ", load ";
+    std::vector<Merged> all;
+    for (const std::string& heading : headings) {
+        const std::size_t at = heading.find(mark);
+        const std::size_t end = heading.find(';', std::min(at, heading.size()));
+        if (end == std::string::npos) {
+            all.push_back({heading, "", "", ""});
+            continue;
+        }
+        const std::string load = heading.substr(at + mark.size(), end - at - mark.size());
+        const std::string before = heading.substr(0, at + mark.size()), after = heading.substr(end);
+        const auto same = std::find_if(all.begin(), all.end(),
+                                       [&](const Merged& one) { return one.before == before && one.after == after; });
+        if (same == all.end()) {
+            all.push_back({before, after, load, load});
+            continue;
+        }
+        if (std::strtod(load.c_str(), nullptr) < std::strtod(same->least.c_str(), nullptr)) same->least = load;
+        if (std::strtod(load.c_str(), nullptr) > std::strtod(same->most.c_str(), nullptr)) same->most = load;
+    }
+    std::vector<std::string> texts;
+    for (const Merged& one : all)
+        texts.push_back(one.before + one.least + (one.least == one.most ? "" : " to " + one.most) + one.after);
+    return texts;
+}
+
 /// Nothing where a part was never run.
 std::optional<Section> section(const Workshop& shop, const Experiment& experiment) {
     Section result{experiment.name, experiment.title, {}, {}};
@@ -55,7 +89,11 @@ std::optional<Section> section(const Workshop& shop, const Experiment& experimen
         if (std::find(result.machines.begin(), result.machines.end(), machine) == result.machines.end())
             result.machines.push_back(machine);
     }
+    result.machines = merged(result.machines);
     result.outcome = experiment.show(values);
+    if (!shop.plan().is_full())
+        for (Number& number : result.outcome.numbers)
+            number.why = "short version, less work than the paper's; " + number.why;
     return result;
 }
 

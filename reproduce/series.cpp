@@ -65,6 +65,14 @@ report::Line level(const report::Plot& plot, std::string name, double value) {
     return line;
 }
 
+double share(double part, double whole) {
+    return whole > 0 ? 100 * part / whole : 0;
+}
+
+double less_by(double first, double second) {
+    return first > 0 ? 100 * (1 - second / first) : 0;
+}
+
 std::string percent(double value, int digits) {
     return fmt::format("{:.{}f} %", value, digits);
 }

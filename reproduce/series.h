@@ -22,6 +22,10 @@ report::Line percent_line(std::string name, const Series& part, const Series& wh
 /// A dashed line all along a plot, at a number that the paper states.
 report::Line level(const report::Plot& plot, std::string name, double value);
 
+/// Of the whole, in percent; 0 of nothing.
+double share(double part, double whole);
+/// By how much the second is less than the first, in percent; 0 where the first is nothing.
+double less_by(double first, double second);
 /// "12.3 %", with so many digits after the point.
 std::string percent(double value, int digits = 1);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/experiments.h>
+#include <reproduce/pair_lengths.h>
 
 #include <recording/writer.h>
 #include <report/image.h>
@@ -93,8 +94,10 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
                 {"contacts", Json::array()},
                 {"ray_length", Json::array()},
                 {"depth_length", Json::array()}};
+    PairLengths pairs;
     for (std::uint32_t i = 0; i < options.size.steps; ++i) {
         scene.step();
+        pairs.add(scene.contacts());
         if (record) record->step();
         double depth = 0;
         for (const Contact& contact : scene.contacts()) depth += static_cast<double>(contact.depth);
@@ -109,6 +112,8 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
     for (std::size_t i = 0; i < log.body_shape.size(); ++i)
         if (log.body_moves[i]) triangles += log.shapes[log.body_shape[i]]->triangles().size();
     result["triangles"] = triangles;
+    result["longest_pair_ray"] = pairs.longest_ray();
+    result["longest_pair_depth"] = pairs.longest_depth();
     result["mesh_source"] = log.mesh_source;
     result["hash"] = scene.hash();
     if (picture_width > 0) result["picture"] = picture(log, picture_width);

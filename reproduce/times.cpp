@@ -90,12 +90,13 @@ Outcome show(const std::string& scene, const std::vector<Json>& found) {
             out.numbers.push_back(compared(
                 basic ? "speedup.basic" : "speedup.stackless", basic ? 1.27 : 0.78, in_b, "times as fast",
                 Better::higher,
-                fmt::format(
-                    "time of iterative over that of predictive in phase B of the avalanche, caster {}, on this "
-                    "machine; phase C {:.2f}. There predictive casts {:.1f} times as many rays, since it looks "
-                    "{:.0f} cm ahead of every vertex, and a body's size is 1 m. The paper does not state how far "
-                    "ahead it looks; it measured on a GTX 660, \"an average\"",
-                    word, in_c, rays, 100 * constants::confidence * constants::displacement_threshold)));
+                fmt::format("time of iterative over that of predictive in phase B of the avalanche, caster {}, on this "
+                            "machine; phase C {:.2f}. There predictive casts {:.1f} times as many rays: it looks at "
+                            "the vertices "
+                            "of bounds that are {:.0f} cm wider on each side, and a body's size is 1 m. The paper does "
+                            "not state "
+                            "by how much it widens them; it measured on a GTX 660, \"an average\"",
+                            word, in_c, rays, 100 * constants::confidence * constants::displacement_threshold)));
     }
     out.tables.push_back(table);
     out.paragraphs = {

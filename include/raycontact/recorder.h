@@ -17,7 +17,8 @@ struct RecorderOptions {
     double dt = 1.0 / 60;            ///< seconds between two steps, > 0
     std::uint64_t seed = 0;          ///< of what drives the bodies, where there is one
     std::string mesh_source;         ///< what the meshes are and where they came from
-    /// As a person counts them, without the ground; else those in the scene at the start.
+    /// As a person counts them, without the ground; else those in the scene at the start; if it is empty then, a reader
+    /// counts all that ever came.
     std::optional<std::uint32_t> bodies;
 };
 

@@ -65,8 +65,10 @@ struct Settings {
     /// If a walk of `predictive` ends nowhere, its ray is cast in full (counted in StepStats); off, it is given up.
     bool cast_lost_walks = true;
 
-    /// `standard` with caster bvh casts no ray for a vertex that a grid of the mesh knows to be outside
-    /// (docs/design.md). No contact depends on it; off, every ray is cast.
+    /// No ray is cast for a vertex that a grid of the mesh knows to be outside, or too far off to be predicted, and no
+    /// pair is looked at in full while nothing is near (docs/design.md). Off, `standard`, `iterative` and `predictive`
+    /// cast every ray of the paper's rule, with `iterative` and `predictive` whenever a pair has moved by its
+    /// threshold, on which their contacts depend; those of `standard` do not. `certified` does not look at it.
     bool skip_outside = true;
     /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
     /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"

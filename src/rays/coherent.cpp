@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 namespace raycontact {
@@ -117,6 +118,8 @@ void CoherentRays::wake_up(const Update& update) {
             widen(wide_pairs_[i], extended ? static_cast<float>(*settings.distance_extension) : ahead);
             margins_[i] = static_cast<float>(rounding_margin(source, target));
             reaches_[i] = ahead + margins_[i];
+            // As in the paper: no vertex inside the bounds is known to be outside the mesh or far from it.
+            if (!settings.skip_outside) reaches_[i] = margins_[i] = std::numeric_limits<float>::max();
         }
     });
 }
@@ -143,8 +146,11 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    near_.find_now(update, device_wide_, full_count_, device_reaches_, batch.totals, RayBatch::block_sum);
-    let_sleep();
+    const bool skip_outside = update.settings.skip_outside;
+    const Array<float> no_horizons;
+    near_.find_now(update, device_wide_, full_count_, skip_outside ? device_reaches_ : no_horizons, batch.totals,
+                   RayBatch::block_sum);
+    if (skip_outside) let_sleep();
     const Array<kernels::PairBlock>& blocks = near_.blocks();
     sums_.vertices = VERTEX_LANES * blocks.size();
     full_rays_ = 0;

@@ -63,6 +63,51 @@ bool same(const Prediction& p, const Prediction& q) {
            && distance(p.ahead, q.ahead) == 0;
 }
 
+// Without the grids, and with a threshold that every motion exceeds: the paper's rays, all of them, in every step.
+TEST(EveryRay, IsCastIfNoneIsKnownToBeOutside) {
+    for (const Method method : {Method::iterative, Method::predictive})
+        for (const Caster caster : {Caster::basic, Caster::bvh}) {
+            Settings settings;
+            settings.method = method;
+            settings.caster = caster;
+            settings.displacement_threshold = 0;
+            settings.culling_distance = settings.distance_extension = 0.05;
+            settings.skip_outside = false;
+            Scene scene(settings);
+            settings.method = Method::standard;
+            Scene standard(settings);
+            std::vector<std::shared_ptr<const Shape>> shapes = crowd_shapes(Kind::concave, 1);
+            Random random(11);
+            const std::vector<Pose> homes = touching_poses(shapes, 0.9, random);
+            std::vector<Mover> movers;
+            for (std::size_t i = 0; i < shapes.size(); ++i) {
+                movers.emplace_back(Course::drift, homes[i], 1.0, random);
+                scene.add(shapes[i], homes[i]);
+                standard.add(shapes[i], homes[i]);
+            }
+            std::uint64_t rays = 0;
+            for (int step = 0; step < 10; ++step) {
+                for (std::size_t i = 0; i < shapes.size(); ++i) {
+                    const Pose pose = movers[i].next(random);
+                    scene.set_pose(scene.body_in(static_cast<std::uint32_t>(i)), pose);
+                    standard.set_pose(standard.body_in(static_cast<std::uint32_t>(i)), pose);
+                }
+                scene.step();
+                standard.step();
+                EXPECT_EQ(scene.stats().rays_cast, scene.stats().rays) << to_string(method) << " step " << step;
+                EXPECT_TRUE(
+                    std::ranges::equal(scene.contacts(), standard.contacts(), {}, key_of<Contact>, key_of<Contact>));
+                if (method == Method::iterative) {
+                    EXPECT_EQ(scene.stats().rays, standard.stats().rays);
+                } else {
+                    EXPECT_GT(scene.stats().rays, standard.stats().rays);
+                }
+                rays += scene.stats().rays_cast;
+            }
+            EXPECT_GT(rays, 50u);
+        }
+}
+
 TEST(Predictions, AreThoseThatAreCounted) {
     std::uint64_t counted = 0;
     predictions_of("cpu", Method::predictive, counted);

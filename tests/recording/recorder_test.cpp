@@ -135,6 +135,17 @@ TEST(Recorder, BeginsInMidLife) {
     expect_same_contacts(file, hash.hex(), Method::certified, 20);
 }
 
+TEST(Recorder, OfAnEmptySceneKnowsHowManyBodiesCame) {
+    const TemporaryFile file;
+    Row row(Method::certified);
+    Recorder recorder(file.path(), row.scene);
+    for (int i = 0; i < 3; ++i) row.add();
+    row.step();
+    recorder.step();
+    recorder.finish();
+    EXPECT_EQ(recording::Reader(file.path()).info().bodies, 3u);
+}
+
 TEST(Recorder, WithoutAnEndItCanBeReplayed) {
     const TemporaryFile file;
     Row row(Method::standard);

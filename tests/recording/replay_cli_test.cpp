@@ -201,7 +201,7 @@ TEST_F(ReplayProgram, OldRecordingsAreRead) {
     const json run = record("a.glb", {"--method", "standard"});
     edit_json(folder_.path() / "a.glb", BlockType::info, [](auto& info) {
         for (const char* key : {"displacement_threshold", "confidence", "culling_distance", "distance_extension",
-                                "max_iterations", "cast_lost_walks"})
+                                "max_iterations", "cast_lost_walks", "skip_outside"})
             info.erase(key);
     });
     const json again = replayed({"a.glb"});

@@ -138,7 +138,7 @@ TEST(RoundTrip, OldRecordingsHaveDefaults) {
     record(sample, file.path(), true);
     edit_json(file.path(), BlockType::info, [](nlohmann::ordered_json& info) {
         for (const char* key : {"displacement_threshold", "confidence", "culling_distance", "distance_extension",
-                                "max_iterations", "cast_lost_walks"})
+                                "max_iterations", "cast_lost_walks", "skip_outside"})
             EXPECT_EQ(info.erase(key), 1u) << key;
         info["method"] = "standard";
     });
@@ -151,6 +151,7 @@ TEST(RoundTrip, OldRecordingsHaveDefaults) {
     old.distance_extension = fresh.distance_extension;
     old.max_iterations = fresh.max_iterations;
     old.cast_lost_walks = fresh.cast_lost_walks;
+    old.skip_outside = fresh.skip_outside;
     EXPECT_EQ(difference(sample, reader, 5), "");
     EXPECT_EQ(reader.hash(), sample.hash);
 }

@@ -60,6 +60,7 @@ Sample make_sample(std::uint32_t steps) {
     sample.info.settings.distance_extension = 0.07;
     sample.info.settings.max_iterations = 5;
     sample.info.settings.cast_lost_walks = false;
+    sample.info.settings.skip_outside = false;
     sample.shapes = {Shape::make(crooked("torus", 60)), Shape::make(crooked("knot", 60)),
                      Shape::make(crooked("sphere", 40))};
     sample.bodies = {{0, 0, Body::never}, {1, 0, Body::never}, {1, 0, 12}, {0, 0, Body::never},
@@ -147,7 +148,8 @@ bool same_info(const Info& p, const Info& q) {
            && p.settings.culling_distance == q.settings.culling_distance
            && p.settings.distance_extension == q.settings.distance_extension
            && p.settings.max_iterations == q.settings.max_iterations
-           && p.settings.cast_lost_walks == q.settings.cast_lost_walks;
+           && p.settings.cast_lost_walks == q.settings.cast_lost_walks
+           && p.settings.skip_outside == q.settings.skip_outside;
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <reproduce/pair_lengths.h>
 #include <reproduce/phases.h>
 #include <reproduce/series.h>
 
@@ -36,6 +37,31 @@ TEST(Phases, SecondsWithManyFullLooksAreB) {
     EXPECT_NEAR(speed_up(slow, fast, found, Phase::b), 3, 1e-6);
     EXPECT_NEAR(speed_up(slow, fast, found, Phase::c), 1, 1e-6);
     EXPECT_NEAR(best_second(slow, fast), 3, 1e-6);
+}
+
+TEST(Series, SharesAndDifferencesAreFinite) {
+    EXPECT_DOUBLE_EQ(share(1, 4), 25);
+    EXPECT_DOUBLE_EQ(share(0, 0), 0);
+    EXPECT_DOUBLE_EQ(less_by(4, 1), 75);
+    EXPECT_DOUBLE_EQ(less_by(4, 6), -50);
+    EXPECT_DOUBLE_EQ(less_by(0, 1), 0);
+}
+
+TEST(PairLengths, KnowsThePairThatIsLongest) {
+    const auto contact = [](std::uint32_t a, std::uint32_t b, float ray, float depth) {
+        Contact c;
+        c.body_a = a;
+        c.body_b = b;
+        c.ray_length = ray;
+        c.depth = depth;
+        return c;
+    };
+    PairLengths pairs;
+    EXPECT_EQ(pairs.longest_ray(), 0);
+    for (int step = 0; step < 3; ++step) pairs.add(std::vector{contact(0, 1, 2, 1), contact(1, 2, 1, 0.5F)});
+    pairs.add(std::vector{contact(0, 2, 4, 4), contact(1, 2, 0.5F, 0.25F)});
+    EXPECT_EQ(pairs.longest_ray(), 6);
+    EXPECT_EQ(pairs.longest_depth(), 4);
 }
 
 TEST(Phases, WithoutPairsOrDifferencesEverythingIsFinite) {
