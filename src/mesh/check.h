@@ -15,4 +15,8 @@ void check_mesh(const Mesh& mesh, const std::string& name);
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
                  std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh);
 
+/// What the report of a mesh should say; the counts of its file and its repairs are taken over. Its coordinates must be
+/// those that prepare_mesh() takes. Throws InputError where no triangle has an area.
+MeshReport measured_report(const PreparedMesh& mesh);
+
 } // namespace raycontact
