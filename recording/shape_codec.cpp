@@ -76,7 +76,8 @@ Vec3 get_vector(ByteSource& from) {
     v.y = from.get_double();
     v.z = from.get_double();
     if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) throw Damage("has a coordinate not finite");
-    if (std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) > 2e9) throw Damage("has a coordinate too large");
+    if (std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) > 1.001 * greatest_coordinate)
+        throw Damage("has a coordinate too large");
     return v;
 }
 

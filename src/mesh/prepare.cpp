@@ -154,7 +154,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         // Products of four coordinates must fit float32, with which rays are cast.
         const auto& [x, y, z] = mesh.vertices[i];
-        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > 1e9)
+        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > greatest_coordinate)
             throw InputError(name + ": vertex " + std::to_string(i)
                              + " is further than 1e9 m from the origin; scale the mesh");
     }
@@ -165,6 +165,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     std::vector<std::uint32_t> with_area = triangles_with_area(prepared, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
+    check_size(prepared.vertices, name);
     const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area));
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);

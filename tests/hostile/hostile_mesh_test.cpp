@@ -5,10 +5,13 @@
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
+#include <raycontact/scene.h>
+#include <raycontact/shape.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -71,6 +74,11 @@ constexpr bool sanitized = true;
 constexpr bool sanitized = false;
 #endif
 
+Mesh scaled(Mesh mesh, double size) {
+    for (Vec3& v : mesh.vertices) v = {v.x * size, v.y * size, v.z * size};
+    return mesh;
+}
+
 struct Writer {
     const char* ending;
     std::string (*write)(const Mesh&);
@@ -113,6 +121,35 @@ TEST(HostileMesh, CoordinatesThatAreNotFinite) {
             folder.write(writer.ending, writer.write(with_coordinate(1e30)))); // finite, and beyond float32 arithmetic
     }
     refused(folder.write("e.obj", "v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n"));
+}
+
+// Below some 1e-13 m contacts vanished without a word, and below 1e-37 m no grid could be made.
+TEST(HostileMesh, SmallerThanRaysCanTell) {
+    const TempFolder folder;
+    for (const Writer& writer : writers) {
+        for (const double size : {1e-7, 1e-13, 1e-37}) {
+            const std::string error = refused(folder.write(writer.ending, writer.write(scaled(sound(), size))));
+            EXPECT_NE(error.find("m long, less than the 1e-06 m"), std::string::npos) << error;
+        }
+    }
+    for (const double size : {1e-7, 1e-42, 1e30}) {
+        PreparedMesh mesh = prepare_mesh(sound());
+        for (Vec3& v : mesh.vertices) v = {v.x * size, v.y * size, v.z * size};
+        EXPECT_THROW(Shape::make(mesh), InputError) << size;
+    }
+}
+
+TEST(HostileMesh, TheLeastSizeHasTheContactsOfAnyOther) {
+    std::vector<std::size_t> counts;
+    for (const double size : {1.0, std::ldexp(1.0, -21)}) { // the box is 2.6 times as long
+        Scene scene;
+        const auto shape = Shape::make(scaled(torus(60, 40, 1, 0.3), size));
+        scene.add(shape);
+        scene.add(shape, {.translation = {0.4 * size, 0.1 * size, 0.2 * size}});
+        counts.push_back(scene.step().size());
+    }
+    EXPECT_GT(counts[0], 100u);
+    EXPECT_EQ(counts[0], counts[1]);
 }
 
 TEST(HostileMesh, IndicesOutOfRange) {
