@@ -8,26 +8,36 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <set>
+#include <memory>
 #include <span>
+#include <system_error>
 
 using raycontact::InputError;
 using Json = nlohmann::json;
 
+namespace {
+
 std::string read_text_file(const std::filesystem::path& file, const std::string& what) {
+    const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
     std::error_code error;
-    if (std::filesystem::is_directory(file, error)) throw InputError(file.string() + ": is a folder, not " + what);
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string() + ": cannot be opened: " + std::strerror(errno));
-    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (stream.bad()) throw InputError(file.string() + ": cannot be read: " + std::strerror(errno));
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (status.type() == std::filesystem::file_type::directory) fail("is a folder, not " + what);
+    if (error) fail("cannot be opened: " + error.message());
+    // A pipe or device could block for ever or never end.
+    if (status.type() != std::filesystem::file_type::regular) fail("is not an ordinary file; copy it to one");
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) fail("cannot be read: " + error.message());
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+    if (!stream) fail(std::string("cannot be opened: ") + std::strerror(errno));
+    std::string text(size, '\0');
+    text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
+    if (std::ferror(stream.get()) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
     return text;
 }
 
+/// A parser's own words without its error code, short enough for one line.
 std::string words_of(const Json::exception& error) {
     std::string text = error.what();
     if (const auto end = text.find("] "); end != std::string::npos) text.erase(0, end + 2);
@@ -36,27 +46,83 @@ std::string words_of(const Json::exception& error) {
     return text;
 }
 
+/// Builds a document and refuses what the library would let pass. Its own parser with a callback would look through a
+/// list again after each object of it.
+class StrictJson : public nlohmann::json_sax<Json> {
+public:
+    StrictJson(std::string file, std::string what, std::size_t depth, std::string item)
+        : file_(std::move(file)), what_(std::move(what)), item_(std::move(item)), depth_(depth) {}
+
+    Json take() { return std::move(root_); }
+
+    bool null() override { return put(nullptr); }
+    bool boolean(bool value) override { return put(value); }
+    bool number_integer(number_integer_t value) override { return put(value); }
+    bool number_unsigned(number_unsigned_t value) override { return put(value); }
+    bool number_float(number_float_t value, const string_t&) override { return put(value); }
+    bool string(string_t& value) override { return put(std::move(value)); }
+    bool binary(binary_t& value) override { return put(std::move(value)); }
+    bool start_object(std::size_t) override { return open(Json::object()); }
+    bool start_array(std::size_t) override { return open(Json::array()); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& key) override {
+        const auto [member, is_new] = open_.back()->emplace(key, nullptr);
+        if (!is_new) refuse("the key " + ::quoted(key) + " is given twice");
+        member_ = &*member;
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
+        throw InputError(file_ + ": is not JSON: " + words_of(error));
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& why) const {
+        const bool in_item = !item_.empty() && open_.size() > 1 && root_.is_array();
+        throw InputError(file_ + (in_item ? fmt::format(": {} {}: ", item_, root_.size() - 1) : ": ") + why);
+    }
+
+    Json& add(Json&& value) {
+        if (open_.empty()) return root_ = std::move(value);
+        if (!open_.back()->is_array()) return *member_ = std::move(value);
+        open_.back()->push_back(std::move(value));
+        return open_.back()->back();
+    }
+    bool put(Json&& value) {
+        add(std::move(value));
+        return true;
+    }
+    // What is open is the last of its parent, which does not grow meanwhile: pointers stay.
+    bool open(Json&& value) {
+        if (open_.size() == depth_) refuse("nested too deeply for " + what_);
+        open_.push_back(&add(std::move(value)));
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::string file_, what_, item_;
+    std::size_t depth_;
+    Json root_;
+    std::vector<Json*> open_;
+    Json* member_ = nullptr; ///< of the innermost object, whose value comes next
+};
+
+} // namespace
+
 std::string quoted(const std::string& text) {
     constexpr std::size_t most = 80;
     return Json(text.size() > most ? text.substr(0, most) + " ..." : text)
         .dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-Json read_json_file(const std::filesystem::path& file, const std::string& what, int depth) {
-    std::vector<std::set<std::string>> keys; // of the objects around the place that is read
-    const auto watch = [&](int now, Json::parse_event_t event, Json& parsed) {
-        if (now > depth) throw InputError(file.string() + ": nested too deeply for " + what);
-        if (event == Json::parse_event_t::object_start) keys.emplace_back();
-        if (event == Json::parse_event_t::object_end) keys.pop_back();
-        if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-            throw InputError(file.string() + ": the key " + quoted(parsed.get<std::string>()) + " is given twice");
-        return true;
-    };
-    try {
-        return Json::parse(read_text_file(file, what), watch);
-    } catch (const Json::exception& error) {
-        throw InputError(file.string() + ": is not JSON: " + words_of(error));
-    }
+Json read_json_file(const std::filesystem::path& file, const std::string& what, std::size_t depth,
+                    const std::string& item) {
+    StrictJson document(file.string(), what, depth, item);
+    Json::sax_parse(read_text_file(file, what), &document);
+    return document.take();
 }
 
 void JsonField::refuse(const std::string& why) const {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -13,12 +14,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-/// The text of a file; `what` it should be, for messages: "a scene file". Throws InputError naming the file.
-std::string read_text_file(const std::filesystem::path& file, const std::string& what);
-
-/// A parser's own words without its error code, short enough for one line.
-std::string words_of(const nlohmann::json::exception& error);
 
 /// A text from a file as JSON would print it, so that a message stays one line.
 std::string quoted(const std::string& text);
@@ -60,5 +55,7 @@ private:
     std::string file_, path_;
 };
 
-/// The document of a file; a key given twice is refused, as is what is nested more than `depth` deep.
-nlohmann::json read_json_file(const std::filesystem::path& file, const std::string& what, int depth);
+/// The document of an ordinary file; `what` it should be, for messages: "a scene file". A key given twice is refused,
+/// as are more than `depth` lists and objects in one another. `item`: what the entries of a list of all are called.
+nlohmann::json read_json_file(const std::filesystem::path& file, const std::string& what, std::size_t depth,
+                              const std::string& item = {});

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 namespace {
@@ -19,27 +18,6 @@ using Json = nlohmann::json;
 using raycontact::InputError;
 
 constexpr std::array<std::string_view, 6> known_keys{"a", "b", "pose_a", "pose_b", "scale_a", "scale_b"};
-
-/// The document, refused while it is read when it is nested deeper than a pose needs or gives a key twice: what comes
-/// back is small, and nothing of it has been dropped.
-Json parse(const std::filesystem::path& file, const std::string& text) {
-    std::set<std::string> keys;
-    std::size_t pair = 0;
-    const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-        if (depth > 3) throw InputError(file.string() + fmt::format(": pair {}: nested too deeply", pair));
-        if (event == Json::parse_event_t::object_start && depth == 1) keys.clear();
-        if (event == Json::parse_event_t::object_end && depth == 1) ++pair;
-        if (event == Json::parse_event_t::key && depth == 2 && !keys.insert(parsed.get<std::string>()).second) {
-            throw InputError(file.string() + fmt::format(": pair {}: the key {} is given twice", pair, parsed.dump()));
-        }
-        return true;
-    };
-    try {
-        return Json::parse(text, watch);
-    } catch (const Json::exception& error) {
-        throw InputError(file.string() + ": is not JSON: " + words_of(error));
-    }
-}
 
 std::filesystem::path read_path(const Json& pair, const char* key, const std::string& where,
                                 const std::filesystem::path& folder) {
@@ -94,7 +72,7 @@ double read_scale(const Json& pair, const std::string& key, const std::string& w
 } // namespace
 
 std::vector<QueryPair> read_pairs_file(const std::filesystem::path& file) {
-    const Json document = parse(file, read_text_file(file, "a pairs file"));
+    const Json document = read_json_file(file, "a pairs file", 3, "pair");
     if (!document.is_array()) {
         throw InputError(file.string() + ": must be an array of pairs, is " + document.type_name());
     }

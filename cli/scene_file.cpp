@@ -55,7 +55,7 @@ auto at_fault(const JsonField& field, Make make) {
 class SceneReader {
 public:
     SceneReader(const std::filesystem::path& file, const SceneFileOptions& options)
-        : file_(file), document_(read_json_file(file, "a scene file", 5)), options_(options) {}
+        : file_(file), document_(read_json_file(file, "a scene file", 6)), options_(options) {}
 
     SceneDescription read() {
         const JsonField root(document_, file_.string());

@@ -14,7 +14,15 @@ namespace {
 
 constexpr std::uint32_t coding_zlib = 1;
 constexpr std::size_t checksum_at = BlockHeader::size - 8;
-constexpr std::uint64_t most_expansion = 1032; // what deflate can reach at best
+constexpr std::uint64_t most_expansion = 64; // of what describes something; deflate can reach 1032
+
+/// How long a payload may be, so that no small file fills the memory: what writers pack stays below by far, but for the
+/// poses of bodies at rest, of which there is a block at a time.
+std::uint64_t most_raw(BlockType type, std::uint64_t stored) {
+    if (type == BlockType::info || type == BlockType::end) return most_text;
+    const std::uint64_t always = type == BlockType::steps ? std::uint64_t{16} << 20 : std::uint64_t{64} << 10;
+    return always + most_expansion * stored;
+}
 
 std::uint64_t checksum_of(std::span<const unsigned char> header, std::span<const unsigned char> padded,
                           std::uint64_t place) {
@@ -35,7 +43,7 @@ uInt piece(std::size_t bytes) {
 void deflate_onto(Bytes& to, std::span<const unsigned char> raw, Effort effort) {
     z_stream stream{};
     // Residuals are noise with a skewed distribution: runs and Huffman codes find all there is, and fast.
-    const int level = effort == Effort::quick ? 1 : 6;
+    const int level = effort == Effort::none ? Z_NO_COMPRESSION : effort == Effort::quick ? 1 : 6;
     const int strategy = effort == Effort::quick ? Z_RLE : Z_DEFAULT_STRATEGY;
     if (deflateInit2(&stream, level, Z_DEFLATED, 15, 9, strategy) != Z_OK) throw std::bad_alloc();
     const std::size_t before = to.size();
@@ -63,6 +71,10 @@ Bytes make_block(BlockType type, std::uint32_t first_step, std::uint32_t step_co
                  std::uint64_t place, Effort effort) {
     Bytes block(BlockHeader::size);
     deflate_onto(block, raw, effort);
+    if (raw.size() > most_raw(type, block.size() - BlockHeader::size)) {
+        block.resize(BlockHeader::size);
+        deflate_onto(block, raw, Effort::none);
+    }
     const std::uint64_t stored = block.size() - BlockHeader::size;
     block.resize((block.size() + 7) & ~std::size_t{7});
     Bytes header;
@@ -99,8 +111,8 @@ BlockHeader read_block_header(std::span<const unsigned char> bytes) {
         throw Damage("is of no known type");
     }
     if (coding != coding_zlib) throw Damage("is coded in a way this version does not know");
-    if (header.stored > UINT32_MAX || header.raw > (header.stored + 1) * most_expansion)
-        throw Damage("has an impossible length");
+    if (header.stored > UINT32_MAX) throw Damage("has an impossible length");
+    if (header.raw > most_raw(header.type, header.stored)) throw Damage("would unpack to more than any writer packs");
     return header;
 }
 

@@ -37,7 +37,10 @@ struct BlockHeader {
 };
 
 /// How hard to try: steps are written while a simulation waits.
-enum class Effort { quick, thorough };
+enum class Effort { none, quick, thorough };
+
+/// The longest payload of a block that is JSON.
+constexpr std::uint64_t most_text = std::uint64_t{1} << 20;
 
 /// A whole block, header to padding. `place` is its distance from the start of the side chunk's data.
 Bytes make_block(BlockType type, std::uint32_t first_step, std::uint32_t step_count, std::span<const unsigned char> raw,

@@ -2,6 +2,7 @@
 #include <recording/layout.h>
 
 #include "body_slots.h"
+#include "json_depth.h"
 
 #include <raycontact/error.h>
 
@@ -20,6 +21,12 @@ using Json = nlohmann::ordered_json;
 Bytes to_bytes(const Json& document) {
     const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
     return {text.begin(), text.end()};
+}
+
+Json from_bytes(std::span<const unsigned char> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (json_depth(text) > 4) throw Damage("nests its JSON too deeply");
+    return Json::parse(text);
 }
 
 // A length or null: chosen by the library.
@@ -116,31 +123,35 @@ void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vec
 }
 
 Bytes encode_info(const Info& info) {
-    return to_bytes({{"format", "raycontact recording"},
-                     {"version", format_version},
-                     {"scene", info.scene},
-                     {"seed", info.seed},
-                     {"bodies", info.bodies},
-                     {"dt", info.dt},
-                     {"method", to_string(info.settings.method)},
-                     {"caster", to_string(info.settings.caster)},
-                     {"direction", to_string(info.settings.direction)},
-                     {"features", to_string(info.settings.features)},
-                     {"device", info.settings.devices},
-                     {"threads", info.settings.threads},
-                     {"displacement_threshold", length(info.settings.displacement_threshold)},
-                     {"confidence", info.settings.confidence},
-                     {"culling_distance", length(info.settings.culling_distance)},
-                     {"distance_extension", length(info.settings.distance_extension)},
-                     {"max_iterations", info.settings.max_iterations},
-                     {"cast_lost_walks", info.settings.cast_lost_walks},
-                     {"skip_outside", info.settings.skip_outside},
-                     {"mesh_source", info.mesh_source}});
+    Bytes bytes = to_bytes({{"format", "raycontact recording"},
+                            {"version", format_version},
+                            {"scene", info.scene},
+                            {"seed", info.seed},
+                            {"bodies", info.bodies},
+                            {"dt", info.dt},
+                            {"method", to_string(info.settings.method)},
+                            {"caster", to_string(info.settings.caster)},
+                            {"direction", to_string(info.settings.direction)},
+                            {"features", to_string(info.settings.features)},
+                            {"device", info.settings.devices},
+                            {"threads", info.settings.threads},
+                            {"displacement_threshold", length(info.settings.displacement_threshold)},
+                            {"confidence", info.settings.confidence},
+                            {"culling_distance", length(info.settings.culling_distance)},
+                            {"distance_extension", length(info.settings.distance_extension)},
+                            {"max_iterations", info.settings.max_iterations},
+                            {"cast_lost_walks", info.settings.cast_lost_walks},
+                            {"skip_outside", info.settings.skip_outside},
+                            {"mesh_source", info.mesh_source}});
+    if (bytes.size() > most_text)
+        throw InputError("recording: the scene's name and what its meshes are need more than "
+                         + std::to_string(most_text) + " bytes; shorten them");
+    return bytes;
 }
 
 Info decode_info(std::span<const unsigned char> payload, std::uint32_t version) {
     try {
-        const Json document = Json::parse(payload.begin(), payload.end());
+        const Json document = from_bytes(payload);
         // No checksum covers the chunk's own.
         if (document.at("version").get<std::uint32_t>() != version) throw Damage("says another version than its chunk");
         Info info;
@@ -165,7 +176,7 @@ Bytes encode_end(std::uint32_t steps, std::string_view hash) {
 
 std::string decode_end(std::span<const unsigned char> payload, std::uint32_t steps) {
     try {
-        const Json document = Json::parse(payload.begin(), payload.end());
+        const Json document = from_bytes(payload);
         auto hash = document.at("hash").get<std::string>();
         if (!is_hash(hash)) throw Damage("has a hash that is none");
         if (document.at("steps").get<std::uint32_t>() != steps) throw Damage("counts other steps than there are");

@@ -3,6 +3,7 @@
 
 #include <recording/file.h>
 #include <recording/layout.h>
+#include <recording/live_bodies.h>
 #include <recording/shape_codec.h>
 #include <recording/step_codec.h>
 #include <recording/viewer_part.h>
@@ -67,10 +68,9 @@ struct Reader::State {
     bool is_whole(std::uint64_t offset) const;
     void enter(const Found& block);
     void read_blocks();
-    std::vector<std::uint32_t> live_at(std::uint32_t step) const;
     void open_steps(std::size_t block);
     void read_step(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs);
-    void place(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs) const;
+    void place(std::uint32_t i, std::vector<Pose>& poses, std::vector<Pair>& pairs);
 
     File file;
     std::uint64_t size;                 ///< when it was last asked
@@ -90,6 +90,7 @@ struct Reader::State {
     std::size_t open_block = SIZE_MAX;
     std::uint32_t next_step = 0; ///< of the open block
     std::vector<Pose> poses;     ///< of the step before, by number
+    LiveBodies live, ahead;      ///< of the step that is read; of those that are only counted
 };
 
 std::uint32_t Reader::State::word_at(std::uint64_t offset) const {
@@ -178,6 +179,9 @@ void Reader::State::enter(const Found& block) {
             throw Damage("does not match its checksum");
         if (header.first_step != steps || header.step_count == 0 || header.step_count > Body::never - steps)
             throw Damage("does not follow on the steps before");
+        // Each has two counts of pairs at least, and with a block's header for every 16 it takes 3 bytes of the file.
+        if (header.step_count > header.raw / 2 || steps + header.step_count > (block.end() - data) / 3)
+            throw Damage("counts more steps than it has room for");
         steps += header.step_count;
         step_blocks.push_back(block);
         break;
@@ -219,24 +223,15 @@ void Reader::State::read_blocks() {
     for (const Body& body : bodies) slots = std::max(slots, slot_of(body.id) + std::size_t{1});
 }
 
-std::vector<std::uint32_t> Reader::State::live_at(std::uint32_t step) const {
-    std::vector<std::uint32_t> live;
-    for (std::uint32_t i = 0; i < bodies.size(); ++i)
-        if (bodies[i].alive(step)) live.push_back(i);
-    return live;
-}
-
 void Reader::State::open_steps(std::size_t index) {
     open_block = SIZE_MAX; // until it is known to be sound
     const BlockHeader& header = step_blocks[index].header;
     Bytes payload = unpack(step_blocks[index]);
-    // Each step has two counts of pairs at least.
-    if (header.step_count > payload.size() / 2) throw Damage("holds fewer steps than it says");
     std::uint64_t residuals = 0;
     for (std::uint32_t i = 0; i < header.step_count && residuals <= payload.size(); ++i)
-        residuals += 12 * live_at(header.first_step + i).size();
+        residuals += 12 * ahead.at(header.first_step + i, events, bodies).size();
     decoder.open(std::move(payload), residuals, bodies.size());
-    poses.assign(bodies.size(), Pose{});
+    poses.resize(bodies.size());
     open_block = index;
     next_step = header.first_step;
 }
@@ -250,7 +245,7 @@ void Reader::State::read_step(std::uint32_t i, std::vector<Pose>& to_poses, std:
     const auto index = static_cast<std::size_t>(after - step_blocks.begin() - 1);
     try {
         if (index != open_block || i < next_step) open_steps(index);
-        for (; next_step <= i; ++next_step) decoder.next(live_at(next_step), poses);
+        for (; next_step <= i; ++next_step) decoder.next(live.at(next_step, events, bodies), poses);
         place(i, to_poses, to_pairs);
     } catch (const Damage& damage) {
         open_block = SIZE_MAX;
@@ -260,9 +255,9 @@ void Reader::State::read_step(std::uint32_t i, std::vector<Pose>& to_poses, std:
 }
 
 // From numbers to slots and ids.
-void Reader::State::place(std::uint32_t i, std::vector<Pose>& to_poses, std::vector<Pair>& to_pairs) const {
+void Reader::State::place(std::uint32_t i, std::vector<Pose>& to_poses, std::vector<Pair>& to_pairs) {
     to_poses.resize(slots);
-    for (const std::uint32_t body : live_at(i)) to_poses[slot_of(bodies[body].id)] = poses[body];
+    for (const std::uint32_t body : live.at(i, events, bodies)) to_poses[slot_of(bodies[body].id)] = poses[body];
     to_pairs.clear();
     for (const auto& [first, second] : decoder.pairs()) {
         const Body &a = bodies[first], &b = bodies[second];

@@ -21,8 +21,10 @@ void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
     const std::vector<BodyEvent>& events = reader_.events();
     for (; next_event_ < events.size() && events[next_event_].step <= i; ++next_event_)
         happen(events[next_event_], poses);
-    for (const Body& body : reader_.bodies())
-        if (body.alive(i)) scene_.set_pose(body.id, poses[slot_of(body.id)]);
+    for (const std::uint32_t number : live_.at(i, events, reader_.bodies())) {
+        const BodyId body = reader_.bodies()[number].id;
+        scene_.set_pose(body, poses[slot_of(body)]);
+    }
 }
 
 void Follower::happen(const BodyEvent& event, std::span<const Pose> poses) {

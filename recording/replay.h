@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <recording/live_bodies.h>
 #include <recording/reader.h>
 
 #include <raycontact/scene.h>
@@ -29,6 +30,7 @@ private:
     const Reader& reader_;
     Scene scene_;
     std::size_t next_event_ = 0;
+    LiveBodies live_;
 };
 
 /// How often contacts differ from those of every ray cast in full.

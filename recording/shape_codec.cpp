@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <recording/shape_codec.h>
 
+#include "mesh/check.h"
+
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -72,6 +76,8 @@ Vec3 get_vector(ByteSource& from) {
     v.y = from.get_double();
     v.z = from.get_double();
     if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) throw Damage("has a coordinate not finite");
+    if (std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) > 1.001 * greatest_coordinate)
+        throw Damage("has a coordinate too large");
     return v;
 }
 
@@ -107,6 +113,22 @@ MeshReport get_report(ByteSource& from) {
     r.repairs.resize(from.get_count(4));
     for (std::string& repair : r.repairs) repair = from.get_text();
     return r;
+}
+
+/// What the report claims decides which vertices need no ray, so no claim is taken on trust. Topology must be as it
+/// says. What rounding can change (remade_mesh) is believed only as far as the mesh bears it out.
+void check_claims(PreparedMesh& mesh) {
+    MeshReport& said = mesh.report;
+    MeshReport found;
+    try {
+        found = measured_report(mesh);
+    } catch (const InputError& error) {
+        throw Damage(error.what());
+    }
+    if ((said.closed && !found.closed) || (said.manifold && !found.manifold) || (said.oriented && !found.oriented))
+        throw Damage("is not as closed, manifold or oriented as its report says");
+    said.self_intersecting = said.self_intersecting || found.self_intersecting;
+    said.outward = said.outward && found.outward;
 }
 
 } // namespace
@@ -160,6 +182,7 @@ PreparedMesh decode_mesh(std::span<const unsigned char> bytes) {
     }
     for (std::uint32_t& index : mesh.triangle_index) index = from.get<std::uint32_t>();
     if (from.left() != 0) throw Damage("holds more than a mesh");
+    check_claims(mesh);
     return mesh;
 }
 

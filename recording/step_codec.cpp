@@ -93,11 +93,17 @@ void StepDecoder::open(Bytes payload, std::uint64_t residuals, std::size_t bodie
     residual_at_ = 0;
     pair_at_ = residuals_ * 8;
     pairs_.clear();
-    last_.assign(bodies, PoseBits{});
+    last_.resize(bodies);
+    block_of_.resize(bodies);
+    ++block_; // in place of zeros for every body there ever was
 }
 
 void StepDecoder::next(std::span<const std::uint32_t> live, std::span<Pose> poses) {
     if (live.size() * numbers > residuals_ - residual_at_) throw Damage("holds fewer poses than its steps have bodies");
+    for (const std::uint32_t body : live) {
+        if (block_of_[body] != block_) last_[body] = {};
+        block_of_[body] = block_;
+    }
     for (std::size_t i = 0; i < numbers; ++i) {
         for (const std::uint32_t body : live) {
             std::uint64_t code = 0;
@@ -141,10 +147,12 @@ void StepDecoder::next_pairs(std::size_t bodies) {
         if (step >= bodies || gap >= bodies) throw Damage("pairs bodies that do not exist");
         const std::uint64_t first = last.first + step, second = (step == 0 ? last.second : first) + gap;
         if (second >= bodies || first >= second) throw Damage("pairs bodies that do not exist");
+        if (i > 0 && step == 0 && gap == 0) throw Damage("has a pair twice");
         last = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)};
         pairs_.push_back(last);
     }
     std::inplace_merge(pairs_.begin(), pairs_.begin() + middle, pairs_.end());
+    if (std::adjacent_find(pairs_.begin(), pairs_.end()) != pairs_.end()) throw Damage("has a pair twice");
     pair_at_ += all - from.left();
 }
 

@@ -50,7 +50,9 @@ public:
 private:
     void next_pairs(std::size_t bodies);
 
-    std::vector<PoseBits> last_; ///< by body, zero where the block has none yet
+    std::vector<PoseBits> last_; ///< by body, of this block where `block_of_` says so, else to be taken as zero
+    std::vector<std::uint64_t> block_of_;
+    std::uint64_t block_ = 0; ///< counts the blocks that were opened
     Bytes payload_;
     std::size_t residuals_ = 0, residual_at_ = 0, pair_at_ = 0;
     std::vector<NumberPair> pairs_, before_;

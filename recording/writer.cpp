@@ -28,6 +28,7 @@ double seconds_since(Clock::time_point start) {
 
 constexpr std::uint64_t most_bytes = 0xffffffff;          // of a .glb file
 constexpr std::uint64_t reserve = 4096;                   // of those, kept for the end block
+constexpr std::uint32_t most_block_steps = 16;            // a reader takes one step for 3 bytes at most
 constexpr std::size_t block_bytes = std::size_t{4} << 20; // of poses and pairs, before a block is closed anyway
 
 void append(Bytes& to, const Bytes& more) {
@@ -174,7 +175,7 @@ void Writer::State::step(std::span<const Pose> by_slot, std::span<const Pair> gi
     ++steps;
     slots.step_done();
     // The first step at once: a recording exists from then on.
-    if (!begun || encoder.steps() >= options.flush_steps || encoder.bytes() >= block_bytes
+    if (!begun || encoder.steps() >= std::min(options.flush_steps, most_block_steps) || encoder.bytes() >= block_bytes
         || seconds_since(oldest) >= options.flush_seconds)
         flush();
     seconds += seconds_since(start);

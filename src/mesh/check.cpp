@@ -9,8 +9,11 @@
 #include "mesh/self_intersection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <locale>
 #include <numeric>
+#include <sstream>
 #include <vector>
 
 namespace raycontact {
@@ -83,6 +86,22 @@ void check_mesh(const Mesh& mesh, const std::string& name) {
                 fail("triangle " + std::to_string(i) + ": " + no_vertex(v, mesh.vertices.size()));
         }
     }
+}
+
+void check_size(std::span<const Vec3> vertices, const std::string& name) {
+    const Box box = box_of(vertices);
+    for (const double end : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z}) {
+        if (std::fabs(end) > 1.001 * greatest_coordinate) // a recorded one may be off by a rounding
+            throw InputError(name + ": reaches further than 1e9 m from the origin; scale the mesh");
+    }
+    const Vec3 extent = box.high - box.low;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    if (longest >= least_size) return;
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << name << ": its box is " << longest << " m long, less than the " << least_size
+         << " m that rays need; scale the mesh";
+    throw InputError(text.str());
 }
 
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,

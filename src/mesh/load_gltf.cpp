@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader over a JSON parser: tinygltf takes a property of the wrong kind for one that is not there, so that a
 // damaged `indices` turns a mesh into a soup. Places in the file are named as the JSON names them: nodes[3].
+#include "json_depth.h"
 #include "mesh/input_file.h"
 #include "mesh/vector.h"
 
@@ -12,6 +13,7 @@
 #include <array>
 #include <charconv>
 #include <deque>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -99,6 +101,9 @@ public:
             text = chunk(12, "JSON");
             after_json_ = 20 + text.size();
         }
+        constexpr int deepest = 64; // extras may hold anything
+        if (json_depth(text) > deepest)
+            file.fail("nests its JSON more than " + std::to_string(deepest) + " deep; export without extras");
         json_ = json::parse(text);
         if (!text_of(needed(needed(root_, "asset"), "version")).starts_with("2"))
             file.fail("is no sound glTF file: it does not say that its version is 2");
@@ -115,7 +120,7 @@ public:
                 file_.fail("needs the extension " + in_quotes(extension) + "; export without it");
             }
         }
-        for (std::size_t i = 0; i < list(root_, "buffers").size(); ++i) buffers_.push_back(read_buffer(i));
+        read_buffers();
         place_nodes();
         constexpr std::size_t most_primitives = 1u << 22; // empty ones cost time, too
         std::size_t placed = 0;
@@ -228,14 +233,39 @@ private:
         return entries.get<std::vector<double>>();
     }
 
+    bool is_data(const Item& uri) const { return text_of(uri).starts_with("data:"); }
+
+    std::filesystem::path path_of(const Item& uri) const {
+        return file_.path.parent_path() / decoded_uri(text_of(uri));
+    }
+
+    /// The same for every way to write it.
+    static std::filesystem::path key_of(const std::filesystem::path& path) {
+        std::error_code error;
+        const std::filesystem::path key = std::filesystem::weakly_canonical(path, error);
+        return error ? path : key;
+    }
+
+    /// A file that several buffers name is read once, as far as the longest of them needs.
+    void read_buffers() {
+        const std::size_t count = list(root_, "buffers").size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const Item buffer = item("buffers", i);
+            const std::optional<Item> uri = member(buffer, "uri");
+            if (!uri || is_data(*uri)) continue;
+            std::size_t& longest = longest_[key_of(path_of(*uri))];
+            longest = std::max(longest, whole(buffer, "byteLength"));
+        }
+        for (std::size_t i = 0; i < count; ++i) buffers_.push_back(read_buffer(i));
+    }
+
     /// As many bytes as the buffer announces; the rest of its file is not kept.
     std::string_view read_buffer(std::size_t index) {
         const Item buffer = item("buffers", index);
         const std::size_t length = whole(buffer, "byteLength");
         std::string_view bytes;
         if (const std::optional<Item> uri = member(buffer, "uri")) {
-            bytes = fetched_.emplace_back(fetched(*uri, length));
-            bytes_ += bytes.size();
+            bytes = is_data(*uri) ? keep(decoded_data(*uri, length)) : fetched(*uri);
         } else {
             // The chunk of a GLB is its first buffer (glTF 2.0, section 3.6.1.2).
             if (index > 0 || !after_json_) file_.fail(buffer.name + " has no uri; it is damaged");
@@ -248,15 +278,26 @@ private:
         return bytes.substr(0, length);
     }
 
-    std::string fetched(const Item& uri, std::size_t most) const {
-        const std::string& text = text_of(uri);
-        if (!text.starts_with("data:")) {
+    std::string_view keep(std::string&& bytes) {
+        bytes_ += bytes.size();
+        return fetched_.emplace_back(std::move(bytes));
+    }
+
+    std::string_view fetched(const Item& uri) {
+        const std::filesystem::path path = path_of(uri), key = key_of(path);
+        std::string_view& bytes = files_[key];
+        if (bytes.empty()) {
             try {
-                return InputFile::read(file_.path.parent_path() / decoded_uri(text), most).bytes;
+                bytes = keep(InputFile::read(path, longest_.at(key)).bytes);
             } catch (const InputError& error) {
                 fail(uri, error.what());
             }
         }
+        return bytes;
+    }
+
+    std::string decoded_data(const Item& uri, std::size_t most) const {
+        const std::string& text = text_of(uri);
         const std::size_t data = text.find(',') + 1; // 0 where there is none
         if (!std::string_view(text).substr(0, data).ends_with(";base64,"))
             fail(uri, in_quotes(text) + " is no base64; export the buffer as a file or in base64");
@@ -408,6 +449,17 @@ private:
         return list;
     }
 
+    /// Nodes times primitives grow faster than any file: what they place is bounded by what the file holds.
+    void check_growth(std::size_t more) const {
+        constexpr std::size_t always = 1u << 20, for_a_byte = 4;
+        const std::size_t most = std::max(always, for_a_byte * bytes_);
+        if (mesh_.vertices.size() + mesh_.triangles.size() + more > most) {
+            file_.fail("places the same meshes so often that over " + std::to_string(most)
+                       + " vertices and triangles come of its " + std::to_string(bytes_)
+                       + " bytes; split it or reduce the meshes");
+        }
+    }
+
     void read_primitive(const Item& primitive, const std::string& node, const Placement& placement) {
         constexpr std::size_t triangles = 4, strip = 5, fan = 6;
         const std::size_t mode = whole(primitive, "mode", triangles);
@@ -418,9 +470,11 @@ private:
         const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
         const std::size_t base = mesh_.vertices.size();
         if (base + points.size() / 3 > most_vertices) file_.fail("has too many vertices; split or reduce it");
+        check_growth(points.size() / 3);
         const std::vector<std::uint32_t> list = corners(primitive, points.size() / 3);
         const std::size_t more = mode == triangles ? list.size() / 3 : std::max<std::size_t>(list.size(), 2) - 2;
         if (mesh_.triangles.size() + more > most_triangles) file_.fail("has too many triangles; split or reduce it");
+        check_growth(points.size() / 3 + more);
         for (std::size_t i = 0; i < points.size(); i += 3) {
             mesh_.vertices.push_back(placement.placed({points[i], points[i + 1], points[i + 2]}));
             if (!is_finite(mesh_.vertices.back()))
@@ -444,9 +498,11 @@ private:
     const InputFile& file_;
     json json_;
     const Item root_{json_, "glTF"};
-    std::optional<std::size_t> after_json_;  ///< where the second chunk of a GLB starts
-    std::size_t bytes_ = file_.bytes.size(); ///< of the file and of all that its buffers fetched
-    std::deque<std::string> fetched_;        ///< never moved: buffers look into it
+    std::optional<std::size_t> after_json_;                   ///< where the second chunk of a GLB starts
+    std::size_t bytes_ = file_.bytes.size();                  ///< of the file and of all that its buffers fetched
+    std::deque<std::string> fetched_;                         ///< never moved: buffers look into it
+    std::map<std::filesystem::path, std::size_t> longest_;    ///< of the buffers that name this file
+    std::map<std::filesystem::path, std::string_view> files_; ///< that were read
     std::vector<std::string_view> buffers_;
     std::vector<Node> nodes_;
     Mesh mesh_;

@@ -55,6 +55,20 @@ bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
     return a == b || b == c || c == a || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
 }
 
+std::vector<Vec3> all_snapped(std::span<const Vec3> vertices) {
+    std::vector<Vec3> exact;
+    exact.reserve(vertices.size());
+    for (const Vec3& v : vertices) exact.push_back(snapped(v));
+    return exact;
+}
+
+std::vector<std::uint32_t> triangles_with_area(const PreparedMesh& mesh, std::span<const Vec3> exact) {
+    std::vector<std::uint32_t> with_area;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+        if (!is_degenerate(mesh.triangles[i], exact)) with_area.push_back(i);
+    return with_area;
+}
+
 std::string counted(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
@@ -140,7 +154,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         // Products of four coordinates must fit float32, with which rays are cast.
         const auto& [x, y, z] = mesh.vertices[i];
-        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > 1e9)
+        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > greatest_coordinate)
             throw InputError(name + ": vertex " + std::to_string(i)
                              + " is further than 1e9 m from the origin; scale the mesh");
     }
@@ -148,13 +162,10 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     if (repair == Repair::allowed) drop_useless(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
-    std::vector<Vec3> exact;
-    for (const Vec3& v : prepared.vertices) exact.push_back(snapped(v));
-    std::vector<std::uint32_t> with_area;
-    for (std::uint32_t i = 0; i < prepared.triangles.size(); ++i) {
-        if (!is_degenerate(prepared.triangles[i], exact)) with_area.push_back(i);
-    }
+    const std::vector<Vec3> exact = all_snapped(prepared.vertices);
+    std::vector<std::uint32_t> with_area = triangles_with_area(prepared, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
+    check_size(prepared.vertices, name);
     const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area));
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
@@ -166,6 +177,19 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     prepared.report.file_triangles = mesh.triangles.size();
     fill_report(prepared, patches, edges, exact, bvh);
     return prepared;
+}
+
+MeshReport measured_report(const PreparedMesh& mesh) {
+    const FloatEnvironment environment;
+    const std::vector<Vec3> exact = all_snapped(mesh.vertices);
+    std::vector<std::uint32_t> with_area = triangles_with_area(mesh, exact);
+    if (with_area.empty()) throw InputError("no triangle has an area");
+    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area));
+    const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
+    PreparedMesh measured(mesh);
+    measured.report.outward = false; // as for a mesh whose report is not filled yet
+    fill_report(measured, find_patches(mesh.triangles, edges), edges, exact, bvh);
+    return measured.report;
 }
 
 } // namespace raycontact

@@ -3,6 +3,7 @@
 
 #include "executor/float_environment.h"
 #include "mesh/adjacency.h"
+#include "mesh/check.h"
 #include "mesh/measure.h"
 #include "shape/build.h"
 
@@ -59,6 +60,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
         for (const std::uint32_t v : triangle)
             if (v >= mesh.vertices.size())
                 throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " does not exist");
+    check_size(mesh.vertices, "mesh '" + mesh.name + "'");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
     shape.mesh = mesh;

@@ -2,6 +2,10 @@
 // Pairs files that are not what they should be: each gives status 2, no output, and one line that says where.
 #include "expect.h"
 
+#include <chrono>
+
+#include <sys/stat.h>
+
 namespace {
 
 struct Hostile {
@@ -92,11 +96,26 @@ INSTANTIATE_TEST_SUITE_P(Files, HostilePairs, testing::ValuesIn(hostile_files())
 
 TEST(HostilePairsFile, MissingFolderAndUnreadable) {
     const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder.path() / "pipe.json").c_str(), 0600), 0);
+    expect_refused(run_program({"collide", "--pairs", "pipe.json"}, folder.path()), "pipe.json: is not an ordinary");
+    expect_refused(run_program({"run", "pipe.json"}, folder.path()), "pipe.json: is not an ordinary");
+    expect_refused(run_program({"collide", "--pairs", "/dev/zero"}, folder.path()), "/dev/zero: is not an ordinary");
     std::filesystem::create_directory(folder.path() / "folder.json");
     std::filesystem::create_symlink("nowhere", folder.path() / "dangling.json");
     for (const char* file : {"missing.json", "folder.json", "dangling.json"}) {
         expect_refused(run_program({"collide", "--pairs", file, "--json"}, folder.path()), file);
     }
+}
+
+TEST(HostilePairsFile, ManyPairsAreReadInLinearTime) {
+    const TemporaryFolder folder;
+    folder.write("cube.obj", cube_obj());
+    std::string text = "[";
+    for (int i = 0; i < 300000; ++i) text += good + ",";
+    folder.write("many.json", text + "{}]");
+    const auto start = std::chrono::steady_clock::now();
+    expect_refused(run_program({"collide", "--pairs", "many.json"}, folder.path()), "pair 300000: the key \"a\"");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)); // some minutes where it is not
 }
 
 } // namespace

@@ -5,15 +5,19 @@
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
+#include <raycontact/scene.h>
+#include <raycontact/shape.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -63,6 +67,18 @@ Mesh with_index(std::uint32_t index) {
     return mesh;
 }
 
+// A sanitizer needs address space of its own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
+Mesh scaled(Mesh mesh, double size) {
+    for (Vec3& v : mesh.vertices) v = {v.x * size, v.y * size, v.z * size};
+    return mesh;
+}
+
 struct Writer {
     const char* ending;
     std::string (*write)(const Mesh&);
@@ -105,6 +121,35 @@ TEST(HostileMesh, CoordinatesThatAreNotFinite) {
             folder.write(writer.ending, writer.write(with_coordinate(1e30)))); // finite, and beyond float32 arithmetic
     }
     refused(folder.write("e.obj", "v 0 0 0\nv 1e999 0 0\nv 0 1 0\nf 1 2 3\n"));
+}
+
+// Below some 1e-13 m contacts vanished without a word, and below 1e-37 m no grid could be made.
+TEST(HostileMesh, SmallerThanRaysCanTell) {
+    const TempFolder folder;
+    for (const Writer& writer : writers) {
+        for (const double size : {1e-7, 1e-13, 1e-37}) {
+            const std::string error = refused(folder.write(writer.ending, writer.write(scaled(sound(), size))));
+            EXPECT_NE(error.find("m long, less than the 1e-06 m"), std::string::npos) << error;
+        }
+    }
+    for (const double size : {1e-7, 1e-42, 1e30}) {
+        PreparedMesh mesh = prepare_mesh(sound());
+        for (Vec3& v : mesh.vertices) v = {v.x * size, v.y * size, v.z * size};
+        EXPECT_THROW(Shape::make(mesh), InputError) << size;
+    }
+}
+
+TEST(HostileMesh, TheLeastSizeHasTheContactsOfAnyOther) {
+    std::vector<std::size_t> counts;
+    for (const double size : {1.0, std::ldexp(1.0, -21)}) { // the box is 2.6 times as long
+        Scene scene;
+        const auto shape = Shape::make(scaled(torus(60, 40, 1, 0.3), size));
+        scene.add(shape);
+        scene.add(shape, {.translation = {0.4 * size, 0.1 * size, 0.2 * size}});
+        counts.push_back(scene.step().size());
+    }
+    EXPECT_GT(counts[0], 100u);
+    EXPECT_EQ(counts[0], counts[1]);
 }
 
 TEST(HostileMesh, IndicesOutOfRange) {
@@ -365,6 +410,58 @@ TEST(HostileMesh, ManyPrimitivesInManyNodesAreNoLongWait) {
         refused(folder.write("many.gltf", R"({"asset":{"version":"2.0"},"nodes":[)" + nodes
                                               + R"(],"meshes":[{"primitives":[)" + primitives + "]}]}"));
     EXPECT_NE(error.find("places too many primitives"), std::string::npos) << error;
+}
+
+TEST(HostileMesh, GltfNestedDeepIsRefusedBeforeItIsParsed) {
+    const TempFolder folder;
+    const std::string json = gltf_json(sound(), R"([{"mesh":0}])", ""), buffer = gltf_buffer(sound());
+    const auto with_extras = [&](const char* before, int depth) {
+        const std::string extras = R"("extras":)" + std::string(static_cast<std::size_t>(depth), '[')
+                                   + std::string(static_cast<std::size_t>(depth), ']') + ",";
+        return folder.write("t.glb", glb(replaced(json, before, extras + before), buffer));
+    };
+    for (const char* place : {R"("asset")", R"("mesh":0)", R"("componentType")", R"("attributes")"}) {
+        SCOPED_TRACE(place);
+        EXPECT_NE(refused(with_extras(place, 15000)).find("nests its JSON more than 64 deep"), std::string::npos);
+        EXPECT_EQ(load_mesh(with_extras(place, 40)).triangles.size(), sound().triangles.size());
+    }
+    // Brackets in a text nest nothing.
+    const std::string text = R"("extras":"\"\\)" + std::string(200, '[') + R"(","asset")";
+    EXPECT_EQ(load_mesh(folder.write("t.glb", glb(replaced(json, R"("asset")", text), buffer))).triangles.size(),
+              sound().triangles.size());
+}
+
+TEST(HostileMesh, GltfThatPlacesMuchMoreThanItHoldsIsRefused) {
+    const TempFolder folder;
+    std::string nodes = R"({"mesh":0})", primitives = R"({"attributes":{"POSITION":0},"indices":1})", order = "0";
+    for (int i = 1; i < 3000; ++i) nodes += R"(,{"mesh":0})", order.append(",").append(std::to_string(i));
+    for (int i = 1; i < 600; ++i) primitives += R"(,{"attributes":{"POSITION":0},"indices":1})";
+    const std::string json =
+        replaced(gltf_json(sound(), "[" + nodes + "]", ""), R"("nodes":[0])", R"("nodes":[)" + order + "]");
+    const std::string many = replaced(json, R"({"attributes":{"POSITION":0},"indices":1})", primitives);
+    const std::string error = refused(folder.write("many.glb", glb(many, gltf_buffer(sound()))));
+    EXPECT_NE(error.find("places the same meshes so often"), std::string::npos) << error;
+}
+
+TEST(HostileMesh, GltfReadsAFileOnceHoweverOftenItIsNamed) {
+    const TempFolder folder;
+    const std::string bytes = gltf_buffer(sound()), length = std::to_string(bytes.size());
+    folder.write("b.bin", bytes + std::string(std::size_t{1} << 20, 'x')); // longer than its buffers, which is allowed
+    const std::string json = gltf_json(sound(), R"([{"mesh":0}])", "b.bin");
+    EXPECT_EQ(load_mesh(folder.write("t.gltf", json)).triangles.size(), sound().triangles.size());
+    std::string more = R"("buffers":[)";
+    for (int i = 0; i < 5000; ++i) more += R"({"byteLength":1000000,"uri":"./%62.bin"},)";
+    const std::string named = replaced(replaced(json, R"("buffers":[)", more), R"({"buffer":0,"byteOffset":0)",
+                                       R"({"buffer":5000,"byteOffset":0)");
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_AS, &before), 0);
+    rlimit small = before;
+    small.rlim_cur = rlim_t{2} << 30; // 5 GB where each buffer has its own copy
+    if (!sanitized) {
+        ASSERT_EQ(::setrlimit(RLIMIT_AS, &small), 0);
+    }
+    EXPECT_NO_THROW(load_mesh(folder.write("t.gltf", named)));
+    EXPECT_EQ(::setrlimit(RLIMIT_AS, &before), 0);
 }
 
 TEST(HostileMesh, DeepChainOfNodesIsNoLongWait) {
