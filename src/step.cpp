@@ -83,8 +83,16 @@ void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, s
     const Pin pin(part.executor().core());
     const auto pairs = assignment_.pairs_of(number);
     part.begin(bodies, pairs, settings_);
-    found_[number].placer.run(part.executor(), settings_.direction, bodies, pairs, part.end(), contacts);
+    place(found_[number], part, bodies, pairs, part.end(), contacts);
     found_[number].ms = milliseconds_since(start);
+}
+
+// local: the vertex contacts of these pairs.
+void NarrowPhase::place(Found& found, Part& part, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+                        std::span<const kernels::LocalContact> local, std::vector<Contact>& contacts) {
+    found.placer.run(part.executor(), settings_.direction, bodies, pairs, local, contacts);
+    if (settings_.features == Features::edges)
+        found.edges.run(part.executor(), settings_.direction, bodies, pairs, local, contacts);
 }
 
 // The others cast the pairs of failed parts in full. Returns the parts that failed in doing so.
@@ -96,7 +104,7 @@ std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& fa
         Found& found = found_[number];
         Part& part = parts_[number];
         std::vector<Contact> more;
-        found.placer.run(part.executor(), settings_.direction, bodies, given[number], part.adopt(given[number]), more);
+        place(found, part, bodies, given[number], part.adopt(given[number]), more);
         const auto old = static_cast<std::ptrdiff_t>(found.contacts.size());
         found.contacts.insert(found.contacts.end(), more.begin(), more.end());
         std::ranges::inplace_merge(found.contacts, found.contacts.begin() + old, {}, pair_of);

@@ -3,6 +3,7 @@
 
 #include "contacts/changes.h"
 #include "contacts/place.h"
+#include "edges/edge_stage.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
 
@@ -33,9 +34,12 @@ private:
     struct Found {
         std::vector<Contact> contacts;
         Placer placer;
+        EdgeStage edges;
         double ms = 0;
     };
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
+    void place(Found& found, Part& part, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+               std::span<const kernels::LocalContact> local, std::vector<Contact>& contacts);
     void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
                                      StepStats& stats);

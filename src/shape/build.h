@@ -16,6 +16,12 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
 /// Each vertex's share of the surface, m^2: a third of the area of its triangles, summed in double and rounded once.
 std::vector<float> measure_areas(const ShapeData& shape);
 
+/// Fills sharp_edges and vertex_triangle. Needs `neighbours`.
+void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
+
+/// Fills component_vertices. Needs vertex_triangle.
+void find_components(ShapeData& shape);
+
 /// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
 /// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.

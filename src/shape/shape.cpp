@@ -70,6 +70,8 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
         throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
     shape.neighbours = triangle_neighbours(shape.mesh.triangles);
     for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});
+    find_sharp_edges(shape, normals);
+    find_components(shape);
     shape.vertex_normals = angle_weighted_normals(shape, normals);
     shape.vertex_areas = measure_areas(shape);
     for (const Vec3& n : normals)
@@ -143,7 +145,7 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
-           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
+           + bytes(d.sharp_edges) + bytes(d.vertex_triangle) + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
            + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells)
            + bytes(d.clearances);
 }

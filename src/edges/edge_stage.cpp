@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edges/edge_stage.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace raycontact {
+
+namespace {
+
+constexpr std::uint32_t pairs_in_block = 32;
+
+auto order_of(const Contact& c) {
+    return std::tuple(c.vertex_body, c.feature, c.vertex, c.crossing);
+}
+
+double area_of(const ShapeData& shape, std::uint32_t face) {
+    const Vec3 a = shape.corner(face, 0);
+    return 0.5 * length(cross(shape.corner(face, 1) - a, shape.corner(face, 2) - a));
+}
+
+float weight_of(const ShapeData& source, const FeatureContact& found) {
+    if (found.feature == Feature::inside) return source.vertex_areas[found.index];
+    const std::uint32_t across = source.neighbours[found.index / 3][found.index % 3];
+    return static_cast<float>((area_of(source, found.index / 3) + (across == NONE ? 0 : area_of(source, across))) / 6);
+}
+
+Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
+              Direction direction) {
+    const ShapeData& shape = source.shape->data();
+    Contact contact;
+    contact.body_a = pair.first;
+    contact.body_b = pair.second;
+    contact.vertex_body = found.source;
+    contact.feature = found.feature;
+    contact.crossing = found.crossing;
+    contact.vertex = found.feature == Feature::edge ? 3 * shape.mesh.triangle_index[found.index / 3] + found.index % 3
+                                                    : shape.mesh.vertex_index[found.index];
+    contact.triangle = target.shape->data().mesh.triangle_index[found.face];
+    contact.point = transform_point(target.centred, found.point);
+    const Vec3 out = transform_point({target.centred.rotation, {}}, found.normal);
+    const double sign = found.source == VertexBody::a ? -1 : 1;
+    contact.normal = {static_cast<float>(sign * out.x), static_cast<float>(sign * out.y),
+                      static_cast<float>(sign * out.z)};
+    contact.depth = static_cast<float>(found.depth);
+    contact.ray_length = contact.depth;
+    if (direction == Direction::weighted) contact.weight = weight_of(shape, found);
+    return contact;
+}
+
+} // namespace
+
+void EdgeStage::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
+                    std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
+                    std::vector<Contact>& contacts) {
+    firsts_.resize(2 * pairs.size() + 1);
+    std::uint32_t at = 0;
+    for (std::uint32_t directed = 0; directed < firsts_.size(); ++directed) {
+        while (at < local.size() && local[at].pair < directed) ++at;
+        firsts_[directed] = at;
+    }
+    const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
+    if (blocks_.size() < block_count) blocks_.resize(block_count);
+    executor.run(block_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t b = begin; b < end; ++b) {
+            Block& block = blocks_[b];
+            block.contacts.clear();
+            block.ends.clear();
+            const std::size_t last = std::min<std::size_t>(pairs.size(), (b + 1) * std::size_t{pairs_in_block});
+            for (std::size_t i = b * std::size_t{pairs_in_block}; i < last; ++i) {
+                const auto vertices_of = [&](std::size_t directed) {
+                    return local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
+                };
+                find(block, direction, pairs[i], bodies, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+                block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
+            }
+        }
+    });
+    merge(pairs, contacts);
+}
+
+void EdgeStage::find(Block& block, Direction direction, const SlotPair& pair, std::span<const PlacedBody> bodies,
+                     const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
+    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    if (a.shape->data().header.closed == 0 && b.shape->data().header.closed == 0) return;
+    const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
+    block.near.clear();
+    block.found.clear();
+    find_near_triangles(placed[0], 0, block.near);
+    const bool crosses = block.edges.find(placed, block.near, vertices, block.found);
+    // Surfaces that do not cross are apart, or one is inside the other.
+    for (std::size_t side = 0; side < 2 && !crosses && vertices[0].empty() && vertices[1].empty(); ++side) {
+        if (placed[side].target.header.closed == 0 || !has_part_inside(placed[side])) continue;
+        if (const auto inside = contact_of_inside(placed[side], static_cast<VertexBody>(side)))
+            block.found.push_back(*inside);
+    }
+    const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
+    for (const FeatureContact& found : block.found) {
+        const bool from_a = found.source == VertexBody::a;
+        block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, direction));
+    }
+    std::sort(block.contacts.begin() + first, block.contacts.end(),
+              [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });
+}
+
+void EdgeStage::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+    std::size_t added = 0;
+    for (std::size_t i = 0; i < pairs.size(); i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
+    if (added == 0) return;
+    merged_.clear();
+    merged_.reserve(contacts.size() + added);
+    const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Block& block = blocks_[i / pairs_in_block];
+        const std::size_t in = i % pairs_in_block;
+        const auto own = contacts.begin() + firsts_[2 * i], own_end = contacts.begin() + firsts_[2 * i + 2];
+        const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
+        std::merge(own, own_end, more, block.contacts.begin() + block.ends[in], std::back_inserter(merged_), before);
+    }
+    contacts.swap(merged_);
+}
+
+} // namespace raycontact

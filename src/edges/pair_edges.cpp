@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edges/pair_edges.h"
+
+#include "edges/mesh_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raycontact {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+// Ends are pulled into their piece by this part of the smaller body, so that a ray from there starts inside.
+constexpr double pull = 1e-3, most_pull = 0.01;
+// An end beside vertices in contact speaks from this part of their depth on.
+constexpr double loud = 0.5;
+// Of a larger region so many points stand for all.
+constexpr std::size_t most_points = 48;
+constexpr int most_triangles_around = 256;
+
+// How far a point must go along a face's normal to leave the target; if it is beyond the face's plane, its distance
+// from that plane, negative. A plane may reach past its face, so a ray decides.
+double way_out(const ShapeData& target, const Vec3& point, const Vec3& normal, double height) {
+    const double flat = height - dot(point, normal);
+    if (flat <= 0) return flat;
+    const MeshHit hit = closest_hit(target, point, normal, 0, never);
+    return hit.face != NONE && hit.from_inside ? hit.distance : flat;
+}
+
+// Inward mean of the normals of an edge's faces, in the source's frame; zero for a fold.
+Vec3 inward(const ShapeData& source, std::uint32_t edge) {
+    const std::uint32_t across = source.neighbours[edge / 3][edge % 3];
+    const Vec3 n = normal_of(source, edge / 3) + (across != NONE ? normal_of(source, across) : Vec3{});
+    const double size = length(n);
+    return size > 1e-6 ? (-1 / size) * n : Vec3{};
+}
+
+struct Candidate {
+    std::uint32_t face;
+    Vec3 normal;
+    double height;
+    std::array<double, 2> depths; ///< of both ends
+    double deeper() const { return std::max(depths[0], depths[1]); }
+};
+
+} // namespace
+
+bool PairEdges::find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
+                     const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
+                     std::vector<FeatureContact>& found) {
+    for (std::size_t side = 0; side < 2; ++side) {
+        crossings_[side].clear();
+        if (placed[side].target.header.closed != 0) find_crossings(placed[side], near, side == 0, crossings_[side]);
+    }
+    if (crossings_[0].empty() && crossings_[1].empty()) return false;
+    const std::array<std::uint32_t, 2> first{0, static_cast<std::uint32_t>(crossings_[0].size())};
+    auto node = static_cast<std::uint32_t>(crossings_[0].size() + crossings_[1].size());
+    for (std::size_t side = 0; side < 2; ++side) {
+        list_speakers(placed[side], vertices[side], node, speakers_[side]);
+        list_pieces(placed[side], crossings_[side], speakers_[side], first[side], pieces_[side]);
+    }
+    regions_.reset(node);
+    for (std::size_t side = 0; side < 2; ++side) {
+        join_crossings(placed[side], crossings_[side], first[side], side == 0);
+        join_vertices(placed[side].source, side);
+    }
+    for (std::size_t side = 0; side < 2; ++side) speak(placed[side], side, found);
+    return true;
+}
+
+void PairEdges::list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
+                              std::uint32_t& node, std::vector<Speaker>& speakers) {
+    speakers.clear();
+    for (const kernels::LocalContact& c : vertices)
+        speakers.push_back({c.vertex, c.triangle, double(c.distance) * double(c.facing), placed.vertex(c.vertex), 0});
+    std::sort(speakers.begin(), speakers.end(), [](const Speaker& p, const Speaker& q) { return p.vertex < q.vertex; });
+    for (Speaker& speaker : speakers) speaker.region = node++;
+}
+
+void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
+                            std::span<const Speaker> speakers, std::uint32_t first_node, std::vector<Piece>& pieces) {
+    pieces.clear();
+    const auto speaker_of = [&](std::uint32_t vertex) -> const Speaker* {
+        const auto at = std::lower_bound(speakers.begin(), speakers.end(), vertex,
+                                         [](const Speaker& s, std::uint32_t v) { return s.vertex < v; });
+        return at != speakers.end() && at->vertex == vertex ? &*at : nullptr;
+    };
+    for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
+        const std::uint32_t edge = crossings[begin].edge;
+        while (end < crossings.size() && crossings[end].edge == edge) ++end;
+        const std::span<const Crossing> own = crossings.subspan(begin, end - begin);
+        const auto [start, stop] = ends_of(placed.source, edge);
+        const Vec3 origin = placed.vertex(start), along = placed.vertex(stop) - origin;
+        const double most = std::min(most_pull, pull * 1e7 * placed.hair / length(along));
+        // The piece before crossing k, if it is inside.
+        for (std::size_t k = 0; k <= own.size(); ++k) {
+            const bool enters = k > 0, leaves = k < own.size();
+            if ((enters && own[k - 1].leaves) || (leaves && !own[k].leaves)) continue;
+            const double p = enters ? own[k - 1].at : 0, q = leaves ? own[k].at : 1;
+            if (q <= p) continue;
+            const double by = std::min(most, (q - p) / 4);
+            Piece piece{edge, first_node + static_cast<std::uint32_t>(begin + (leaves ? k : k - 1)), {}, {NONE, NONE}};
+            if (enters) {
+                piece.faces[0] = own[k - 1].face;
+                piece.ends[0] = {origin + (p + by) * along, NONE, static_cast<std::uint32_t>(k - 1), nullptr};
+            } else {
+                piece.ends[0] = {origin, start, edge_start, speaker_of(start)};
+            }
+            if (leaves) {
+                piece.faces[1] = own[k].face;
+                piece.ends[1] = {origin + (q - by) * along, NONE, static_cast<std::uint32_t>(k), nullptr};
+            } else {
+                piece.ends[1] = {origin + along, stop, edge_end, speaker_of(stop)};
+            }
+            pieces.push_back(piece);
+        }
+    }
+}
+
+// Crossings that lie on the same face of either body lie on one closed curve, along which the surfaces cross.
+void PairEdges::join_crossings(const SourceMesh& placed, std::span<const Crossing> crossings, std::uint32_t first_node,
+                               bool source_first) {
+    for (std::size_t i = 0; i < crossings.size(); ++i) {
+        const Crossing& c = crossings[i];
+        for (const std::uint32_t own : {c.edge / 3, placed.source.neighbours[c.edge / 3][c.edge % 3]}) {
+            if (own == NONE) continue;
+            const std::uint64_t first = source_first ? own : c.face, second = source_first ? c.face : own;
+            regions_.add_key(first << 32 | second, first_node + static_cast<std::uint32_t>(i));
+        }
+    }
+    if (!source_first) regions_.join_keys();
+}
+
+// What hangs together inside the target: both ends of a piece, pieces that end at the same vertex, and vertices in
+// contact with their neighbours.
+void PairEdges::join_vertices(const ShapeData& source, std::size_t side) {
+    at_vertex_.clear();
+    for (const Speaker& speaker : speakers_[side]) at_vertex_.emplace_back(speaker.vertex, speaker.region);
+    for (const Piece& piece : pieces_[side]) {
+        if (piece.ends[0].is_crossing() && piece.ends[1].is_crossing()) regions_.join(piece.region - 1, piece.region);
+        for (const End& end : piece.ends)
+            if (!end.is_crossing()) at_vertex_.emplace_back(end.vertex, piece.region);
+    }
+    std::sort(at_vertex_.begin(), at_vertex_.end());
+    for (std::size_t i = 1; i < at_vertex_.size(); ++i)
+        if (at_vertex_[i].first == at_vertex_[i - 1].first)
+            regions_.join(at_vertex_[i].second, at_vertex_[i - 1].second);
+    const auto join_with = [&](std::uint32_t vertex, std::uint32_t node) {
+        const auto at = std::lower_bound(at_vertex_.begin(), at_vertex_.end(), std::pair{vertex, 0u});
+        if (at != at_vertex_.end() && at->first == vertex) regions_.join(at->second, node);
+    };
+    for (const Speaker& speaker : speakers_[side]) {
+        const std::uint32_t begin = source.vertex_triangle[speaker.vertex];
+        std::uint32_t t = begin;
+        for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
+            const auto& corners = source.mesh.triangles[t];
+            const std::size_t c = corners[0] == speaker.vertex ? 0 : corners[1] == speaker.vertex ? 1 : 2;
+            join_with(corners[(c + 1) % 3], speaker.region);
+            join_with(corners[(c + 2) % 3], speaker.region);
+            t = source.neighbours[t][c];
+            if (t == begin) break;
+        }
+    }
+}
+
+void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found) {
+    points_.clear();
+    loudest_.clear();
+    extents_.clear();
+    quiet_.clear();
+    for (Speaker& speaker : speakers_[side]) {
+        speaker.region = regions_.of(speaker.region);
+        points_.push_back({speaker.region, speaker.point});
+        loudest_.emplace_back(speaker.region, speaker.depth);
+    }
+    for (Piece& piece : pieces_[side]) {
+        piece.region = regions_.of(piece.region);
+        for (const End& end : piece.ends)
+            if (end.speaker == nullptr) points_.push_back({piece.region, end.point});
+    }
+    std::stable_sort(points_.begin(), points_.end(),
+                     [](const RegionPoint& p, const RegionPoint& q) { return p.region < q.region; });
+    std::sort(loudest_.begin(), loudest_.end(), [](const auto& p, const auto& q) {
+        return p.first != q.first ? p.first < q.first : p.second > q.second;
+    });
+    for (const Piece& piece : pieces_[side]) speak(placed, static_cast<VertexBody>(side), piece, found);
+    // Several edges may speak for one vertex: the lowest does.
+    std::sort(quiet_.begin(), quiet_.end(), [](const auto& p, const auto& q) {
+        return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
+    });
+    for (std::size_t i = 0; i < quiet_.size(); ++i)
+        if (i == 0 || quiet_[i].first != quiet_[i - 1].first) found.push_back(quiet_[i].second);
+}
+
+void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& piece,
+                      std::vector<FeatureContact>& found) {
+    const ShapeData& target = placed.target;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Speaker* speaker = piece.ends[k].speaker;
+        if (speaker == nullptr) continue;
+        // On a fine mesh nearly every piece begins at a vertex in contact and leaves through the rim: it is silent.
+        const Vec3 normal = normal_of(target, speaker->face);
+        if (dot(target.corner(speaker->face, 0) - piece.ends[1 - k].point, normal) < loud * speaker->depth) return;
+    }
+
+    std::array<Candidate, 5> candidates;
+    std::size_t count = 0;
+    const auto add = [&](std::uint32_t face) {
+        for (std::size_t i = 0; i < count; ++i)
+            if (candidates[i].face == face) return;
+        Candidate& added = candidates[count];
+        added.face = face;
+        added.normal = normal_of(target, face);
+        added.height = dot(target.corner(face, 0), added.normal);
+        for (std::size_t i = 0; i < count; ++i) // the other triangle of a flat face
+            if (dot(candidates[i].normal, added.normal) > 1 - 1e-12
+                && std::fabs(candidates[i].height - added.height) < 1e-9 * target.diagonal)
+                return;
+        for (std::size_t k = 0; k < 2; ++k)
+            added.depths[k] = way_out(target, piece.ends[k].point, added.normal, added.height);
+        if (added.deeper() > 0) ++count;
+    };
+    for (const std::uint32_t face : piece.faces)
+        if (face != NONE) add(face);
+    const Vec3 own = inward(placed.source, piece.edge), in = placed.turned(own);
+    if (own != Vec3{}) {
+        const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
+        for (const Vec3& origin : {piece.ends[0].point, piece.ends[1].point, middle}) {
+            const MeshHit hit = closest_hit(target, origin, in, placed.hair, never);
+            if (hit.face == NONE || !hit.from_inside) continue;
+            // The paper's second test: before leaving the source (section 2.1).
+            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, never).distance >= hit.distance)
+                add(hit.face);
+        }
+    }
+    double deepest = 0;
+    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
+    const double beside = loudest(piece.region);
+    if (count == 0 || deepest < loud * beside) return;
+
+    // No region is shallower than its piece: from the shallowest on, the rest need not be asked.
+    std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](const Candidate& p, const Candidate& q) { return p.deeper() < q.deeper(); });
+    const Candidate* best = nullptr;
+    double least = never;
+    for (std::size_t i = 0; i < count && candidates[i].deeper() < least; ++i) {
+        const double metres = extent(placed, piece.region, candidates[i].normal, candidates[i].height, least);
+        if (metres >= least) continue;
+        least = metres;
+        best = &candidates[i];
+    }
+    if (best == nullptr) return;
+    const double enough = beside > 0 ? loud * least : 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const End &end = piece.ends[k], &other = piece.ends[1 - k];
+        // Above a vertex for which this piece speaks, the crossing adds nothing.
+        if (end.is_crossing() && !other.is_crossing() && best->depths[k] < loud * best->depths[1 - k]) continue;
+        if (end.speaker != nullptr || !(best->depths[k] > enough) || !(static_cast<float>(best->depths[k]) > 0))
+            continue;
+        const FeatureContact contact{source,     Feature::edge, piece.edge,   end.crossing,
+                                     best->face, end.point,     best->normal, best->depths[k]};
+        if (end.is_crossing())
+            found.push_back(contact);
+        else
+            quiet_.emplace_back(end.vertex, contact);
+    }
+}
+
+double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height,
+                         double enough) {
+    for (const Extent& known : extents_)
+        if (known.region == region && known.normal == normal && known.height == height) return known.metres;
+    const auto less = [](const RegionPoint& p, std::uint32_t r) { return p.region < r; };
+    const auto begin = std::lower_bound(points_.begin(), points_.end(), region, less);
+    const auto end = std::lower_bound(begin, points_.end(), region + 1, less);
+    const auto count = static_cast<std::size_t>(end - begin);
+    const std::size_t asked = std::min(count, most_points);
+    double metres = 0;
+    for (std::size_t i = 0; i < asked; ++i) {
+        const Vec3& point = begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+        metres = std::max(metres, way_out(placed.target, point, normal, height));
+        if (metres >= enough) return metres;
+    }
+    extents_.push_back({region, normal, height, metres});
+    return metres;
+}
+
+double PairEdges::loudest(std::uint32_t region) const {
+    const auto at = std::lower_bound(loudest_.begin(), loudest_.end(), region,
+                                     [](const auto& entry, std::uint32_t r) { return entry.first < r; });
+    return at != loudest_.end() && at->first == region ? at->second : 0;
+}
+
+} // namespace raycontact

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edges/crossings.h"
+#include "edges/feature_contact.h"
+#include "edges/regions.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// The edges' rule for one pair (docs/edges.md). Keeps nothing but memory from one pair to the next.
+class PairEdges {
+public:
+    /// placed: a in b, b in a. near: triangles of a and of b that could meet. vertices: the vertex contacts of a, of b.
+    /// Adds contacts in any order; returns whether any edge crosses a face.
+    bool find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
+              const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
+              std::vector<FeatureContact>& found);
+
+private:
+    /// A vertex in contact.
+    struct Speaker {
+        std::uint32_t vertex;
+        std::uint32_t face; ///< of the target, that its ray met
+        double depth;
+        Vec3 point;
+        std::uint32_t region; ///< its number among all, later of its region
+    };
+    /// An end of a piece: a crossing, or a vertex of the source inside the target.
+    struct End {
+        Vec3 point; ///< pulled a little into the piece
+        std::uint32_t vertex = NONE;
+        std::uint32_t crossing = 0; ///< Contact::crossing
+        const Speaker* speaker = nullptr;
+        bool is_crossing() const { return vertex == NONE; }
+    };
+    /// A piece of an edge inside the target.
+    struct Piece {
+        std::uint32_t edge;
+        std::uint32_t region; ///< the number of one of its crossings among all, later of its region
+        std::array<End, 2> ends;
+        std::array<std::uint32_t, 2> faces; ///< crossed at either end, NONE at a vertex
+    };
+    struct RegionPoint {
+        std::uint32_t region;
+        Vec3 point;
+    };
+    /// How far a region must move to leave the target by a face's plane.
+    struct Extent {
+        std::uint32_t region;
+        Vec3 normal;
+        double height; ///< of the plane
+        double metres;
+    };
+
+    static void list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
+                              std::uint32_t& node, std::vector<Speaker>& speakers);
+    static void list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
+                            std::span<const Speaker> speakers, std::uint32_t first_node, std::vector<Piece>& pieces);
+    void join_crossings(const SourceMesh& placed, std::span<const Crossing> crossings, std::uint32_t first_node,
+                        bool source_first);
+    void join_vertices(const ShapeData& source, std::size_t side);
+    void speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
+    void speak(const SourceMesh& placed, VertexBody source, const Piece& piece, std::vector<FeatureContact>& found);
+    double extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height, double enough);
+    /// Depth of the deepest vertex contact of this side in a region; 0: none.
+    double loudest(std::uint32_t region) const;
+
+    std::array<std::vector<Crossing>, 2> crossings_;
+    std::array<std::vector<Speaker>, 2> speakers_; ///< by vertex
+    std::array<std::vector<Piece>, 2> pieces_;
+    Regions regions_;
+    std::vector<RegionPoint> points_; ///< of one side, by region
+    std::vector<Extent> extents_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
+    std::vector<std::pair<std::uint32_t, FeatureContact>> quiet_;    ///< of one side: vertices for which an edge speaks
+    std::vector<std::pair<std::uint32_t, double>> loudest_; ///< of one side: the deepest vertex contact of each region
+};
+
+} // namespace raycontact
