@@ -56,21 +56,28 @@ LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
         Segment segment;
         segment.device = device_of(scene, found.body_a, found.body_b);
         segment.point = triple(found.point);
+        return std::pair(segment, body);
+    };
+    const auto outward = [&](BodyId body, std::uint32_t vertex) {
         const Shape& shape = scene.shape(body);
-        const Vec3& outward = shape.vertex_normals()[vertex_of(shape, found.vertex)];
-        segment.direction = triple(transform_point({scene.pose(body).rotation, {}}, outward));
-        return segment;
+        const Vec3& normal = shape.vertex_normals()[vertex_of(shape, vertex)];
+        return triple(transform_point({scene.pose(body).rotation, {}}, normal));
     };
     for (const Contact& contact : scene.contacts()) {
-        Segment segment = start(contact);
-        for (double& part : segment.direction) part = -part; // rays go inward
-        segment.length = double(contact.ray_length);
+        auto [segment, body] = start(contact);
         for (std::size_t i = 0; i < 3; ++i) segment.normal[i] = double(contact.normal[i]);
+        // A vertex's ray goes inward; the others' goes along the normal, the way out.
+        const bool inward = contact.feature == Feature::vertex;
+        segment.direction = inward ? outward(body, contact.vertex) : segment.normal;
+        if (inward || contact.vertex_body == VertexBody::a)
+            for (double& part : segment.direction) part = -part;
+        segment.length = double(contact.ray_length);
         segment.depth = double(contact.depth);
         layer.contacts.push_back(segment);
     }
     for (const Prediction& prediction : scene.predictions()) {
-        Segment segment = start(prediction);
+        auto [segment, body] = start(prediction);
+        segment.direction = outward(body, prediction.vertex);
         const Triple ahead = triple(prediction.ahead);
         for (std::size_t i = 0; i < 3; ++i) segment.length += (ahead[i] - segment.point[i]) * segment.direction[i];
         segment.length = std::max(segment.length, 0.0); // a little behind, where a walk passed an edge

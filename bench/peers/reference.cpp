@@ -11,7 +11,7 @@ Reference::Reference(const Work& work) {
         place(*scene, step);
         std::vector<Name>& names = names_.emplace_back();
         for (const Contact& c : scene->step(step.pairs))
-            names.push_back({c.body_a, c.body_b, static_cast<std::uint32_t>(c.vertex_body), c.vertex, c.triangle});
+            names.push_back({c.body_a, c.body_b, c.vertex, c.crossing, c.triangle, c.vertex_body, c.feature});
         rays_.push_back(scene->stats().rays);
     }
 }
@@ -20,11 +20,13 @@ void Reference::compare(std::size_t step, std::span<const Contact> found, record
     contacts_.resize(names_[step].size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const Name& name = names_[step][i];
-        contacts_[i].body_a = name[0];
-        contacts_[i].body_b = name[1];
-        contacts_[i].vertex_body = static_cast<VertexBody>(name[2]);
-        contacts_[i].vertex = name[3];
-        contacts_[i].triangle = name[4];
+        contacts_[i].body_a = name.body_a;
+        contacts_[i].body_b = name.body_b;
+        contacts_[i].vertex_body = name.vertex_body;
+        contacts_[i].feature = name.feature;
+        contacts_[i].vertex = name.vertex;
+        contacts_[i].crossing = name.crossing;
+        contacts_[i].triangle = name.triangle;
     }
     wrong.add(found, contacts_);
     wrong.rays_compared += rays_[step];

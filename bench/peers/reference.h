@@ -4,7 +4,6 @@
 #include <bench/peers/work.h>
 #include <recording/replay.h>
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,8 +21,12 @@ public:
     std::uint64_t rays(std::size_t step) const { return rays_[step]; }
 
 private:
-    using Name = std::array<std::uint32_t, 5>; ///< body_a, body_b, vertex_body, vertex, triangle
-    std::vector<std::vector<Name>> names_;     ///< of each step
+    struct Name {
+        std::uint32_t body_a, body_b, vertex, crossing, triangle;
+        VertexBody vertex_body;
+        Feature feature;
+    };
+    std::vector<std::vector<Name>> names_; ///< of each step
     std::vector<std::uint64_t> rays_;
     std::vector<Contact> contacts_; ///< of the step that is compared
 };

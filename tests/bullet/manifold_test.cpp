@@ -11,10 +11,10 @@
 namespace raycontact::test {
 namespace {
 
-using Key = std::tuple<int, int, int>;
+using Key = std::tuple<int, int, int, Feature, std::uint32_t>;
 Key key(const btManifoldPoint& p) {
     const bullet::PointKey k = bullet::CollisionDispatcher::key(p);
-    return {k.child0 * 1000 + k.child1, k.vertex_body, k.vertex};
+    return {k.child0 * 1000 + k.child1, k.vertex_body, k.vertex, k.feature, k.crossing};
 }
 
 /// A pair of tables' size is one patch: four points for sixteen contacts.
@@ -197,6 +197,12 @@ struct Events {
         gContactEndedCallback = nullptr;
     }
 };
+
+TEST(Manifold, KeysHoldCrossings) {
+    for (const std::uint32_t kept : {0u, 1u, 1021u, edge_start, edge_end}) EXPECT_EQ(bullet::key_crossing(kept), kept);
+    EXPECT_EQ(bullet::key_crossing(1022), 0u);
+    EXPECT_LT(bullet::key_crossing(edge_start - 1), 1022u); // never taken for an end
+}
 
 TEST(Manifold, ContactCallbacks) {
     const Events events;

@@ -291,8 +291,9 @@ void CollisionDispatcher::State::hand_out() {
         const BatchEntry* entry = &batch[order[at].second];
         Candidate candidate;
         const int source = c.vertex_body == VertexBody::a ? 0 : 1;
-        candidate.key = {entry->child0, entry->child1, entry->swapped ? 1 - source : source,
-                         static_cast<int>(c.vertex)};
+        candidate.key = {
+            entry->child0, entry->child1,           entry->swapped ? 1 - source : source, static_cast<int>(c.vertex),
+            c.feature,     key_crossing(c.crossing)};
         candidate.triangle = static_cast<int>(c.triangle);
         if (entry->swapped) {
             surface_points(c, candidate.on1, candidate.on0);
