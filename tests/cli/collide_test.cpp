@@ -59,8 +59,8 @@ TEST_F(Collide, TwoCorners) {
     const json& contacts = lines[0]["contacts"];
     ASSERT_EQ(contacts.size(), 2u);
     for (const json& contact : contacts) {
-        EXPECT_EQ(keys_of(contact), (std::set<std::string>{"vertex_body", "vertex", "triangle", "point", "normal",
-                                                           "depth", "ray_length", "weight", "key"}));
+        EXPECT_EQ(keys_of(contact), (std::set<std::string>{"feature", "vertex_body", "vertex", "triangle", "point",
+                                                           "normal", "depth", "ray_length", "weight", "key"}));
         // Either corner is 0.2, 0.3, 0.4 from the faces of the other; the ray runs along the diagonal to the first.
         EXPECT_NEAR(contact["depth"].get<double>(), 0.2, 1e-6);
         EXPECT_NEAR(contact["ray_length"].get<double>(), 0.2 * std::sqrt(3.0), 1e-6);
@@ -76,6 +76,27 @@ TEST_F(Collide, TwoCorners) {
     expect_vector(contacts[1]["point"], 0.3, 0.2, 0.1);
     EXPECT_TRUE(contacts[1]["triangle"] == 6 || contacts[1]["triangle"] == 7) << contacts[1];
     EXPECT_NE(contacts[0]["key"], contacts[1]["key"]);
+}
+
+TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
+    json inside{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.1, 0, 0.2)}, {"scale_b", 0.1}};
+    json stacked{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 0.99)}};
+    json touching{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 1)}};
+    const json pairs = json::array({inside, stacked, touching});
+    const auto lines = json_lines(run(pairs, {"--json", "--features", "edges"}).out);
+    ASSERT_EQ(lines.size(), 3u);
+    ASSERT_EQ(lines[0]["contacts"].size(), 1u);
+    EXPECT_EQ(lines[0]["contacts"][0]["feature"], "inside");
+    EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "b");
+    EXPECT_EQ(lines[1]["contacts"].size(), 8u);
+    for (const json& contact : lines[1]["contacts"]) {
+        EXPECT_EQ(contact["feature"], "edge");
+        EXPECT_EQ(contact["key"].get<std::string>().size(), 18u);
+        EXPECT_NEAR(contact["depth"].get<double>(), 0.01, 1e-6);
+        expect_vector(contact["normal"], 0, 0, 1);
+    }
+    EXPECT_EQ(lines[2]["colliding"], false);
+    EXPECT_EQ(json_lines(run(pairs).out)[1]["colliding"], false);
 }
 
 TEST_F(Collide, SwappedPairTurnsTheNormals) {
