@@ -89,7 +89,8 @@ public:
     /// InputError for a pair of a body with itself or a body that does not exist.
     std::span<const Contact> step(std::span<const Pair> pairs);
 
-    /// Of the last step; sorted by (body_a, body_b, vertex_body, vertex). Valid until the next step.
+    /// Of the last step; sorted by (body_a, body_b, vertex_body, feature, vertex, crossing). Valid until
+    /// the next step.
     std::span<const Contact> contacts() const;
     /// Contacts that the last step had and this one does not, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const;

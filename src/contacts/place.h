@@ -10,8 +10,8 @@
 
 namespace raycontact {
 
-/// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex). Points
-/// are in double.
+/// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex).
+/// All are contacts of vertices; the edges' stage sorts its own in. Points are in double.
 class Placer {
 public:
     /// local: in the order of their directed pairs.
