@@ -153,14 +153,19 @@ void PairEdges::join_vertices(const ShapeData& source, std::size_t side) {
     };
     for (const Speaker& speaker : speakers_[side]) {
         const std::uint32_t begin = source.vertex_triangle[speaker.vertex];
+        // Around the vertex; where a border ends that, the other way round, too.
         std::uint32_t t = begin;
-        for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
-            const auto& corners = source.mesh.triangles[t];
-            const std::size_t c = corners[0] == speaker.vertex ? 0 : corners[1] == speaker.vertex ? 1 : 2;
-            join_with(corners[(c + 1) % 3], speaker.region);
-            join_with(corners[(c + 2) % 3], speaker.region);
-            t = source.neighbours[t][c];
-            if (t == begin) break;
+        for (const std::size_t way : {0u, 2u}) {
+            for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
+                const auto& corners = source.mesh.triangles[t];
+                const std::size_t c = corners[0] == speaker.vertex ? 0 : corners[1] == speaker.vertex ? 1 : 2;
+                join_with(corners[(c + 1) % 3], speaker.region);
+                join_with(corners[(c + 2) % 3], speaker.region);
+                t = source.neighbours[t][(c + way) % 3];
+                if (t == begin) break;
+            }
+            if (t != NONE) break;
+            t = begin;
         }
     }
 }
@@ -172,16 +177,18 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     quiet_.clear();
     for (Speaker& speaker : speakers_[side]) {
         speaker.region = regions_.of(speaker.region);
-        points_.push_back({speaker.region, speaker.point});
+        points_.push_back({speaker.region, static_cast<std::uint32_t>(points_.size()), speaker.point});
         loudest_.emplace_back(speaker.region, speaker.depth);
     }
     for (Piece& piece : pieces_[side]) {
         piece.region = regions_.of(piece.region);
         for (const End& end : piece.ends)
-            if (end.speaker == nullptr) points_.push_back({piece.region, end.point});
+            if (end.speaker == nullptr)
+                points_.push_back({piece.region, static_cast<std::uint32_t>(points_.size()), end.point});
     }
-    std::stable_sort(points_.begin(), points_.end(),
-                     [](const RegionPoint& p, const RegionPoint& q) { return p.region < q.region; });
+    std::sort(points_.begin(), points_.end(), [](const RegionPoint& p, const RegionPoint& q) {
+        return std::pair(p.region, p.number) < std::pair(q.region, q.number);
+    });
     std::sort(loudest_.begin(), loudest_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second > q.second;
     });
@@ -240,18 +247,26 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
     const double beside = loudest(piece.region);
     if (count == 0 || deepest < loud * beside) return;
 
-    // No region is shallower than its piece: from the shallowest on, the rest need not be asked.
-    std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
-                     [](const Candidate& p, const Candidate& q) { return p.deeper() < q.deeper(); });
-    const Candidate* best = nullptr;
-    double least = never;
-    for (std::size_t i = 0; i < count && candidates[i].deeper() < least; ++i) {
-        const double metres = extent(placed, piece.region, candidates[i].normal, candidates[i].height, least);
-        if (metres >= least) continue;
-        least = metres;
-        best = &candidates[i];
+    // What is equal to a hair is equal, so that rounding decides nothing. No region is shallower than its piece: from
+    // the shallowest on, the rest need not be asked.
+    const double hair = placed.hair;
+    std::array<double, 5> regions{never, never, never, never, never};
+    double shallowest = never, shallowest_piece = never;
+    for (;;) {
+        std::size_t next = count;
+        for (std::size_t i = 0; i < count; ++i)
+            if (regions[i] == never && (next == count || candidates[i].deeper() < candidates[next].deeper())) next = i;
+        if (next == count || candidates[next].deeper() >= shallowest + hair) break;
+        const Candidate& c = candidates[next];
+        regions[next] = std::max(c.deeper(), extent(placed, piece.region, c.normal, c.height, shallowest + hair));
+        shallowest = std::min(shallowest, regions[next]);
     }
-    if (best == nullptr) return;
+    for (std::size_t i = 0; i < count; ++i)
+        if (regions[i] < shallowest + hair) shallowest_piece = std::min(shallowest_piece, candidates[i].deeper());
+    std::size_t chosen = 0;
+    while (!(regions[chosen] < shallowest + hair && candidates[chosen].deeper() < shallowest_piece + hair)) ++chosen;
+    const Candidate* best = &candidates[chosen];
+    const double least = regions[chosen];
     const double enough = beside > 0 ? loud * least : 0;
     for (std::size_t k = 0; k < 2; ++k) {
         const End &end = piece.ends[k], &other = piece.ends[1 - k];

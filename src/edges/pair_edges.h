@@ -46,6 +46,7 @@ private:
     };
     struct RegionPoint {
         std::uint32_t region;
+        std::uint32_t number; ///< among all
         Vec3 point;
     };
     /// How far a region must move to leave the target by a face's plane.

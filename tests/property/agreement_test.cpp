@@ -3,6 +3,7 @@
 #include "property/ray_sources.h"
 #include "property/shapes.h"
 #include "reference/compare.h"
+#include "reference/compare_edges.h"
 #include "reference/meshes.h"
 #include "reference/vector.h"
 
@@ -16,8 +17,9 @@ using namespace raycontact::reference;
 
 namespace {
 
-Settings with(Caster caster, Direction direction = Direction::reprojected) {
+Settings with(Caster caster, Direction direction = Direction::reprojected, Features features = Features::vertices) {
     Settings settings;
+    settings.features = features;
     settings.direction = direction;
     settings.method = Method::standard; // every ray of the rule
     settings.caster = caster;
@@ -25,11 +27,12 @@ Settings with(Caster caster, Direction direction = Direction::reprojected) {
 }
 
 auto key(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
+    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing);
 }
 
 struct Counts {
     Comparison sum;
+    EdgeComparison edges;
     std::uint64_t pairs_touching = 0, swapped = 0, rays_of_library = 0, side_tests = 0;
 };
 
@@ -42,7 +45,9 @@ void expect_flipped(std::span<const Contact> one, std::span<const Contact> two, 
         const Contact& c = one[i];
         const Contact& d = two[i < of_a ? i + (one.size() - of_a) : i - of_a];
         ASSERT_NE(c.vertex_body, d.vertex_body);
+        ASSERT_EQ(c.feature, d.feature);
         ASSERT_EQ(c.vertex, d.vertex);
+        ASSERT_EQ(c.crossing, d.crossing);
         ASSERT_EQ(c.triangle, d.triangle);
         ASSERT_EQ(c.point, d.point);
         for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(c.normal[k], -d.normal[k]);
@@ -54,15 +59,15 @@ void expect_flipped(std::span<const Contact> one, std::span<const Contact> two, 
 }
 
 template <class Place>
-void run(Place place, std::size_t poses, Counts& counts) {
+void run(Place place, std::size_t poses, Counts& counts, Features features = Features::vertices) {
     constexpr std::size_t batch = 100;
     for (std::size_t done = 0; done < poses; done += batch) {
         std::vector<Placement> placements;
         for (std::size_t i = 0; i < batch; ++i) placements.push_back(place());
         const Direction direction = directions[done / batch % std::size(directions)];
-        Scene bvh(with(Caster::bvh, direction));
-        Scene basic(with(Caster::basic, direction));
-        Scene swapped(with(Caster::bvh, direction));
+        Scene bvh(with(Caster::bvh, direction, features));
+        Scene basic(with(Caster::basic, direction, features));
+        Scene swapped(with(Caster::bvh, direction, features));
         const auto contacts = bvh.step(add_all(bvh, placements));
         const auto of_basic = basic.step(add_all(basic, placements));
         const auto of_swapped = swapped.step(add_all(swapped, placements, true));
@@ -79,6 +84,8 @@ void run(Place place, std::size_t poses, Counts& counts) {
         for (std::size_t i = 0; i < batch; ++i) {
             const Placement& p = placements[i];
             compare(p.a->solid, p.pose_a, p.b->solid, p.pose_b, parts[i], counts.sum, direction);
+            if (features == Features::edges)
+                compare_edges(p.a->solid, p.pose_a, p.b->solid, p.pose_b, parts[i], counts.edges, direction);
             expect_flipped(parts[i], swapped_parts[i], counts);
             counts.pairs_touching += !parts[i].empty();
             seen += parts[i].size();
@@ -153,6 +160,81 @@ TEST(agreement, small_bodies_in_a_large_slab) {
     EXPECT_GE(counts.sum.agreed, 100000u);
 }
 
+void report_edges(const Counts& c) {
+    std::printf("[ counts   ] %s\n[ counts   ] %s\n[ counts   ] %llu contacts the same when swapped\n",
+                c.sum.summary().c_str(), c.edges.summary().c_str(), static_cast<unsigned long long>(c.swapped));
+    EXPECT_EQ(c.sum.wrong, 0u);
+    EXPECT_EQ(c.edges.wrong, 0u);
+    EXPECT_LT(static_cast<double>(c.edges.pairs_excused), 0.002 * static_cast<double>(c.edges.pairs));
+    EXPECT_LT(static_cast<double>(c.edges.excused), 0.002 * static_cast<double>(c.edges.contacts));
+}
+
+const std::vector<Subject>& coarse_subjects() {
+    static const std::vector<Subject> subjects = [] {
+        std::vector<Subject> list;
+        for (const Mesh& mesh :
+             {box_mesh({0.5, 0.5, 0.5}), box_mesh({1, 0.1, 0.15}), box_mesh({0.6, 0.6, 0.05}), tetrahedron_mesh(),
+              cone_mesh(), l_prism_mesh(), frame_mesh(), bumpy_octahedron_mesh(2)})
+            list.emplace_back(mesh);
+        return list;
+    }();
+    return subjects;
+}
+
+TEST(agreement, edges_of_coarse_meshes) {
+    Random random(20130701);
+    Counts counts;
+    run([&] { return random_placement(pointers(coarse_subjects()), random); }, 30000, counts, Features::edges);
+    report_edges(counts);
+    EXPECT_GE(counts.edges.agreed, 100000u);
+}
+
+TEST(agreement, edges_of_coarse_and_fine_meshes) {
+    auto subjects = pointers(coarse_subjects());
+    for (const Subject& subject : closed_subjects()) subjects.push_back(&subject);
+    Random random(20130702);
+    Counts counts;
+    run([&] { return random_placement(subjects, random); }, 2000, counts, Features::edges);
+    report_edges(counts);
+    EXPECT_GE(counts.edges.agreed, 10000u);
+}
+
+// Small ones anywhere within large ones.
+TEST(agreement, bodies_inside_others) {
+    std::vector<Subject> small;
+    for (Mesh mesh : {box_mesh({0.5, 0.5, 0.5}), box_mesh({1, 0.1, 0.15}), tetrahedron_mesh(), model_mesh("knot")}) {
+        for (Vec3& v : mesh.vertices) v = 0.1 * v;
+        small.emplace_back(mesh);
+    }
+    Random random(20130703);
+    Counts counts;
+    const auto place = [&] {
+        Placement p = random_placement(pointers(coarse_subjects()), random);
+        p.b = &small[random.below(4)];
+        p.pose_b.translation = p.pose_a.translation + rotate(p.pose_a, p.a->solid.centre)
+                               + 0.4 * p.a->solid.diagonal * random.in_ball() - rotate(p.pose_b, p.b->solid.centre);
+        if (random.below(2)) {
+            std::swap(p.a, p.b);
+            std::swap(p.pose_a, p.pose_b);
+        }
+        return p;
+    };
+    run(place, 2000, counts, Features::edges);
+    report_edges(counts);
+    EXPECT_GE(counts.edges.inside, 100u);
+}
+
+// An open source: its edges speak against a closed target, and none against it.
+TEST(agreement, edges_of_open_meshes) {
+    auto subjects = pointers(open_subjects());
+    for (const Subject& subject : coarse_subjects()) subjects.push_back(&subject);
+    Random random(20130704);
+    Counts counts;
+    run([&] { return random_placement(subjects, random); }, 2000, counts, Features::edges);
+    report_edges(counts);
+    EXPECT_GE(counts.edges.agreed, 1000u);
+}
+
 // Needles through one point: there a ray meets more leaves and triangles than a group of rays has room for, and of two
 // thousand needles more leaves are near it than are listed.
 Mesh needles_mesh(std::uint32_t count, Random& random) {
@@ -207,6 +289,10 @@ TEST(agreement, at_other_scales) {
         run([&] { return random_placement(pointers(subjects), random); }, 1000, counts);
         report(counts);
         EXPECT_GE(counts.sum.agreed, 15000u);
+        Counts edges;
+        run([&] { return random_placement(pointers(subjects), random); }, 200, edges, Features::edges);
+        report_edges(edges);
+        EXPECT_GE(edges.edges.agreed, 500u);
     }
 }
 
@@ -234,6 +320,11 @@ TEST(agreement, exact_coincidences) {
     EXPECT_EQ(counts.sum.wrong, 0u);
     EXPECT_GE(counts.swapped, 2000u);
     EXPECT_GE(counts.sum.rays, 20000u);
+    Counts edges;
+    run(place, 3000, edges, Features::edges);
+    std::printf("[ counts   ] %s\n", edges.edges.summary().c_str());
+    EXPECT_LT(edges.edges.wrong, edges.edges.contacts / 100); // rays along edges, hits a hair away
+    EXPECT_GE(edges.edges.contacts, 2000u);
 }
 
 } // namespace

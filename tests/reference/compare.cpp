@@ -40,7 +40,8 @@ public:
     void run(std::span<const Contact> contacts) {
         std::map<std::uint32_t, const Contact*> found;
         for (const Contact& contact : contacts)
-            if (contact.vertex_body == body_ && !found.emplace(contact.vertex, &contact).second)
+            if (contact.vertex_body == body_ && contact.feature == Feature::vertex
+                && !found.emplace(contact.vertex, &contact).second)
                 complain("vertex reported twice", contact.vertex, nullptr, &contact);
         for (const CastRay& ray : cast_all(source_, source_pose_, target_, target_pose_, direction_)) {
             ++sum_.rays;

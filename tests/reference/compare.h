@@ -30,7 +30,7 @@ struct Comparison {
 constexpr double excuse = 1e-5;
 
 /// Holds the library's contacts of one pair of bodies, of direction `direction`, against the reference. Contacts of the
-/// pair only, any order.
+/// pair only, any order; those of edges are passed over (compare_edges.h).
 void compare(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b, std::span<const Contact> contacts,
              Comparison& sum, Direction direction = Direction::reprojected);
 

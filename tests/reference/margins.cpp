@@ -36,7 +36,9 @@ double ray_to_segment(const Vec3& p, const Vec3& d, double reach, const Vec3& a,
     return dot(gap, gap);
 }
 
-// Closest point of a triangle (Ericson 2005, 5.1.5).
+} // namespace
+
+// Ericson 2005, 5.1.5.
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a;
     const Vec3 ac = c - a;
@@ -61,8 +63,6 @@ Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
     const double scale = 1 / (va + vb + vc);
     return a + (vb * scale) * ab + (vc * scale) * ac;
 }
-
-} // namespace
 
 double distance_to_edges(const Solid& solid, const Vec3& origin, const Vec3& direction, double reach,
                          std::uint32_t skip) {

@@ -10,6 +10,9 @@ namespace raycontact::reference {
 double distance_to_edges(const Solid& solid, const Vec3& origin, const Vec3& direction, double reach,
                          std::uint32_t skip = 0xffffffffu);
 
+/// The point of a triangle that is closest to p.
+Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Distance of a point to the closest triangle of a solid, metres; every triangle is looked at.
 double distance_to_surface(const Solid& solid, const Vec3& point);
 

@@ -101,6 +101,16 @@ Mesh tetrahedron_mesh() {
     return mesh;
 }
 
+Mesh cone_mesh() {
+    Mesh mesh;
+    mesh.name = "cone";
+    mesh.vertices = {{0.5, 0.2, 0},   {0.2, 0.5, 0},  {-0.2, 0.5, 0}, {-0.5, 0.2, 0}, {-0.5, -0.2, 0},
+                     {-0.2, -0.5, 0}, {0.2, -0.5, 0}, {0.5, -0.2, 0}, {0, 0, 1}};
+    for (std::uint32_t i = 0; i < 8; ++i) mesh.triangles.push_back({i, (i + 1) % 8, 8});
+    for (std::uint32_t i = 1; i < 7; ++i) mesh.triangles.push_back({0, i + 1, i});
+    return mesh;
+}
+
 Mesh l_prism_mesh() {
     return prism("L prism", {{0, 0}, {1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1}, {0, 1}},
                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}, 0.5);

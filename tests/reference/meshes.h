@@ -13,6 +13,7 @@ namespace raycontact::reference {
 Mesh box_mesh(const Vec3& half);     ///< 12 triangles
 Mesh grid_box_mesh(std::uint32_t n); ///< cube [0, 1]^3, n x n squares a face: exact in float32 for n a power of two
 Mesh tetrahedron_mesh();             ///< not regular
+Mesh cone_mesh();                    ///< over an octagon: 14 triangles
 Mesh l_prism_mesh();                 ///< concave, axis-aligned: 20 triangles
 Mesh frame_mesh();                   ///< a square ring, genus 1: 32 triangles
 Mesh bumpy_octahedron_mesh(std::uint32_t n); ///< star-shaped, concave: 8 n^2 triangles
