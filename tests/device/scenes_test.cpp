@@ -37,6 +37,18 @@ struct Crowd {
     std::size_t least_contacts = 0;
 };
 
+// Boxes, bars, a cone: most of what touches are edges.
+const Crowd& coarse_crowd() {
+    static const Crowd made = {"coarse",
+                               shapes_of({box_mesh({0.5, 0.5, 0.5}), box_mesh({1, 0.1, 0.15}), cone_mesh(),
+                                          frame_mesh(), bumpy_octahedron_mesh(10)}),
+                               16,
+                               1.0,
+                               0.02,
+                               500};
+    return made;
+}
+
 const std::vector<Crowd>& crowds() {
     static const std::vector<Crowd> made = {
         {"closed", shapes_of({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()}), 16, 1.2,
@@ -51,8 +63,9 @@ const std::vector<Crowd>& crowds() {
 }
 
 std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std::string& device,
-                    Direction direction = Direction::reprojected) {
+                    Direction direction = Direction::reprojected, Features features = Features::vertices) {
     Settings settings;
+    settings.features = features;
     settings.method = method;
     settings.caster = caster;
     settings.direction = direction;
@@ -121,6 +134,19 @@ TEST(scenes, have_one_hash_with_weights) {
             EXPECT_EQ(hash(device, Direction::weighted), expected) << crowd.name << ", " << device;
             EXPECT_EQ(expected == hash("cpu", Direction::ray), crowd.least_contacts == 0) << crowd.name;
         }
+}
+
+// Edges are asked on the host, of the vertices that the device found.
+TEST(scenes, have_one_hash_with_edges) {
+    const auto hash = [](const char* on, Method method, Features features) {
+        return hash_of(coarse_crowd(), method, Caster::bvh, on, Direction::reprojected, features);
+    };
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified}) {
+        const std::string expected = hash("cpu", method, Features::edges);
+        EXPECT_NE(expected, hash("cpu", method, Features::vertices)) << to_string(method);
+        for (const char* device : {"opencl:0", "cpu,opencl:0"})
+            EXPECT_EQ(hash(device, method, Features::edges), expected) << to_string(method) << ", " << device;
+    }
 }
 
 // Two devices, or parts of one: each with its own scene, at the same time, and both for one scene.

@@ -66,12 +66,12 @@ void move(Scene& scene, int step) {
 
 constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
 
-TEST(Allocations, NoneAfterWarmUp) {
-    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+void expect_none_after_warm_up(Features features, const std::shared_ptr<const Shape>& shape) {
     for (const Method method : methods)
         for (const std::uint32_t threads : {1u, 2u})
             for (const bool given : {false, true}) {
                 Settings settings;
+                settings.features = features;
                 settings.method = method;
                 settings.threads = threads;
                 settings.direction = given ? Direction::weighted : Direction::reprojected;
@@ -98,6 +98,14 @@ TEST(Allocations, NoneAfterWarmUp) {
                 EXPECT_EQ(allocations - before, 0u) << to_string(method) << ", " << threads << " threads";
                 EXPECT_GT(contacts, 10000u);
             }
+}
+
+TEST(Allocations, NoneAfterWarmUp) {
+    expect_none_after_warm_up(Features::vertices, Shape::make(scenes::scene_model("knot", 902).mesh));
+}
+
+TEST(Allocations, NoneAfterWarmUpWithEdges) {
+    expect_none_after_warm_up(Features::edges, Shape::make(scenes::scene_model("knot", 120).mesh));
 }
 
 // Pairs that come and go take what others left.
@@ -171,8 +179,7 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
 }
 
 // Whichever allocation of a step fails: the step repeated, and repeated again, gives the contacts of a fresh scene.
-TEST(Allocations, AStepThatFailsLeavesNothing) {
-    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& shape) {
     constexpr std::uint32_t bodies = 27;
     const auto pose_of = [](std::uint32_t body, double spacing) {
         const std::uint32_t column = body % 3, row = body / 3 % 3, layer = body / 9;
@@ -183,6 +190,7 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
         Settings settings;
         settings.method = method;
         settings.threads = 1;
+        settings.features = features;
         std::uint64_t failures = 0;
         for (std::int64_t k = 0;; ++k) {
             Scene scene(settings);
@@ -215,6 +223,14 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
         }
         EXPECT_GT(failures, 12u) << to_string(method);
     }
+}
+
+TEST(Allocations, AStepThatFailsLeavesNothing) {
+    expect_nothing_left(Features::vertices, Shape::make(scenes::scene_model("knot", 902).mesh));
+}
+
+TEST(Allocations, AStepWithEdgesThatFailsLeavesNothing) {
+    expect_nothing_left(Features::edges, Shape::make(scenes::scene_model("knot", 120).mesh));
 }
 
 } // namespace

@@ -29,6 +29,7 @@ struct Episode {
     double tightness = 0.3; ///< how far bodies stand from each other's surfaces, in their sizes
     int steps = 200;
     std::uint64_t seed = 0;
+    Features features = Features::vertices;
 
     std::string name() const {
         char text[200];
@@ -51,7 +52,8 @@ void play(const Episode& episode, Counts& counts) {
     }
     const std::vector<Pose> homes = touching_poses(shapes, episode.tightness, random);
 
-    const Settings settings = some_settings(random);
+    Settings settings = some_settings(random);
+    settings.features = episode.features;
     const double threshold = thresholds[random.below(std::size(thresholds))];
     Triplet triplet(settings, threshold, episode.name());
     std::vector<Mover> movers;
@@ -122,6 +124,31 @@ TEST(certified, small_bodies_on_a_large_slab) {
 }
 TEST(certified, bodies_of_all_sizes) {
     all_courses(Kind::sizes, 0.05);
+}
+
+TEST(certified, coarse_meshes) {
+    all_courses(Kind::coarse, 0.005);
+}
+
+// Of every kind, coarse and fine: edges' contacts are asked of the same vertices' contacts, so they are the same, too.
+TEST(certified, edges) {
+    const double wanted = 0.005 * decisions_wanted();
+    Counts counts;
+    for (std::uint64_t i = 0; static_cast<double>(counts.decisions) < wanted || i < 2 * std::size(kinds); ++i) {
+        Random random(first_seed() + 600000 + i);
+        Episode episode;
+        episode.kind = i % 2 ? Kind::coarse : kinds[i / 2 % std::size(kinds)];
+        episode.course = courses[random.below(std::size(courses))];
+        episode.bodies = 12;
+        episode.tightness = random.uniform(0, 0.4);
+        episode.steps = 60;
+        episode.rounded = random.below(3) == 0;
+        episode.together = random.below(5) == 0;
+        episode.seed = random.bits();
+        episode.features = Features::edges;
+        play(episode, counts);
+    }
+    report("with edges", counts, wanted);
 }
 
 // Two or three meshes turning in contact for thousands of steps.

@@ -101,6 +101,16 @@ std::vector<Mesh> meshes_of(Kind kind) {
             for (const Mesh& mesh : {bumpy, frame_mesh(), model("knot", 302)})
                 meshes.push_back(stretched(mesh, {size, size, size}));
         return meshes;
+    case Kind::coarse:
+        return {box_mesh({0.5, 0.5, 0.5}),
+                box_mesh({1, 0.1, 0.15}),
+                box_mesh({0.6, 0.6, 0.05}),
+                tetrahedron_mesh(),
+                cone_mesh(),
+                l_prism_mesh(),
+                frame_mesh(),
+                bumpy,
+                model("gear", 302)};
     }
     return meshes;
 }
@@ -113,7 +123,7 @@ double some_power_of_ten(double low, double high, Random& random) {
 } // namespace
 
 const char* name_of(Kind kind) {
-    constexpr const char* names[] = {"concave", "cavities", "open", "crossing", "slivers", "slab", "sizes"};
+    constexpr const char* names[] = {"concave", "cavities", "open", "crossing", "slivers", "slab", "sizes", "coarse"};
     return names[static_cast<std::size_t>(kind)];
 }
 

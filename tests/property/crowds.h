@@ -21,10 +21,11 @@ enum class Kind {
     crossing, ///< self-intersecting, inside out, or wound inconsistently
     slivers,  ///< flattened and stretched meshes, needles, fans of narrow triangles
     slab,     ///< one slab of 42 x 42 x 2 and twelve triangles, and concave meshes of size 1 on it
-    sizes     ///< concave meshes from a hundredth to ten times the usual size
+    sizes,    ///< concave meshes from a hundredth to ten times the usual size
+    coarse    ///< boxes, bars, plates, cones and the like, and a few finer meshes
 };
-inline constexpr Kind kinds[] = {Kind::concave, Kind::cavities, Kind::open, Kind::crossing,
-                                 Kind::slivers, Kind::slab,     Kind::sizes};
+inline constexpr Kind kinds[] = {Kind::concave, Kind::cavities, Kind::open,  Kind::crossing,
+                                 Kind::slivers, Kind::slab,     Kind::sizes, Kind::coarse};
 const char* name_of(Kind kind);
 
 /// Meshes of about 1 m times `scale`; made once. The first of a slab's crowd is the slab.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equal input, equal bits: whatever the threads, the order of the pairs, or what happened in the scene before.
+#include "property/crowds.h"
 #include "property/shapes.h"
 #include "reference/vector.h"
 #include "scenes/models/model.h"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -70,9 +72,9 @@ struct Trace {
     std::string hash;
 };
 
-Trace run(const Settings& settings) {
+Trace run(const Settings& settings, const Shapes& shapes = closed_shapes()) {
     Trace result;
-    Crowd crowd(settings);
+    Crowd crowd(settings, shapes);
     ContactHash hash;
     for (std::uint32_t step = 0; step < 12; ++step) {
         result.steps.push_back(copy(crowd.scene.step()));
@@ -112,6 +114,74 @@ TEST(determinism, threads_and_reruns_change_nothing) {
         hashes[method] = first.hash;
     }
     EXPECT_EQ(hashes[Method::certified], hashes[Method::standard]);
+}
+
+// Coarse and finer meshes, whose edges cross.
+TEST(determinism, threads_and_casters_change_no_edge) {
+    for (const Method method : methods) {
+        Settings settings = threads(1);
+        settings.method = method;
+        settings.features = Features::edges;
+        const Trace first = run(settings, crowd_shapes(Kind::coarse, 1));
+        std::size_t edges = 0;
+        for (const auto& step : first.steps)
+            for (const Contact& c : step) edges += c.feature != Feature::vertex;
+        for (const std::uint32_t count : {1u, 2u, 3u, 4u})
+            for (const Caster caster : {Caster::bvh, Caster::basic}) {
+                settings.threads = count;
+                settings.caster = caster;
+                const Trace other = run(settings, crowd_shapes(Kind::coarse, 1));
+                EXPECT_EQ(other.hash, first.hash) << to_string(method) << ", " << count << " threads";
+                for (std::size_t i = 0; i < first.steps.size(); ++i)
+                    EXPECT_TRUE(same_bits(first.steps[i], other.steps[i])) << to_string(method) << ", step " << i;
+            }
+        std::printf("[ counts   ] %s: %zu contacts of edges, hash %s\n", std::string(to_string(method)).c_str(), edges,
+                    first.hash.c_str());
+        EXPECT_GE(edges, 5000u);
+    }
+}
+
+// Whatever a method misses of the vertices, it asks edges in full: a pair with the vertex contacts of `standard` has
+// its contacts of edges, and a scene with edges has the vertex contacts of one without.
+TEST(determinism, every_method_asks_edges_in_full) {
+    using Lists = std::map<Pair, std::array<std::vector<Contact>, 2>>; // of vertices, of edges
+    const auto sorted = [](std::span<const Contact> contacts) {
+        Lists lists;
+        for (const Contact& c : contacts) lists[{c.body_a, c.body_b}][c.feature != Feature::vertex].push_back(c);
+        return lists;
+    };
+    const auto& shapes = crowd_shapes(Kind::coarse, 1);
+    for (const Method method : methods) {
+        Settings settings = threads(1);
+        settings.features = Features::edges;
+        settings.method = Method::standard;
+        Crowd standard(settings, shapes);
+        settings.method = method;
+        settings.displacement_threshold = 0.05;
+        Crowd other(settings, shapes);
+        settings.features = Features::vertices;
+        Crowd alone(settings, shapes);
+        std::size_t alike = 0, all = 0, edges = 0;
+        for (int step = 0; step < 24; ++step) {
+            Lists expected = sorted(standard.scene.step()), found = sorted(other.scene.step());
+            for (const auto& [pair, lists] : expected) found.try_emplace(pair);
+            std::vector<Contact> vertices;
+            for (auto& [pair, lists] : found) {
+                vertices.insert(vertices.end(), lists[0].begin(), lists[0].end());
+                ++all;
+                if (!same_bits(lists[0], expected[pair][0])) continue;
+                ++alike;
+                edges += lists[1].size();
+                EXPECT_TRUE(same_bits(lists[1], expected[pair][1])) << to_string(method) << ", step " << step;
+            }
+            EXPECT_TRUE(same_bits(vertices, alone.scene.step())) << to_string(method) << ", step " << step;
+            for (Crowd* crowd : {&standard, &other, &alone}) crowd->move(0.004);
+        }
+        std::printf("[ counts   ] %s: %zu of %zu pairs with the vertex contacts of standard, %zu contacts of edges\n",
+                    std::string(to_string(method)).c_str(), alike, all, edges);
+        EXPECT_GE(alike, 1000u);
+        EXPECT_GE(edges, 5000u);
+    }
 }
 
 // All that was counted of a step, beside the times.

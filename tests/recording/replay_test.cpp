@@ -168,6 +168,7 @@ TEST(Replay, WhatMustAgree) {
         EXPECT_TRUE(agrees(&Settings::threads, 3u));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
+        EXPECT_FALSE(agrees(&Settings::features, Features::edges));
         EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
         EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
         EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);
@@ -189,6 +190,27 @@ TEST(Replay, AnotherDirectionIsAnotherHash) {
     ReplayOptions options;
     options.settings.direction = Direction::ray;
     EXPECT_NE(replay(reader, options).hash, run.hash);
+}
+
+TEST(Replay, ARunWithEdgesIsReproduced) {
+    for (const Method method : {Method::standard, Method::iterative, Method::predictive, Method::certified}) {
+        const TemporaryFile file;
+        Settings settings = settings_of(method);
+        settings.features = Features::edges;
+        const Found run = record_avalanche(file.path(), settings);
+        Reader reader(file.path());
+        ReplayOptions options;
+        options.settings = reader.info().settings;
+        EXPECT_EQ(options.settings.features, Features::edges);
+        for (const std::uint32_t threads : {1u, 2u}) {
+            options.settings.threads = threads;
+            const raycontact::recording::Replay again = replay(reader, options);
+            EXPECT_EQ(again.hash, run.hash) << to_string(method);
+            EXPECT_EQ(again.contacts, run.contacts);
+        }
+        options.settings.features = Features::vertices;
+        EXPECT_LT(replay(reader, options).contacts, run.contacts);
+    }
 }
 
 TEST(Replay, AWeightedRunIsReproduced) {
