@@ -81,8 +81,10 @@ PosedPair random_pair(const std::vector<Body>& as, const std::vector<Body>& bs, 
     pair.pose_a = random.rotation();
     pair.pose_b = random.rotation();
     const double kind = random.uniform();
-    if (kind < 0.05) pair.pose_a = turns[random.below(24)], pair.pose_b = turns[random.below(24)];
-    else if (kind < 0.1) pair.pose_b = times(pair.pose_a, turns[random.below(24)]); // parallel but for rounding
+    if (kind < 0.05)
+        pair.pose_a = turns[random.below(24)], pair.pose_b = turns[random.below(24)];
+    else if (kind < 0.1)
+        pair.pose_b = times(pair.pose_a, turns[random.below(24)]); // parallel but for rounding
     const Vec3 middle = 5 * random.in_ball();
     const double size = pair.a->size() + pair.b->size();
     const double larger = std::max(pair.a->size(), pair.b->size());
@@ -152,8 +154,8 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
     const Pose relative = pair.relative();
     const bool truth = collide(pair.a->exact, pair.b->exact, relative), found = !contacts.empty();
     counts.colliding += truth;
-    counts.by_vertices += std::any_of(contacts.begin(), contacts.end(),
-                                      [](const Contact& c) { return c.feature == Feature::vertex; });
+    counts.by_vertices +=
+        std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.feature == Feature::vertex; });
     if (truth == found) return;
     const double touching = 1e-6 * larger;
     if (truth ? comes_apart(pair.a->exact, pair.b->exact, relative, touching)

@@ -15,7 +15,8 @@ using namespace reference;
 
 namespace {
 
-// A prism over a polygon that is seen whole from its middle; with an extra vertex in each cap, so that it may be a star.
+// A prism over a polygon that is seen whole from its middle; with an extra vertex in each cap, so that it may be a
+// star.
 Mesh star_prism(const char* name, const std::vector<double>& radii, double half_height) {
     Mesh mesh;
     mesh.name = name;
@@ -89,38 +90,59 @@ Mesh named(Mesh mesh, const char* name) {
 
 Mesh unit_coarse(Random& random) {
     switch (random.below(16)) {
-        case 0: return random_tetrahedron(random);
-        case 1: return named(box_mesh({0.5, 0.5, 0.5}), "box");
-        case 2: return named(box_mesh({0.6, 0.03, 0.1}), "bar");
-        case 3: return named(box_mesh({0.1, 0.1, 1}), "bar");
-        case 4: return named(box_mesh({0.8, 0.8, 0.03}), "plate");
-        case 5: return prism_solid(3 + random.below(22), 0.6, random.uniform(0.05, 1));
-        case 6: return cone_solid(3 + random.below(30), random.uniform(0.2, 0.8), random.uniform(0.3, 2));
-        case 7: {
-            std::vector<double> radii(2 * (3 + random.below(10)), 1);
-            const double inner = random.uniform(0.3, 0.8);
-            for (std::size_t i = 1; i < radii.size(); i += 2) radii[i] = inner;
-            return star_prism("star", radii, random.uniform(0.05, 0.5));
-        }
-        case 8: return spiked(box_mesh({0.3, 0.3, 0.3}), random.uniform(1.5, 4));
-        case 9: return spiked(bumpy_octahedron_mesh(1 + random.below(2)), random.uniform(1.2, 3));
-        case 10: return named(scenes::gear(even(random, 48, 200)), "gear");
-        case 11: return frame_mesh();
-        case 12: return l_prism_mesh();
-        case 13: return named(scenes::bumpy_torus(even(random, 18, 200)), "coarse torus");
-        case 14: return bumpy_octahedron_mesh(1 + random.below(5));
-        default: return named(scenes::bumpy_sphere(even(random, 8, 200)), "coarse sphere");
+    case 0:
+        return random_tetrahedron(random);
+    case 1:
+        return named(box_mesh({0.5, 0.5, 0.5}), "box");
+    case 2:
+        return named(box_mesh({0.6, 0.03, 0.1}), "bar");
+    case 3:
+        return named(box_mesh({0.1, 0.1, 1}), "bar");
+    case 4:
+        return named(box_mesh({0.8, 0.8, 0.03}), "plate");
+    case 5:
+        return prism_solid(3 + random.below(22), 0.6, random.uniform(0.05, 1));
+    case 6:
+        return cone_solid(3 + random.below(30), random.uniform(0.2, 0.8), random.uniform(0.3, 2));
+    case 7: {
+        std::vector<double> radii(2 * (3 + random.below(10)), 1);
+        const double inner = random.uniform(0.3, 0.8);
+        for (std::size_t i = 1; i < radii.size(); i += 2) radii[i] = inner;
+        return star_prism("star", radii, random.uniform(0.05, 0.5));
+    }
+    case 8:
+        return spiked(box_mesh({0.3, 0.3, 0.3}), random.uniform(1.5, 4));
+    case 9:
+        return spiked(bumpy_octahedron_mesh(1 + random.below(2)), random.uniform(1.2, 3));
+    case 10:
+        return named(scenes::gear(even(random, 48, 200)), "gear");
+    case 11:
+        return frame_mesh();
+    case 12:
+        return l_prism_mesh();
+    case 13:
+        return named(scenes::bumpy_torus(even(random, 18, 200)), "coarse torus");
+    case 14:
+        return bumpy_octahedron_mesh(1 + random.below(5));
+    default:
+        return named(scenes::bumpy_sphere(even(random, 8, 200)), "coarse sphere");
     }
 }
 
 Mesh unit_fine(Random& random) {
     switch (random.below(6)) {
-        case 0: return named(scenes::bumpy_torus(even(random, 300, 1500)), "torus");
-        case 1: return named(scenes::bumpy_sphere(even(random, 300, 1500)), "bumpy sphere");
-        case 2: return named(scenes::knot(even(random, 400, 1500)), "knot");
-        case 3: return named(scenes::gear(even(random, 300, 1500)), "fine gear");
-        case 4: return named(scenes::star(even(random, 400, 1500)), "fine star");
-        default: return bumpy_octahedron_mesh(7 + random.below(6));
+    case 0:
+        return named(scenes::bumpy_torus(even(random, 300, 1500)), "torus");
+    case 1:
+        return named(scenes::bumpy_sphere(even(random, 300, 1500)), "bumpy sphere");
+    case 2:
+        return named(scenes::knot(even(random, 400, 1500)), "knot");
+    case 3:
+        return named(scenes::gear(even(random, 300, 1500)), "fine gear");
+    case 4:
+        return named(scenes::star(even(random, 400, 1500)), "fine star");
+    default:
+        return bumpy_octahedron_mesh(7 + random.below(6));
     }
 }
 
