@@ -54,6 +54,23 @@ double hair(const Case& c) {
     return 1e-7 * std::min(size(*c.a), size(*c.b));
 }
 
+// The first contact that two lists do not share.
+std::string difference(const std::vector<Contact>& p, const std::vector<Contact>& q) {
+    std::size_t i = 0;
+    while (i < p.size() && i < q.size() && same_bits({&p[i], 1}, {&q[i], 1})) ++i;
+    std::string text = ", " + std::to_string(p.size()) + " and " + std::to_string(q.size());
+    for (const auto* list : {&p, &q}) {
+        if (i >= list->size()) continue;
+        const Contact& c = (*list)[i];
+        char part[200];
+        std::snprintf(part, sizeof part, "; %s triangle %u normal (%g, %g, %g) depth %.9g at (%.17g, %.17g, %.17g)",
+                      contact_key(c).c_str(), c.triangle, double(c.normal[0]), double(c.normal[1]), double(c.normal[2]),
+                      double(c.depth), c.point.x, c.point.y, c.point.z);
+        text += part;
+    }
+    return text;
+}
+
 class Trial {
 public:
     // Of every way to ask; the first few failures are told.
@@ -72,7 +89,8 @@ public:
                             check(c, contacts, way);
                             if (first) reference = contacts;
                             first = false;
-                            expect(same_bits(reference, contacts), way + ": other contacts than asked once");
+                            expect(same_bits(reference, contacts),
+                                   way + ": other contacts than asked once" + difference(reference, contacts));
                         }
             }
         ++cases_;

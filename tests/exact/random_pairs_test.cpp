@@ -89,15 +89,19 @@ PosedPair random_pair(const std::vector<Body>& as, const std::vector<Body>& bs, 
     const double size = pair.a->size() + pair.b->size();
     const double larger = std::max(pair.a->size(), pair.b->size());
     if (random.uniform() < 0.35) { // anywhere: apart, crossing, or one in the other
-        place(pair, middle, 0.4 * size * random.in_ball());
+        place(pair, middle, 0.3 * size * random.in_ball());
         return pair;
     }
     // Near touching: b comes from afar, along a line through the box of a.
-    const Vec3 aim = 0.3 * pair.a->size() * random.in_ball();
     const Vec3 way = random.direction();
     double in = 0, out = size;
+    Vec3 aim = 0.3 * pair.a->size() * random.in_ball();
     place(pair, middle, aim);
-    if (!pair.collides()) return pair;
+    for (int tries = 0; !pair.collides(); ++tries) {
+        if (tries == 10) return pair;
+        aim = 0.3 * pair.a->size() * random.in_ball();
+        place(pair, middle, aim);
+    }
     const double closeness = 0.1 * std::pow(1e-5, random.uniform()) * larger;
     while (out - in > closeness) {
         const double at = 0.5 * (in + out);
@@ -114,7 +118,8 @@ struct Counts {
     std::uint64_t pairs = 0, colliding = 0, by_vertices = 0, missed = 0, invented = 0, excused = 0, contacts = 0;
     std::uint64_t shallow = 0, deep = 0; ///< pairs that come apart by 1e-3 of the smaller; contacts deeper than 0.1
     double worst = 0;                    ///< depth of a contact of a shallow pair in sizes of the smaller
-    std::string first;
+    std::string first;                   ///< of the wrong ones, in words
+    std::string deepest;                 ///< the pair of the worst, likewise
 };
 
 std::string words(const PosedPair& pair, std::size_t number) {
@@ -144,7 +149,10 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
         EXPECT_TRUE(c.depth > 0 && double(c.depth) <= larger) << c.depth << ' ' << words(pair, number);
         EXPECT_TRUE(std::isfinite(c.point.x) && std::isfinite(c.point.y) && std::isfinite(c.point.z));
         if (pair.apart > 0 && pair.apart < 1e-3 * smaller) {
-            counts.worst = std::max(counts.worst, double(c.depth) / smaller);
+            if (double(c.depth) / smaller > counts.worst) {
+                counts.worst = double(c.depth) / smaller;
+                counts.deepest = words(pair, number);
+            }
             counts.deep += double(c.depth) > 0.1 * smaller;
         }
     }
@@ -212,6 +220,7 @@ void try_pairs(const char* what, const std::vector<Body>& as, const std::vector<
                 static_cast<unsigned long long>(counts.invented), static_cast<unsigned long long>(counts.excused),
                 static_cast<unsigned long long>(counts.contacts), static_cast<unsigned long long>(counts.shallow),
                 static_cast<unsigned long long>(counts.deep), counts.worst);
+    if (counts.worst > 0.1) std::printf("[ deep     ] %s\n", counts.deepest.c_str());
     std::fflush(stdout);
     EXPECT_EQ(counts.missed, 0u) << counts.first;
     EXPECT_EQ(counts.invented, 0u) << counts.first;
