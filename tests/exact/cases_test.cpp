@@ -191,7 +191,9 @@ TEST(exact_cases, identical_copies) {
         const auto shape = Shape::make(mesh);
         const double size = length(shape->box_max() - shape->box_min());
         trial.ask({"copies of " + shape->name(), shape, shape, {}, Answer::yes, size});
-        for (const double shift : {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+        const bool large = mesh.triangles.size() > 100; // slow, so only some
+        for (const double shift : {1e-9, 1e-7, 1e-3, 1e-8, 1e-6, 1e-5, 1e-4}) {
+            if (large && shift == 1e-8) break;
             Case c{"copies of " + shape->name() + " shifted by " + text(shift), shape, shape, {}, Answer::yes, size};
             c.pose_b.translation = shift * random.direction();
             trial.ask(c);
@@ -357,7 +359,8 @@ TEST(exact_cases, parallel_edges) {
                     c.pose_b.translation = {half + diagonal - overlap, 0.1, along};
                 }
                 c.answer = answer_for(c, overlap);
-                c.deepest = std::max(1.0001 * overlap + 1e-6, touching * hair(c));
+                // A piece of an edge can be as long as the wedge is wide.
+                c.deepest = std::max(1.5 * overlap + 1e-6, touching * hair(c));
                 trial.ask(c);
             }
         }
