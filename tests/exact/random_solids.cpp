@@ -89,7 +89,7 @@ Mesh named(Mesh mesh, const char* name) {
 }
 
 Mesh unit_coarse(Random& random) {
-    switch (random.below(16)) {
+    switch (random.below(18)) {
     case 0:
         return random_tetrahedron(random);
     case 1:
@@ -124,6 +124,10 @@ Mesh unit_coarse(Random& random) {
         return named(scenes::bumpy_torus(even(random, 18, 200)), "coarse torus");
     case 14:
         return bumpy_octahedron_mesh(1 + random.below(5));
+    case 15:
+        return named(box_mesh({1, 1e-3, 1e-3}), "needle");
+    case 16:
+        return named(box_mesh({1, 0.6, 1e-3}), "sheet");
     default:
         return named(scenes::bumpy_sphere(even(random, 8, 200)), "coarse sphere");
     }
@@ -185,7 +189,7 @@ Mesh cone_solid(std::uint32_t corners, double radius, double height) {
 
 Mesh coarse_solid(Random& random) {
     Mesh mesh = unit_coarse(random);
-    return stretched(std::move(mesh), random, 0.1, 1.5);
+    return stretched(std::move(mesh), random, 0.03, 1.5);
 }
 
 Mesh fine_solid(Random& random) {

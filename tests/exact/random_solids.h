@@ -5,7 +5,7 @@
 
 #include <raycontact/mesh.h>
 
-// Closed meshes of one piece without self-intersections, stretched and scaled at random, from 0.1 to 2 m.
+// Closed meshes of one piece without self-intersections, stretched and scaled at random, from 0.01 to 2 m.
 namespace raycontact::exact {
 
 /// 4 to 200 triangles: tetrahedron, box, bar, plate, prism, cone, flat and spiked star, gear, frame, torus, L, ...
