@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -193,9 +194,11 @@ TEST(exact_cases, identical_copies) {
         const auto shape = Shape::make(mesh);
         const double size = length(shape->box_max() - shape->box_min());
         trial.ask({"copies of " + shape->name(), shape, shape, {}, Answer::yes, size});
+        const Vec3 extent = shape->box_max() - shape->box_min();
+        const double thinnest = std::min({extent.x, extent.y, extent.z});
         const bool large = mesh.triangles.size() > 100; // slow, so only some shifts
-        for (const double shift : {1e-9, 1e-7, 1e-3, 1e-8, 1e-6, 1e-5, 1e-4}) {
-            if (large && shift == 1e-8) break;
+        for (const double shift : {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+            if ((large && shift != 1e-7 && shift != 1e-3) || shift > thinnest / 4) continue;
             Case c{"copies of " + shape->name() + " shifted by " + text(shift), shape, shape, {}, Answer::yes, size};
             c.pose_b.translation = shift * random.direction();
             trial.ask(c);
@@ -288,7 +291,8 @@ TEST(exact_cases, cone_through_plate) {
 TEST(exact_cases, aligned_cubes) {
     Trial trial;
     const auto cube = box(0.5, 0.5, 0.5);
-    for (const double overlap : {-0.01, -1e-4, -1e-5, -1e-8, 0.0, 1e-9, 1e-8, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5})
+    for (const double overlap : {-0.01, -1e-4, -1e-5, -1e-8, 0.0, 1e-9, 1e-8, 1.8e-7, 2e-7, 3e-7, 4e-7, 1e-6, 1e-5,
+                                 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5})
         for (const double shift : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3})
             for (const double other : {0.0, 1.0, -0.3}) {
                 Case c{"cubes overlap by " + text(overlap) + ", shifted by " + text(shift) + " x (1, " + text(other)
@@ -299,9 +303,23 @@ TEST(exact_cases, aligned_cubes) {
                        Answer::either,
                        0};
                 c.answer = answer_for(c, overlap);
-                c.deepest = std::max(1.0001 * overlap + 1e-6, touching * hair(c));
+                c.deepest = std::max(1.0001 * overlap + hair(c), touching * hair(c));
                 trial.ask(c);
             }
+}
+
+// The end of a bar on a plate of nearly its own width: overlaps of a few hairs, and the ways out beside are far.
+TEST(exact_cases, bar_on_plate) {
+    Trial trial;
+    const auto bar = box(0.1, 0.1, 1), plate = box(0.1003, 0.08, 0.0003);
+    for (const double hairs : {-5.0, -1.0, 0.0, 0.5, 1.0, 1.2, 1.5, 1.8, 2.0, 2.2, 3.0, 5.0, 10.0, 100.0}) {
+        Case c{"a bar on a plate, overlap " + text(hairs) + " hairs", bar, plate, {}, Answer::either, 0};
+        const double overlap = hairs * hair(c);
+        c.pose_b = at(0, 0, 1.0003 - overlap);
+        c.answer = answer_for(c, overlap);
+        c.deepest = std::max(1.0001 * overlap + hair(c), touching * hair(c));
+        trial.ask(c);
+    }
 }
 
 TEST(exact_cases, shared_faces) {

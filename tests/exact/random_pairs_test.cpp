@@ -139,6 +139,18 @@ std::string words(const PosedPair& pair, std::size_t number) {
     return text;
 }
 
+std::string words(std::span<const Contact> contacts) {
+    std::string text;
+    for (const Contact& c : contacts.first(std::min<std::size_t>(contacts.size(), 12))) {
+        char part[200];
+        std::snprintf(part, sizeof part, "\n  %s triangle %u normal (%g, %g, %g) depth %g at (%.9g, %.9g, %.9g)",
+                      contact_key(c).c_str(), c.triangle, double(c.normal[0]), double(c.normal[1]), double(c.normal[2]),
+                      double(c.depth), c.point.x, c.point.y, c.point.z);
+        text += part;
+    }
+    return text;
+}
+
 void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t number, Counts& counts) {
     const double smaller = std::min(pair.a->size(), pair.b->size());
     const double larger = std::max(pair.a->size(), pair.b->size());
@@ -151,7 +163,7 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
         if (pair.apart > 0 && pair.apart < 1e-3 * smaller) {
             if (double(c.depth) / smaller > counts.worst) {
                 counts.worst = double(c.depth) / smaller;
-                counts.deepest = words(pair, number);
+                counts.deepest = words(pair, number) + words(contacts) + ", apart by " + std::to_string(pair.apart);
             }
             counts.deep += double(c.depth) > 0.1 * smaller;
         }
@@ -224,6 +236,7 @@ void try_pairs(const char* what, const std::vector<Body>& as, const std::vector<
     std::fflush(stdout);
     EXPECT_EQ(counts.missed, 0u) << counts.first;
     EXPECT_EQ(counts.invented, 0u) << counts.first;
+    EXPECT_EQ(counts.deep, 0u) << counts.deepest;
     EXPECT_LE(counts.excused, counts.pairs / 200);
     EXPECT_GE(counts.colliding, counts.pairs * 2 / 5);
     EXPECT_LE(counts.colliding, counts.pairs * 3 / 5);
