@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "edges/walks.h"
 #include "mesh/vector.h"
 #include "shape/shape_data.h"
 
 #include <limits>
 
 namespace raycontact {
-
-/// Where a ray meets a mesh, in double and in the centred frame of the mesh.
-struct MeshHit {
-    double distance = std::numeric_limits<double>::infinity();
-    std::uint32_t face = NONE;
-    bool from_inside = false;
-};
 
 /// The closest face with least < distance <= most; of equal ones the lowest. direction: unit.
 MeshHit closest_hit(const ShapeData& mesh, const Vec3& origin, const Vec3& direction, double least, double most);

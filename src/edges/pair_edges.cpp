@@ -235,7 +235,7 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
     if (own != Vec3{}) {
         const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
         for (const Vec3& origin : {piece.ends[0].point, piece.ends[1].point, middle}) {
-            const MeshHit hit = closest_hit(target, origin, in, placed.hair, never);
+            const MeshHit hit = closest_hit(target, origin, in, 0, never);
             if (hit.face == NONE || !hit.from_inside) continue;
             // The paper's second test: before leaving the source (section 2.1).
             if (closest_hit(placed.source, placed.back(origin), own, placed.hair, never).distance >= hit.distance)

@@ -33,23 +33,7 @@ struct SourceMesh {
         return {(r[0] * d.x + r[3] * d.y) + r[6] * d.z, (r[1] * d.x + r[4] * d.y) + r[7] * d.z,
                 (r[2] * d.x + r[5] * d.y) + r[8] * d.z};
     }
-    Vec3 vertex(std::uint32_t v) const {
-        return placed(source.point(v) + hair * (0.01 * shaken(v) - source.vertex_normals[v]));
-    }
-
-private:
-    // Each component in [-1, 1), by splitmix64.
-    static Vec3 shaken(std::uint64_t vertex) {
-        std::uint64_t state = vertex;
-        const auto next = [&state] {
-            std::uint64_t z = (state += 0x9e3779b97f4a7c15ull);
-            z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-            z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-            return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-        };
-        const double x = next(), y = next();
-        return {x, y, next()};
-    }
+    Vec3 vertex(std::uint32_t v) const { return placed(source.point(v) + hair * source.hair_moves[v]); }
 };
 
 /// Outward unit normal of a face, in double; zero without area.

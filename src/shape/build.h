@@ -22,6 +22,9 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 /// Fills component_vertices. Needs vertex_triangle.
 void find_components(ShapeData& shape);
 
+/// Fills hair_moves; needs the vertices' normals.
+void find_hair_moves(ShapeData& shape);
+
 /// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
 /// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.

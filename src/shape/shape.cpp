@@ -75,6 +75,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     find_sharp_edges(shape, normals);
     find_components(shape);
     shape.vertex_normals = angle_weighted_normals(shape, normals);
+    find_hair_moves(shape);
     shape.vertex_areas = measure_areas(shape);
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
@@ -147,9 +148,10 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
-           + bytes(d.sharp_edges) + bytes(d.vertex_triangle) + bytes(d.component_vertices) + bytes(d.exit_distances)
-           + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells) + bytes(d.clearances);
+           + bytes(d.sharp_edges) + bytes(d.vertex_triangle) + bytes(d.hair_moves) + bytes(d.component_vertices)
+           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
+           + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells)
+           + bytes(d.clearances);
 }
 
 } // namespace raycontact

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "mesh/disjoint_sets.h"
 #include "mesh/vector.h"
 #include "shape/build.h"
-
-#include <numeric>
 
 namespace raycontact {
 
@@ -10,11 +9,6 @@ namespace {
 
 // Faces whose normals differ by less than some 4e-5 are one flat face: an edge inside it never decides a contact.
 constexpr double flat_cosine = 1 - 1e-9;
-
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t i) {
-    while (parents[i] != i) i = parents[i] = parents[parents[i]];
-    return i;
-}
 
 } // namespace
 
@@ -35,15 +29,15 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
 }
 
 void find_components(ShapeData& shape) {
-    std::vector<std::uint32_t> parents(shape.points.size());
-    std::iota(parents.begin(), parents.end(), 0u);
-    for (const auto& [a, b, c] : shape.mesh.triangles)
-        for (const std::uint32_t v : {b, c}) {
-            const std::uint32_t p = root_of(parents, a), q = root_of(parents, v);
-            parents[std::max(p, q)] = std::min(p, q); // so that a root is the lowest of its component
-        }
-    for (std::uint32_t v = 0; v < parents.size(); ++v)
-        if (parents[v] == v && shape.vertex_triangle[v] != Shape::no_triangle) shape.component_vertices.push_back(v);
+    DisjointSets components;
+    components.reset(shape.points.size());
+    for (const auto& [a, b, c] : shape.mesh.triangles) {
+        components.join(a, b);
+        components.join(a, c);
+    }
+    for (std::uint32_t v = 0; v < shape.points.size(); ++v)
+        if (components.of(v) == v && shape.vertex_triangle[v] != Shape::no_triangle)
+            shape.component_vertices.push_back(v);
 }
 
 } // namespace raycontact

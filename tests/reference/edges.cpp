@@ -392,10 +392,10 @@ private:
         const Vec3& first = points_[piece.ends[0].point];
         const Vec3& last = points_[piece.ends[1].point];
         for (const Vec3& origin : {first, last, 0.5 * (first + last)}) {
-            const Vec3 start = origin + hair * down;
-            const Hit hit = to_target_.closest(start, down);
+            const Hit hit = to_target_.closest(origin, down);
             if (hit.triangle == Hit::none || !hit.from_inside) continue;
-            if (hit.distance > to_source_.closest(to_source(start), inward).distance) continue;
+            const Vec3 beyond = to_source(origin) + hair * inward; // of the faces at the edge itself
+            if (hit.distance > hair + to_source_.closest(beyond, inward).distance) continue;
             all.push_back(hit.triangle);
         }
         std::vector<std::uint32_t> list;

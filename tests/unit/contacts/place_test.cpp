@@ -36,7 +36,8 @@ TEST(Placer, SortsTheContactsOfEachPair) {
             }
         }
     }
-    std::vector<Contact> contacts;
+    std::vector<Contact> contacts(local.size()); // as a step with edges leaves it to the next
+    for (Contact& contact : contacts) contact.feature = Feature::edge, contact.crossing = 3;
     Placer placer;
     placer.run(*opened.executor, Direction::ray, bodies, pairs, local, contacts);
 
@@ -48,6 +49,8 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         EXPECT_EQ(contacts[i].vertex_body, local[i].pair % 2 == 0 ? VertexBody::a : VertexBody::b);
         EXPECT_EQ(contacts[i].vertex, shape->data().mesh.vertex_index[local[i].vertex]);
         EXPECT_EQ(contacts[i].ray_length, local[i].distance);
+        EXPECT_EQ(contacts[i].feature, Feature::vertex);
+        EXPECT_EQ(contacts[i].crossing, 0u);
     }
 }
 

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each instruction set, as the kernels are. Nothing here calls an inline function of another header:
+// the linker keeps one copy of those, and it may be one that this processor cannot run.
+#include "edges/walks.h"
+
+namespace raycontact::edges::walks::RAYCONTACT_ISA {
+using kernels::uint;
+#include "device/cpu/instruction_set.h"
+
+namespace {
+
+constexpr int lanes = 16;
+static_assert(lanes == NODE_LANES && lanes == TRIANGLE_LANES);
+// Each level of a tree leaves at most fifteen children waiting.
+constexpr int most_waiting = NODE_LEVELS * NODE_LANES;
+constexpr double never = __builtin_inf();
+
+DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const float* inverse, float most) {
+    float enter[lanes], leave[lanes];
+    FOR_LANES(k, lanes) {
+        enter[k] = 0;
+        leave[k] = most;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const float at = o[axis], by = inverse[axis];
+        FOR_LANES(k, lanes) {
+            const float t0 = (node.bounds[axis][k] - at) * by, t1 = (node.bounds[3 + axis][k] - at) * by;
+            const float first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
+            enter[k] = first > enter[k] ? first : enter[k];
+            leave[k] = last < leave[k] ? last : leave[k];
+        }
+    }
+    int in[lanes];
+    FOR_LANES(k, lanes) {
+        in[k] = -static_cast<int>((enter[k] <= leave[k]) & (node.child[k] != NONE));
+    }
+    return pack_sixteen(in);
+}
+
+// Distances along the ray at which it meets the triangles, negative where from outside; `never` where it does not.
+// Edges belong to the triangle.
+DEVICE void meet_triangles(const kernels::TriangleBlock& block, const Ray& ray, double* distances) {
+    const double ox = ray.origin[0], oy = ray.origin[1], oz = ray.origin[2];
+    const double dx = ray.direction[0], dy = ray.direction[1], dz = ray.direction[2];
+    const double least = ray.least, most = ray.most;
+    FOR_LANES(k, lanes) {
+        const double px = block.corner[0][k] - ox, py = block.corner[1][k] - oy, pz = block.corner[2][k] - oz;
+        const double qx = block.corner[3][k] - ox, qy = block.corner[4][k] - oy, qz = block.corner[5][k] - oz;
+        const double rx = block.corner[6][k] - ox, ry = block.corner[7][k] - oy, rz = block.corner[8][k] - oz;
+        const double u = (qy * rz - qz * ry) * dx + (qz * rx - qx * rz) * dy + (qx * ry - qy * rx) * dz;
+        const double v = (ry * pz - rz * py) * dx + (rz * px - rx * pz) * dy + (rx * py - ry * px) * dz;
+        const double w = (py * qz - pz * qy) * dx + (pz * qx - px * qz) * dy + (px * qy - py * qx) * dz;
+        const bool from_inside = (u >= 0) & (v >= 0) & (w >= 0), from_outside = (u <= 0) & (v <= 0) & (w <= 0);
+        const double volume = u + v + w;
+        const double at =
+            (u * (px * dx + py * dy + pz * dz) + v * (qx * dx + qy * dy + qz * dz) + w * (rx * dx + ry * dy + rz * dz))
+            / volume;
+        const bool meets = (from_inside | from_outside) & (volume != 0) & (at > least) & (at <= most);
+        distances[k] = meets ? (from_inside ? at : -at) : never;
+    }
+}
+
+// The least absolute value.
+DEVICE double least_of(const double* values) {
+    double eight[8], four[4], two[2];
+    FOR_LANES(k, 8) {
+        const double p = __builtin_fabs(values[k]), q = __builtin_fabs(values[k + 8]);
+        eight[k] = p < q ? p : q;
+    }
+    FOR_LANES(k, 4) {
+        four[k] = eight[k] < eight[k + 4] ? eight[k] : eight[k + 4];
+    }
+    FOR_LANES(k, 2) {
+        two[k] = four[k] < four[k + 2] ? four[k] : four[k + 2];
+    }
+    return two[0] < two[1] ? two[0] : two[1];
+}
+
+MeshHit closest_hit(const Tree& tree, const Ray& ray) {
+    float from[3], inverse[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = ray.direction[axis];
+        from[axis] = static_cast<float>(ray.origin[axis]);
+        inverse[axis] = static_cast<float>(1 / (__builtin_fabs(d) > 1e-20 ? d : 1e-20));
+    }
+    MeshHit hit{never, NONE, false};
+    uint waiting[most_waiting];
+    int count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+        const kernels::Node& node = tree.nodes[waiting[--count]];
+        const double limit = (ray.most < hit.distance ? ray.most : hit.distance) + ray.tolerance;
+        // In float: the boxes are grown by far more than its rounding.
+        const float reach = limit < 3e38 ? static_cast<float>(1.000001 * limit) : 3e38f;
+        for (uint found = children_on_ray(node, from, inverse, reach); found != 0; found &= found - 1) {
+            const uint child = node.child[__builtin_ctz(found)];
+            if ((child & LEAF) == 0) {
+                waiting[count++] = child;
+                continue;
+            }
+            const kernels::TriangleBlock& block = tree.blocks[child & ~LEAF];
+            double distances[lanes];
+            meet_triangles(block, ray, distances);
+            if (!(least_of(distances) <= hit.distance)) continue;
+            for (int k = 0; k < lanes; ++k) {
+                const double at = __builtin_fabs(distances[k]);
+                if (at == never || at > hit.distance || (at == hit.distance && block.triangle[k] >= hit.face)) continue;
+                hit = {at, block.triangle[k], distances[k] > 0};
+            }
+        }
+    }
+    return hit;
+}
+
+/// Boxes, corners and planes of a block's triangles, in the frame of the second body. Empty lanes hold NaN.
+struct Placed {
+    float box[6][lanes];    // lower x y z, upper x y z
+    float corner[9][lanes]; // as in TriangleBlock
+    float plane[4][lanes];  // unit normal and height; all 0 where the normal is not accurate
+    float whole[6];         // the box of all
+    uint block = NONE;
+};
+
+// rotation and translation: nullptr for a block of the second body, which is there already.
+DEVICE_BATCH void place(const kernels::TriangleBlock& from, const float* rotation, const float* translation, float grow,
+                        Placed& placed) {
+    for (int corner = 0; corner < 9; corner += 3) {
+        const float *x = from.corner[corner], *y = from.corner[corner + 1], *z = from.corner[corner + 2];
+        for (int axis = 0; axis < 3; ++axis) {
+            float* to = placed.corner[corner + axis];
+            if (rotation == nullptr) {
+                FOR_LANES(k, lanes) {
+                    to[k] = from.corner[corner + axis][k];
+                }
+                continue;
+            }
+            const float *row = rotation + 3 * axis, move = translation[axis];
+            FOR_LANES(k, lanes) {
+                to[k] = row[0] * x[k] + row[1] * y[k] + row[2] * z[k] + move;
+            }
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const float *p = placed.corner[axis], *q = placed.corner[3 + axis], *r = placed.corner[6 + axis];
+        FOR_LANES(k, lanes) {
+            const float low = p[k] < q[k] ? p[k] : q[k], high = p[k] < q[k] ? q[k] : p[k];
+            placed.box[axis][k] = (low < r[k] ? low : r[k]) - grow;
+            placed.box[3 + axis][k] = (high > r[k] ? high : r[k]) + grow;
+        }
+        float lower = 3e38f, upper = -3e38f;
+        for (int k = 0; k < lanes; ++k) { // comparisons with the NaN of empty lanes are false
+            lower = placed.box[axis][k] < lower ? placed.box[axis][k] : lower;
+            upper = placed.box[3 + axis][k] > upper ? placed.box[3 + axis][k] : upper;
+        }
+        placed.whole[axis] = lower;
+        placed.whole[3 + axis] = upper;
+    }
+    const float(*c)[lanes] = placed.corner;
+    FOR_LANES(k, lanes) {
+        // From the corners as stored: those that are placed are rounded, which turns the plane of a needle.
+        const double ax = double(from.corner[3][k]) - from.corner[0][k],
+                     ay = double(from.corner[4][k]) - from.corner[1][k],
+                     az = double(from.corner[5][k]) - from.corner[2][k];
+        const double bx = double(from.corner[6][k]) - from.corner[0][k],
+                     by = double(from.corner[7][k]) - from.corner[1][k],
+                     bz = double(from.corner[8][k]) - from.corner[2][k];
+        const double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+        const double size2 = x * x + y * y + z * z;
+        const bool sure = size2 > 1e-16 * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz);
+        const double scale = sure ? 1 / __builtin_sqrt(size2) : 0;
+        placed.plane[0][k] = static_cast<float>(scale * x);
+        placed.plane[1][k] = static_cast<float>(scale * y);
+        placed.plane[2][k] = static_cast<float>(scale * z);
+    }
+    if (rotation != nullptr) {
+        FOR_LANES(k, lanes) {
+            const float x = placed.plane[0][k], y = placed.plane[1][k], z = placed.plane[2][k];
+            placed.plane[0][k] = rotation[0] * x + rotation[1] * y + rotation[2] * z;
+            placed.plane[1][k] = rotation[3] * x + rotation[4] * y + rotation[5] * z;
+            placed.plane[2][k] = rotation[6] * x + rotation[7] * y + rotation[8] * z;
+        }
+    }
+    FOR_LANES(k, lanes) {
+        placed.plane[3][k] = placed.plane[0][k] * c[0][k] + placed.plane[1][k] * c[1][k] + placed.plane[2][k] * c[2][k];
+    }
+}
+
+// A bit for each lane whose box meets that one. Those of empty lanes are NaN or inverted.
+DEVICE uint boxes_in_box(const float (*bounds)[lanes], const float* box) {
+    int in[lanes];
+    FOR_LANES(k, lanes) {
+        in[k] = -static_cast<int>((bounds[0][k] <= box[3]) & (bounds[3][k] >= box[0]) & (bounds[1][k] <= box[4])
+                                  & (bounds[4][k] >= box[1]) & (bounds[2][k] <= box[5]) & (bounds[5][k] >= box[2]));
+    }
+    return pack_sixteen(in);
+}
+
+/// Walks both trees at once.
+struct Walk {
+    TwoTrees& trees;
+    float size[9] = {}; // |rotation|
+    uint count = 0;
+    Placed first = {}, second = {};
+
+    // The box of a child of the first body's tree, seen from the second, grown.
+    void box_of(const kernels::Node& node, int k, float* box) const {
+        float middle[3], half[3];
+        for (int i = 0; i < 3; ++i) {
+            middle[i] = 0.5f * (node.bounds[i][k] + node.bounds[3 + i][k]);
+            half[i] = 0.5f * (node.bounds[3 + i][k] - node.bounds[i][k]);
+        }
+        for (int i = 0; i < 3; ++i) {
+            const float *r = trees.rotation + 3 * i, *s = size + 3 * i;
+            const float at = r[0] * middle[0] + r[1] * middle[1] + r[2] * middle[2] + trees.translation[i];
+            const float by = s[0] * half[0] + s[1] * half[1] + s[2] * half[2] + trees.apart;
+            box[i] = at - by;
+            box[3 + i] = at + by;
+        }
+    }
+
+    // Empty lanes of a node hold inverted boxes, which meet nothing.
+    void both(uint first_node, uint second_node) {
+        const kernels::Node &a = trees.first.nodes[first_node], &b = trees.second.nodes[second_node];
+        for (int k = 0; k < lanes; ++k) {
+            if (a.child[k] == NONE) continue;
+            float box[6];
+            box_of(a, k, box);
+            for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
+                pair(a.child[k], box, b.child[__builtin_ctz(in)]);
+        }
+    }
+
+    void pair(uint first_child, const float* box, uint second_child) {
+        const bool first_leaf = (first_child & LEAF) != 0, second_leaf = (second_child & LEAF) != 0;
+        if (second_child == NONE) return;
+        if (first_leaf && second_leaf) {
+            leaves(first_child & ~LEAF, second_child & ~LEAF);
+        } else if (first_leaf) {
+            const kernels::Node& b = trees.second.nodes[second_child];
+            for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
+                pair(first_child, box, b.child[__builtin_ctz(in)]);
+        } else if (second_leaf) {
+            under_first(first_child, second_child & ~LEAF);
+        } else {
+            both(first_child, second_child);
+        }
+    }
+
+    // A node of the first body against a block of the second.
+    void under_first(uint first_node, uint block) {
+        need_second(block);
+        const kernels::Node& a = trees.first.nodes[first_node];
+        for (int k = 0; k < lanes; ++k) {
+            if (a.child[k] == NONE) continue;
+            float box[6];
+            box_of(a, k, box);
+            bool apart = false;
+            for (int i = 0; i < 3; ++i) apart |= box[i] > second.whole[3 + i] || box[3 + i] < second.whole[i];
+            if (apart) continue;
+            if ((a.child[k] & LEAF) != 0)
+                leaves(a.child[k] & ~LEAF, block);
+            else
+                under_first(a.child[k], block);
+        }
+    }
+
+    void need_second(uint block) {
+        if (second.block == block) return;
+        second.block = block;
+        place(trees.second.blocks[block], nullptr, nullptr, 0, second);
+    }
+
+    void leaves(uint first_block, uint second_block) {
+        need_second(second_block);
+        if (first.block != first_block) {
+            first.block = first_block;
+            place(trees.first.blocks[first_block], trees.rotation, trees.translation, trees.apart, first);
+        }
+        float all[6];
+        for (int i = 0; i < 6; ++i) all[i] = second.whole[i];
+        const kernels::TriangleBlock &a = trees.first.blocks[first_block], &b = trees.second.blocks[second_block];
+        for (uint own = boxes_in_box(first.box, all); own != 0; own &= own - 1) {
+            const int k = __builtin_ctz(own);
+            float box[6];
+            for (int i = 0; i < 6; ++i) box[i] = first.box[i][k];
+            uint in = boxes_in_box(second.box, box);
+            if (in != 0) in &= ~apart_by_plane(k);
+            for (; in != 0; in &= in - 1) {
+                if (count == trees.room) flush();
+                trees.pairs[count++] = {a.triangle[k], b.triangle[__builtin_ctz(in)]};
+            }
+        }
+    }
+
+    // A bit for each triangle of the second block that lies on one side of the plane of the first's k-th, or the
+    // other way round.
+    uint apart_by_plane(int k) const {
+        const float apart = trees.apart;
+        const float x = first.plane[0][k], y = first.plane[1][k], z = first.plane[2][k], height = first.plane[3][k];
+        float corner[9];
+        for (int i = 0; i < 9; ++i) corner[i] = first.corner[i][k];
+        int out[lanes];
+        FOR_LANES(j, lanes) {
+            const float p = x * second.corner[0][j] + y * second.corner[1][j] + z * second.corner[2][j] - height;
+            const float q = x * second.corner[3][j] + y * second.corner[4][j] + z * second.corner[5][j] - height;
+            const float r = x * second.corner[6][j] + y * second.corner[7][j] + z * second.corner[8][j] - height;
+            const float nx = second.plane[0][j], ny = second.plane[1][j], nz = second.plane[2][j];
+            const float by = second.plane[3][j];
+            const float s = nx * corner[0] + ny * corner[1] + nz * corner[2] - by;
+            const float t = nx * corner[3] + ny * corner[4] + nz * corner[5] - by;
+            const float u = nx * corner[6] + ny * corner[7] + nz * corner[8] - by;
+            const bool above = ((p > apart) & (q > apart) & (r > apart)) | ((s > apart) & (t > apart) & (u > apart));
+            const bool below =
+                ((p < -apart) & (q < -apart) & (r < -apart)) | ((s < -apart) & (t < -apart) & (u < -apart));
+            out[j] = -static_cast<int>(above | below);
+        }
+        return pack_sixteen(out);
+    }
+
+    void flush() {
+        trees.flush(trees.list, trees.pairs, count);
+        count = 0;
+    }
+};
+
+void near_triangles(TwoTrees& trees) {
+    Walk walk{trees};
+    for (int i = 0; i < 9; ++i) walk.size[i] = __builtin_fabsf(trees.rotation[i]);
+    walk.both(0, 0);
+    walk.flush();
+}
+
+} // namespace
+} // namespace raycontact::edges::walks::RAYCONTACT_ISA
+
+#define RAYCONTACT_STRING_(x) #x
+#define RAYCONTACT_STRING(x) RAYCONTACT_STRING_(x)
+
+namespace raycontact::edges {
+
+extern const Walks RAYCONTACT_ISA;
+const Walks RAYCONTACT_ISA = {RAYCONTACT_STRING(RAYCONTACT_ISA), &walks::RAYCONTACT_ISA::closest_hit,
+                              &walks::RAYCONTACT_ISA::near_triangles};
+
+} // namespace raycontact::edges
