@@ -105,7 +105,7 @@ TEST(Allocations, NoneAfterWarmUp) {
 }
 
 TEST(Allocations, NoneAfterWarmUpWithEdges) {
-    expect_none_after_warm_up(Features::edges, Shape::make(scenes::scene_model("knot", 120).mesh));
+    expect_none_after_warm_up(Features::edges, Shape::make(scenes::scene_model("knot", 60).mesh));
 }
 
 // Pairs that come and go take what others left.
@@ -230,7 +230,7 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
 }
 
 TEST(Allocations, AStepWithEdgesThatFailsLeavesNothing) {
-    expect_nothing_left(Features::edges, Shape::make(scenes::scene_model("knot", 120).mesh));
+    expect_nothing_left(Features::edges, Shape::make(scenes::scene_model("knot", 60).mesh));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // The reference itself, on cases whose answer is known by hand.
 #include "reference/compare.h"
 #include "reference/contacts.h"
+#include "reference/edges.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
 #include "reference/ray.h"
@@ -203,6 +204,42 @@ TEST(reference_contacts, of_an_open_target_reach_beyond_its_box) {
         EXPECT_NEAR(c.depth, 0.125, 1e-14);
         EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15);
     }
+}
+
+TEST(reference_edges, of_crossed_bars) {
+    // No vertex is inside: a bar along x on one along y, 1/64 deep. Two edges of each are cut twice.
+    const Solid low = solid(box_mesh({1, 0.125, 0.125})), high = solid(box_mesh({0.125, 1, 0.125}));
+    const auto contacts = find_edges(low, {}, high, at(0, 0, 0.25 - 1.0 / 64));
+    EXPECT_TRUE(find_contacts(low, {}, high, at(0, 0, 0.25 - 1.0 / 64)).empty());
+    ASSERT_EQ(contacts.size(), 8u);
+    for (const auto& c : contacts) {
+        EXPECT_EQ(c.feature, Feature::edge);
+        EXPECT_NEAR(c.depth, 1.0 / 64, 1e-6);
+        EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15);
+    }
+}
+
+TEST(reference_edges, of_a_box_in_a_box) {
+    // Nothing crosses: the deepest vertex of the small box speaks, towards the nearest wall, x = 1.
+    const auto contacts =
+        find_edges(solid(box_mesh({1, 1, 1})), {}, solid(box_mesh({0.25, 0.25, 0.25})), at(0.5, 0, 0.125));
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].feature, Feature::inside);
+    EXPECT_EQ(contacts[0].vertex_body, VertexBody::b);
+    EXPECT_NEAR(contacts[0].depth, 0.75, 1e-6);
+    EXPECT_NEAR(std::fabs(contacts[0].normal.x) + std::fabs(contacts[0].normal.y) + std::fabs(contacts[0].normal.z), 1,
+                1e-6);
+}
+
+TEST(reference_edges, of_a_cone_through_a_plate) {
+    const Solid plate = solid(box_mesh({2, 2, 0.0625}));
+    const auto contacts = find_edges(plate, {}, solid(cone_mesh()), at(0.1, 0.2, -0.5));
+    EXPECT_GE(contacts.size(), 8u); // at least its eight edges
+    for (const auto& c : contacts) EXPECT_LE(c.depth, 0.125);
+    // An open plate has no inside.
+    Mesh flat = sheet_mesh(1);
+    for (Vec3& v : flat.vertices) v.z = 0;
+    EXPECT_TRUE(find_edges(solid(flat), {}, solid(cone_mesh()), at(0.1, 0.2, -0.5)).size() <= 1);
 }
 
 // What the library would have to say to agree with the reference.
