@@ -10,6 +10,10 @@ namespace raycontact {
 /// Sets of crossings and vertices that belong together (docs/edges.md, "Regions").
 class Regions : public DisjointSets {
 public:
+    void reset(std::size_t count) {
+        DisjointSets::reset(count);
+        keys_.clear(); // a step that failed half-way left some
+    }
     /// Joins all that have a key in common, when join_keys() is called.
     void add_key(std::uint64_t key, std::uint32_t i) { keys_.emplace_back(key, i); }
     void join_keys();
