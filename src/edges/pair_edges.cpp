@@ -218,8 +218,12 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
             if (dot(candidates[i].normal, added.normal) > 1 - 1e-12
                 && std::fabs(candidates[i].height - added.height) < 1e-9 * target.diagonal)
                 return;
-        for (std::size_t k = 0; k < 2; ++k)
-            added.depths[k] = way_out(target, piece.ends[k].point, added.normal, added.height);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Vec3& end = piece.ends[k].point;
+            // Just below the face that it crosses the plane is the face.
+            added.depths[k] = piece.faces[k] == face ? added.height - dot(end, added.normal)
+                                                     : way_out(target, end, added.normal, added.height);
+        }
         if (added.deeper() > 0) ++count;
     };
     for (const std::uint32_t face : piece.faces)
@@ -231,7 +235,8 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
             const MeshHit hit = closest_hit(target, origin, in, 0, never);
             if (hit.face == NONE || !hit.from_inside) continue;
             // The paper's second test: before leaving the source (section 2.1).
-            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, never).distance >= hit.distance)
+            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, hit.distance).distance
+                >= hit.distance)
                 add(hit.face);
         }
     }
@@ -277,9 +282,26 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
     const auto end = std::lower_bound(begin, points_.end(), region + 1, less);
     const auto count = static_cast<std::size_t>(end - begin);
     const std::size_t asked = std::min(count, most_points);
-    double metres = 0;
+    const auto point_at = [&](std::size_t i) -> const Vec3& {
+        return begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+    };
+    // The point deepest below the plane first: it is likely to decide. Most others then need no more than a short ray.
+    std::size_t first = 0;
+    double lowest = -never;
     for (std::size_t i = 0; i < asked; ++i) {
-        const Vec3& point = begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+        const double below = height - dot(point_at(i), normal);
+        if (below <= lowest) continue;
+        lowest = below;
+        first = i;
+    }
+    double metres = 0;
+    for (std::size_t i = 0; i <= asked; ++i) {
+        if (i == first + 1) continue;
+        const Vec3& point = point_at(i == 0 ? first : i - 1);
+        if (metres > 0) {
+            const MeshHit hit = closest_hit(placed.target, point, normal, 0, metres);
+            if (hit.face != NONE && hit.from_inside) continue;
+        }
         metres = std::max(metres, way_out(placed.target, point, normal, height));
         if (metres >= enough) return metres;
     }
