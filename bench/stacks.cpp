@@ -103,8 +103,7 @@ int run_all(const Options& options) {
             std::printf("\n");
         }
     }
-    if (!options.out.empty())
-        std::printf("%s\n", rc::bench::write_csv(options.out, machine, "stacks", csv).c_str());
+    if (!options.out.empty()) std::printf("%s\n", rc::bench::write_csv(options.out, machine, "stacks", csv).c_str());
     return 0;
 }
 

@@ -36,7 +36,8 @@ double box_overlap(const Vec3& size_a, const Pose& a, const Vec3& size_b, const 
         const double length = std::sqrt(dot(axis, axis));
         if (length < 1e-6) return; // edges that are parallel: the faces have this axis
         const Vec3 unit{axis.x / length, axis.y / length, axis.z / length};
-        least = std::min(least, half_width(size_a, a, unit) + half_width(size_b, b, unit) - std::fabs(dot(between, unit)));
+        least =
+            std::min(least, half_width(size_a, a, unit) + half_width(size_b, b, unit) - std::fabs(dot(between, unit)));
     };
     for (std::size_t i = 0; i < 3; ++i) {
         ask(column_of(a, i));

@@ -62,19 +62,26 @@ std::unique_ptr<btCollisionDispatcher> make_dispatcher(Finder finder, btCollisio
 
 std::string_view to_string(Finder finder) {
     switch (finder) {
-    case Finder::edges: return "edges";
-    case Finder::vertices: return "vertices";
-    case Finder::gimpact: return "gimpact";
-    case Finder::boxes: return "boxes";
+    case Finder::edges:
+        return "edges";
+    case Finder::vertices:
+        return "vertices";
+    case Finder::gimpact:
+        return "gimpact";
+    case Finder::boxes:
+        return "boxes";
     }
     return "";
 }
 
 std::string_view to_string(Ground ground) {
     switch (ground) {
-    case Ground::plane: return "plane";
-    case Ground::slab: return "slab";
-    case Ground::quad: return "quad";
+    case Ground::plane:
+        return "plane";
+    case Ground::slab:
+        return "slab";
+    case Ground::quad:
+        return "quad";
     }
     return "";
 }
@@ -148,7 +155,7 @@ StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder) : state
     }
     for (const StackBody& body : stack.bodies) {
         const Mass& m = masses[body.shape];
-        const btVector3 inertia = btScalar(density) * to_bullet({m.inertia[0], m.inertia[4], m.inertia[8]});
+        const btVector3 inertia = btScalar(density) * to_bullet(Vec3{m.inertia[0], m.inertia[4], m.inertia[8]});
         s.add_body(*s.shapes[first + body.shape], btScalar(density * m.volume), inertia, body.pose);
     }
 }
@@ -187,9 +194,8 @@ void StackWorld::print_points(std::FILE* out) const {
             std::fprintf(out, "%d-%d at %.4f %.4f %.4f normal %.4f %.4f %.4f distance %.6f impulse %.3f age %d",
                          number(m.getBody0()), number(m.getBody1()), double(p.m_positionWorldOnB.x()),
                          double(p.m_positionWorldOnB.y()), double(p.m_positionWorldOnB.z()),
-                         double(p.m_normalWorldOnB.x()), double(p.m_normalWorldOnB.y()),
-                         double(p.m_normalWorldOnB.z()), double(p.m_distance1), double(p.m_appliedImpulse),
-                         p.m_lifeTime);
+                         double(p.m_normalWorldOnB.x()), double(p.m_normalWorldOnB.y()), double(p.m_normalWorldOnB.z()),
+                         double(p.m_distance1), double(p.m_appliedImpulse), p.m_lifeTime);
             if (bullet::CollisionDispatcher::is_ours(p)) {
                 const bullet::PointKey key = bullet::CollisionDispatcher::key(p);
                 std::fprintf(out, " key %d:%d:%d:%u", key.vertex_body, static_cast<int>(key.feature), key.vertex,

@@ -27,14 +27,14 @@ Verdict judge(const Stack& stack, std::span<const Pose> poses) {
         // The sine is exact where the cosine is not.
         const auto& r = moved.rotation;
         const double x = r[7] - r[5], y = r[2] - r[6], z = r[3] - r[1];
-        most(verdict.turn, std::atan2(std::sqrt(x * x + y * y + z * z), r[0] + r[4] + r[8] - 1) * 180
-                               / 3.14159265358979323846);
+        most(verdict.turn,
+             std::atan2(std::sqrt(x * x + y * y + z * z), r[0] + r[4] + r[8] - 1) * 180 / 3.14159265358979323846);
         for (const Vec3& v : shape.mesh.vertices) most(verdict.sunk, -transform_point(poses[i], v).z / shape.size);
         for (std::size_t k = 0; k < i; ++k) {
             const StackShape& other = stack.shapes[stack.bodies[k].shape];
             if (shape.box && other.box)
-                most(verdict.overlap, box_overlap(*shape.box, poses[i], *other.box, poses[k])
-                                          / std::min(shape.size, other.size));
+                most(verdict.overlap,
+                     box_overlap(*shape.box, poses[i], *other.box, poses[k]) / std::min(shape.size, other.size));
         }
     }
     return verdict;
