@@ -25,6 +25,7 @@ constexpr Ground grounds[] = {Ground::plane, Ground::slab, Ground::quad};
 struct Options {
     double seconds = 5;
     std::string only, ground, finder, out;
+    StackSolver solver;
     bool watch = false; ///< print the contacts before the first step after which the stack is down
 };
 
@@ -35,7 +36,7 @@ struct Row {
 };
 
 Row run(const Stack& stack, Ground ground, Finder finder, const Options& options, double allowed) {
-    StackWorld world(stack, ground, finder);
+    StackWorld world(stack, ground, finder, options.solver);
     Row row;
     row.ran = true;
     const int steps = static_cast<int>(options.seconds * 60 + 0.5);
@@ -115,10 +116,18 @@ Options parse(int count, char** words) {
             options.watch = true;
             continue;
         }
+        if (word == "--two") {
+            options.solver.two_friction_directions = true;
+            continue;
+        }
         if (i + 1 == count) throw std::runtime_error(word + ": unknown, or without a value");
         const std::string value = words[++i];
         if (word == "--seconds")
             options.seconds = std::atof(value.c_str());
+        else if (word == "--iterations")
+            options.solver.iterations = std::atoi(value.c_str());
+        else if (word == "--slop")
+            options.solver.slop = std::atof(value.c_str());
         else if (word == "--only")
             options.only = value;
         else if (word == "--ground")

@@ -63,7 +63,7 @@ Stack wall() {
     Stack stack{"wall", {box_of({1, 0.5, 0.4})}, {}};
     for (int row = 0; row < 5; ++row)
         for (int k = 0; k < 8; ++k)
-            stack.bodies.push_back({0, placed(k - 3.75 + (row % 2 == 0 ? 0 : 0.5), 0, 0.2 + 0.4 * row)});
+            stack.bodies.push_back({0, placed(k - 3.625 + (row % 2 == 0 ? 0 : 0.25), 0, 0.2 + 0.4 * row)});
     return stack;
 }
 

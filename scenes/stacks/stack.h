@@ -33,7 +33,7 @@ struct Stack {
 
 Stack column();        ///< ten cubes
 Stack turned_column(); ///< ten cubes, each turned by 15 degrees against the one below
-Stack wall();          ///< 8 x 5 bricks in bond, neighbours touching
+Stack wall();          ///< 8 x 5 bricks, neighbours touching, each row a quarter of a brick off
 Stack logs();          ///< 16 bars laid crosswise, two in a layer: edges alone touch
 Stack table();         ///< a plate on four legs, a cube on it
 Stack rim();           ///< a cube, turned, on the rim of a box without a lid: edges alone touch

@@ -143,9 +143,14 @@ void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const b
     world.addRigidBody(bodies.back().get());
 }
 
-StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder) : state_(std::make_unique<State>(finder)) {
+StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver) : state_(std::make_unique<State>(finder)) {
     if (finder == Finder::boxes && !stack.boxes()) throw InputError("StackWorld: not all bodies are boxes");
     State& s = *state_;
+    btContactSolverInfo& info = s.world.getSolverInfo();
+    info.m_numIterations = solver.iterations;
+    info.m_linearSlop = btScalar(solver.slop);
+    if (solver.two_friction_directions)
+        info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
     s.add_ground(ground);
     std::vector<Mass> masses;
     const std::size_t first = s.shapes.size();

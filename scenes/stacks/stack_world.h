@@ -26,12 +26,19 @@ inline constexpr double ground_reach = 10; ///< half its width, metres; the plan
 std::string_view to_string(Finder finder);
 std::string_view to_string(Ground ground);
 
-/// A stack in a Bullet world with Bullet's default settings but deactivation, which is off. z is up, 60 steps a second,
-/// friction 0.8 x 0.8. Moving meshes are btGImpactMeshShape for every finder: one line differs.
+/// Of Bullet's solver, the same for every finder. Defaults: Bullet's own.
+struct StackSolver {
+    int iterations = 10;
+    double slop = 0; ///< metres
+    bool two_friction_directions = false; ///< fixed by the normal
+};
+
+/// A stack in a Bullet world with deactivation off. z is up, 60 steps a second, friction 0.8 x 0.8. Moving meshes are
+/// btGImpactMeshShape for every finder: one line differs.
 class StackWorld {
 public:
     /// Throws InputError for Finder::boxes where bodies are not boxes.
-    StackWorld(const Stack& stack, Ground ground, Finder finder);
+    StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver = {});
     ~StackWorld();
     StackWorld(const StackWorld&) = delete;
     StackWorld& operator=(const StackWorld&) = delete;
