@@ -55,6 +55,10 @@ Row run(const Stack& stack, Ground ground, Finder finder, const Options& options
     }
     row.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / steps;
     row.verdict = judge(stack, world.poses());
+    for (std::size_t i = 0; options.watch && i < stack.bodies.size(); ++i) {
+        const rc::Vec3 a = stack.bodies[i].pose.translation, b = world.pose(i).translation;
+        std::printf("body %zu has moved by %.4f %.4f %.4f m\n", i, b.x - a.x, b.y - a.y, b.z - a.z);
+    }
     row.fell = row.verdict.fell(stack, allowed);
     return row;
 }

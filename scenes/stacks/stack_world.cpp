@@ -143,7 +143,8 @@ void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const b
     world.addRigidBody(bodies.back().get());
 }
 
-StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver) : state_(std::make_unique<State>(finder)) {
+StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver)
+    : state_(std::make_unique<State>(finder)) {
     if (finder == Finder::boxes && !stack.boxes()) throw InputError("StackWorld: not all bodies are boxes");
     State& s = *state_;
     btContactSolverInfo& info = s.world.getSolverInfo();

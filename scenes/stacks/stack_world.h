@@ -29,7 +29,7 @@ std::string_view to_string(Ground ground);
 /// Of Bullet's solver, the same for every finder. Defaults: Bullet's own.
 struct StackSolver {
     int iterations = 10;
-    double slop = 0; ///< metres
+    double slop = 0;                      ///< metres
     bool two_friction_directions = false; ///< fixed by the normal
 };
 

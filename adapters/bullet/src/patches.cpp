@@ -204,8 +204,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         const Candidate& contact = candidates[c];
         std::size_t home = patches.size();
         // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
-        if (before[c]
-            && patches[before[c]->patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
+        if (before[c] && patches[before[c]->patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
             home = before[c]->patch;
         if (home == patches.size()) home = suitable(patches, contact, settings);
         if (home == patches.size()) {
