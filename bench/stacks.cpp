@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stacks of coarse meshes in a Bullet world that differs by one line: RayContact with edges and with vertices alone,
-// GImpact, and btBoxShape where all bodies are boxes. Prints how far each has come from where it was put.
-// Usage: raycontact_bench_stacks [--seconds S] [--only PART OF A NAME] [--ground G] [--finder F] [--out DIR] [--watch]
+// GImpact, and btBoxShape (btConvexHullShape for wedges) where all bodies are convex. Prints how far each has come from
+// where it was put. Usage: raycontact_bench_stacks [--seconds S] [--only PART OF A NAME] [--ground G] [--finder F]
+// [--out DIR] [--watch]
 #include <bench/peers/files.h>
 #include <scenes/stacks/stack_world.h>
 #include <scenes/stacks/verdict.h>
@@ -19,7 +20,7 @@ using namespace rc::scenes;
 
 namespace {
 
-constexpr Finder finders[] = {Finder::boxes, Finder::edges, Finder::vertices, Finder::gimpact};
+constexpr Finder finders[] = {Finder::convex, Finder::edges, Finder::vertices, Finder::gimpact};
 constexpr Ground grounds[] = {Ground::plane, Ground::slab, Ground::quad};
 
 struct Options {
@@ -92,9 +93,9 @@ int run_all(const Options& options) {
             for (const Finder finder : finders) {
                 Row row;
                 if ((options.finder.empty() || to_string(finder) == options.finder)
-                    && (finder != Finder::boxes || stack.boxes())) {
+                    && (finder != Finder::convex || stack.convex())) {
                     row = run(stack, ground, finder, options, allowed);
-                    if (finder == Finder::boxes) allowed = std::max(allowed, 2 * row.verdict.drift);
+                    if (finder == Finder::convex) allowed = std::max(allowed, 2 * row.verdict.drift);
                     char line[256];
                     std::snprintf(line, sizeof line, ",%s,%s,%s,%g,%.6f,%.4f,%.6f,%.6f,%d,%.4f\n", stack.name.c_str(),
                                   std::string(to_string(ground)).c_str(), std::string(to_string(finder)).c_str(),

@@ -29,6 +29,12 @@ StackShape box_of(const Vec3& size) {
     return shape;
 }
 
+StackShape tray_of(const Vec3& size, double thick) {
+    StackShape shape = shape_of(solid_tray(size, thick));
+    shape.convex = false;
+    return shape;
+}
+
 // Turned about z.
 Pose placed(double x, double y, double z, double degrees = 0) {
     const double half = degrees * 3.14159265358979323846 / 360;
@@ -43,8 +49,8 @@ double lowest(const StackShape& shape) {
 
 } // namespace
 
-bool Stack::boxes() const {
-    return std::ranges::all_of(shapes, [](const StackShape& s) { return s.box.has_value(); });
+bool Stack::convex() const {
+    return std::ranges::all_of(shapes, [](const StackShape& s) { return s.convex; });
 }
 
 Stack column() {
@@ -87,14 +93,14 @@ Stack table() {
 }
 
 Stack rim() {
-    Stack stack{"rim", {shape_of(solid_tray({1, 1, 0.6}, 0.06)), box_of({0.95, 0.95, 0.95})}, {}};
+    Stack stack{"rim", {tray_of({1, 1, 0.6}, 0.06), box_of({0.95, 0.95, 0.95})}, {}};
     stack.bodies.push_back({0, placed(0, 0, -lowest(stack.shapes[0]))});
     stack.bodies.push_back({1, placed(0, 0, 0.6 + 0.475, 45)});
     return stack;
 }
 
 Stack corner() {
-    Stack stack{"corner", {shape_of(solid_tray({1, 1, 0.6}, 0.06)), box_of({0.6, 0.6, 0.6})}, {}};
+    Stack stack{"corner", {tray_of({1, 1, 0.6}, 0.06), box_of({0.6, 0.6, 0.6})}, {}};
     stack.bodies.push_back({0, placed(0, 0, -lowest(stack.shapes[0]))});
     stack.bodies.push_back({1, placed(0.4, 0.4, 0.9)});
     return stack;

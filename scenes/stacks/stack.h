@@ -14,7 +14,8 @@ namespace raycontact::scenes {
 struct StackShape {
     Mesh mesh;
     std::optional<Vec3> box; ///< its size, if it is a box
-    double size = 0;         ///< longest edge of its box, metres
+    bool convex = true;
+    double size = 0; ///< longest edge of its box, metres
 };
 
 struct StackBody {
@@ -27,8 +28,8 @@ struct Stack {
     std::string name;
     std::vector<StackShape> shapes;
     std::vector<StackBody> bodies;
-    bool stands = true; ///< where it was put; otherwise it falls, and must not pass through anything
-    bool boxes() const;
+    bool stands = true;  ///< where it was put; otherwise it falls, and must not pass through anything
+    bool convex() const; ///< all bodies are
 };
 
 Stack column();        ///< ten cubes

@@ -68,8 +68,8 @@ std::string_view to_string(Finder finder) {
         return "vertices";
     case Finder::gimpact:
         return "gimpact";
-    case Finder::boxes:
-        return "boxes";
+    case Finder::convex:
+        return "convex";
     }
     return "";
 }
@@ -99,7 +99,7 @@ struct StackWorld::State {
     State& operator=(const State&) = delete;
 
     void add_ground(Ground ground);
-    void add_shape(const StackShape& shape, bool box);
+    void add_shape(const StackShape& shape, bool convex);
     void add_body(btCollisionShape& shape, btScalar mass, const btVector3& inertia, const Pose& pose);
 
     btDefaultCollisionConfiguration configuration;
@@ -122,9 +122,16 @@ void StackWorld::State::add_ground(Ground ground) {
     add_body(*shapes.back(), 0, btVector3(0, 0, 0), {});
 }
 
-void StackWorld::State::add_shape(const StackShape& shape, bool box) {
-    if (box) {
-        shapes.push_back(std::make_unique<btBoxShape>(to_bullet(*shape.box) / 2));
+void StackWorld::State::add_shape(const StackShape& shape, bool convex) {
+    if (convex) {
+        if (shape.box) {
+            shapes.push_back(std::make_unique<btBoxShape>(to_bullet(*shape.box) / 2));
+            return;
+        }
+        auto hull = std::make_unique<btConvexHullShape>();
+        for (const Vec3& v : shape.mesh.vertices) hull->addPoint(to_bullet(v), false);
+        hull->recalcLocalAabb();
+        shapes.push_back(std::move(hull));
         return;
     }
     meshes.push_back(triangles_of(shape.mesh));
@@ -145,7 +152,7 @@ void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const b
 
 StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver)
     : state_(std::make_unique<State>(finder)) {
-    if (finder == Finder::boxes && !stack.boxes()) throw InputError("StackWorld: not all bodies are boxes");
+    if (finder == Finder::convex && !stack.convex()) throw InputError("StackWorld: not all bodies are convex");
     State& s = *state_;
     btContactSolverInfo& info = s.world.getSolverInfo();
     info.m_numIterations = solver.iterations;
@@ -157,7 +164,7 @@ StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const S
     const std::size_t first = s.shapes.size();
     for (const StackShape& shape : stack.shapes) {
         masses.push_back(mass_of(shape.mesh.vertices, shape.mesh.triangles));
-        s.add_shape(shape, finder == Finder::boxes);
+        s.add_shape(shape, finder == Finder::convex);
     }
     for (const StackBody& body : stack.bodies) {
         const Mass& m = masses[body.shape];

@@ -15,7 +15,7 @@ enum class Finder {
     edges,    ///< RayContact, Features::edges
     vertices, ///< RayContact, Features::vertices
     gimpact,  ///< Bullet's own for moving meshes
-    boxes,    ///< btBoxShape in place of the meshes, for stacks of boxes
+    convex,   ///< btBoxShape and, for wedges, btConvexHullShape in place of the meshes, where all are convex
 };
 enum class Ground {
     plane, ///< btStaticPlaneShape
@@ -37,7 +37,7 @@ struct StackSolver {
 /// btGImpactMeshShape for every finder: one line differs.
 class StackWorld {
 public:
-    /// Throws InputError for Finder::boxes where bodies are not boxes.
+    /// Throws InputError for Finder::convex where bodies are not.
     StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver = {});
     ~StackWorld();
     StackWorld(const StackWorld&) = delete;
