@@ -124,6 +124,18 @@ void expect_stands(const Stack& stack, Ground ground, double seconds, const Stac
 /// creep on each other, its own convex hulls most.
 constexpr StackSolver steady{50, 0.002, true};
 
+TEST(StacksApart, ByThreePercentAndNoMore) {
+    Stack two = column();
+    two.bodies.resize(2);
+    for (const double overlap : {-0.01, 0.02, 0.04}) {
+        two.bodies[1].pose.translation.z = 1.5 - overlap;
+        const std::vector<Placed> bodies = placed(two, {two.bodies[0].pose, two.bodies[1].pose});
+        EXPECT_EQ(meet(bodies[0].surface(), bodies[1].surface()), overlap > 0);
+        EXPECT_EQ(comes_apart(bodies[0], bodies[1]), overlap < drift_limit);
+        EXPECT_EQ(comes_apart(bodies[1], bodies[0]), overlap < drift_limit);
+    }
+}
+
 class Stacks : public testing::TestWithParam<Ground> {};
 
 TEST_P(Stacks, Stand) {
