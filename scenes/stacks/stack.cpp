@@ -125,9 +125,9 @@ Stack plates() {
         for (int i = 0; i < 5; ++i)
             for (int k = 0; k < 4; ++k) {
                 const double shift = layer % 2 == 0 ? 0 : 0.75;
-                const auto tilt = random.tilt(0.4);
+                const auto tilt = random.tilt(0.2);
                 stack.bodies.push_back(
-                    {0, pose_from_quaternion({1.5 * i - 3 + shift, 1.5 * k - 2.25 + shift, 0.4 + 0.5 * layer}, tilt[0],
+                    {0, pose_from_quaternion({1.5 * i - 3 + shift, 1.5 * k - 2.25 + shift, 0.3 + 0.5 * layer}, tilt[0],
                                              tilt[1], tilt[2], tilt[3])});
             }
     return stack;

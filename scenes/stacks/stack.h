@@ -40,7 +40,7 @@ Stack table();         ///< a plate on four legs, a cube on it
 Stack rim();           ///< a cube, turned, on the rim of a box without a lid: edges alone touch
 Stack corner();        ///< a cube on a corner of such a rim
 Stack wedges();        ///< three boxes of two wedges each
-Stack plates();        ///< 60 dropped
+Stack plates();        ///< 60 dropped, so low that none falls by its thickness in a step
 
 /// In the order above.
 std::vector<Stack> all_stacks();
