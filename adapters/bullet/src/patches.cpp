@@ -113,7 +113,7 @@ bool of_edge(const PointKey& key) {
 
 /// A point that was there in the step before under another key: where faces lie on each other, now a vertex speaks for
 /// a corner and now an edge that ends there. The nearest of those not found again; null where none is near.
-Old* successor_of(std::vector<Old>& old, const Candidate& c, const std::vector<Patch>& patches) {
+Old* predecessor_of(std::vector<Old>& old, const Candidate& c, const std::vector<Patch>& patches) {
     Old* found = nullptr;
     btScalar least = BT_LARGE_FLOAT;
     for (Old& o : old) {
@@ -195,7 +195,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
     }
     for (std::size_t c = 0; c < candidates.size(); ++c) {
         if (before[c]) continue;
-        if (Old* o = successor_of(old, candidates[c], patches)) {
+        if (Old* o = predecessor_of(old, candidates[c], patches)) {
             o->matched = true;
             before[c] = o;
         }
