@@ -37,14 +37,6 @@ Vec3 inward(const ShapeData& source, std::uint32_t edge) {
     return size > 1e-6 ? (-1 / size) * n : Vec3{};
 }
 
-struct Candidate {
-    std::uint32_t face;
-    Vec3 normal;
-    double height;
-    std::array<double, 2> depths; ///< of both ends
-    double deeper() const { return std::max(depths[0], depths[1]); }
-};
-
 } // namespace
 
 bool PairEdges::find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
@@ -170,10 +162,11 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     loudest_.clear();
     extents_.clear();
     quiet_.clear();
+    choices_.clear();
     for (Speaker& speaker : speakers_[side]) {
         speaker.region = regions_.of(speaker.region);
         points_.push_back({speaker.region, speaker.point});
-        loudest_.emplace_back(speaker.region, speaker.depth);
+        loudest_.push_back(&speaker);
     }
     for (Piece& piece : pieces_[side]) {
         piece.region = regions_.of(piece.region);
@@ -182,10 +175,18 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     }
     std::stable_sort(points_.begin(), points_.end(),
                      [](const RegionPoint& p, const RegionPoint& q) { return p.region < q.region; });
-    std::sort(loudest_.begin(), loudest_.end(), [](const auto& p, const auto& q) {
-        return p.first != q.first ? p.first < q.first : p.second > q.second;
+    std::sort(loudest_.begin(), loudest_.end(), [](const Speaker* p, const Speaker* q) {
+        if (p->region != q->region) return p->region < q->region;
+        return p->depth != q->depth ? p->depth > q->depth : p->vertex < q->vertex;
     });
-    for (const Piece& piece : pieces_[side]) speak(placed, static_cast<VertexBody>(side), piece, found);
+    for (const Piece& piece : pieces_[side]) choose(placed, piece);
+    std::stable_sort(choices_.begin(), choices_.end(),
+                     [](const Choice& p, const Choice& q) { return p.piece->region < q.piece->region; });
+    for (std::size_t begin = 0, end = 0; begin < choices_.size(); begin = end) {
+        while (end < choices_.size() && choices_[end].piece->region == choices_[begin].piece->region) ++end;
+        agree(placed, std::span(choices_).subspan(begin, end - begin));
+    }
+    for (const Choice& choice : choices_) speak(static_cast<VertexBody>(side), choice, found);
     // Several edges may speak for one vertex: the lowest does.
     std::sort(quiet_.begin(), quiet_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
@@ -194,8 +195,20 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
         if (i == 0 || quiet_[i].first != quiet_[i - 1].first) found.push_back(quiet_[i].second);
 }
 
-void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& piece,
-                      std::vector<FeatureContact>& found) {
+PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face) {
+    Candidate candidate{face, normal_of(placed.target, face), 0, {}};
+    candidate.height = dot(placed.target.corner(face, 0), candidate.normal);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3& end = piece.ends[k].point;
+        // Just below the face that it crosses the plane is the face.
+        candidate.depths[k] = piece.faces[k] == face
+                                  ? candidate.height - dot(end, candidate.normal)
+                                  : way_out(placed.target, end, candidate.normal, candidate.height);
+    }
+    return candidate;
+}
+
+void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
     const ShapeData& target = placed.target;
     for (std::size_t k = 0; k < 2; ++k) {
         const Speaker* speaker = piece.ends[k].speaker;
@@ -210,21 +223,14 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
     const auto add = [&](std::uint32_t face) {
         for (std::size_t i = 0; i < count; ++i)
             if (candidates[i].face == face) return;
-        Candidate& added = candidates[count];
-        added.face = face;
-        added.normal = normal_of(target, face);
-        added.height = dot(target.corner(face, 0), added.normal);
+        const Vec3 normal = normal_of(target, face);
+        const double height = dot(target.corner(face, 0), normal);
         for (std::size_t i = 0; i < count; ++i) // the other triangle of a flat face
-            if (dot(candidates[i].normal, added.normal) > 1 - 1e-12
-                && std::fabs(candidates[i].height - added.height) < 1e-9 * target.diagonal)
+            if (dot(candidates[i].normal, normal) > 1 - 1e-12
+                && std::fabs(candidates[i].height - height) < 1e-9 * target.diagonal)
                 return;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const Vec3& end = piece.ends[k].point;
-            // Just below the face that it crosses the plane is the face.
-            added.depths[k] = piece.faces[k] == face ? added.height - dot(end, added.normal)
-                                                     : way_out(target, end, added.normal, added.height);
-        }
-        if (added.deeper() > 0) ++count;
+        candidates[count] = candidate_of(placed, piece, face);
+        if (candidates[count].deeper() > 0) ++count;
     };
     for (const std::uint32_t face : piece.faces)
         if (face != NONE) add(face);
@@ -242,8 +248,7 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
     }
     double deepest = 0;
     for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
-    const double beside = loudest(piece.region);
-    if (count == 0 || deepest < loud * beside) return;
+    if (count == 0 || deepest < loud * loudness(piece.region)) return;
 
     // No region is shallower than its piece: from the shallowest on, the rest need not be asked.
     std::stable_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
@@ -256,16 +261,48 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
         least = metres;
         best = &candidates[i];
     }
-    if (best == nullptr) return;
-    const double enough = beside > 0 ? loud * least : 0;
+    if (best != nullptr) choices_.push_back({&piece, *best, least});
+}
+
+// Where an edge grazes a side of the target, its own candidates may be that side and one a whole body away, although
+// the region leaves by another face at once: then by that.
+void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
+    std::uint32_t face = NONE;
+    double least = never, most = 0;
+    for (const Choice& choice : region) {
+        most = std::max(most, choice.metres);
+        if (choice.metres >= least) continue;
+        least = choice.metres;
+        face = choice.by.face;
+    }
+    if (const Speaker* speaker = loudest(region[0].piece->region); speaker && speaker->depth < loud * most) {
+        const Vec3 normal = normal_of(placed.target, speaker->face);
+        const double height = dot(placed.target.corner(speaker->face, 0), normal);
+        const double metres = extent(placed, speaker->region, normal, height, least);
+        if (metres < least) {
+            least = metres;
+            face = speaker->face;
+        }
+    }
+    if (!(least < loud * most)) return;
+    for (Choice& choice : region) {
+        if (!(least < loud * choice.metres)) continue;
+        const Candidate other = candidate_of(placed, *choice.piece, face);
+        if (other.deeper() > 0) choice = {choice.piece, other, least};
+    }
+}
+
+void PairEdges::speak(VertexBody source, const Choice& choice, std::vector<FeatureContact>& found) {
+    const Piece& piece = *choice.piece;
+    const Candidate& by = choice.by;
+    const double enough = loudest(piece.region) ? loud * choice.metres : 0;
     for (std::size_t k = 0; k < 2; ++k) {
         const End &end = piece.ends[k], &other = piece.ends[1 - k];
         // Above a vertex for which this piece speaks, the crossing adds nothing.
-        if (end.is_crossing() && !other.is_crossing() && best->depths[k] < loud * best->depths[1 - k]) continue;
-        if (end.speaker != nullptr || !(best->depths[k] > enough) || !(static_cast<float>(best->depths[k]) > 0))
-            continue;
-        const FeatureContact contact{source,     Feature::edge, piece.edge,   end.crossing,
-                                     best->face, end.point,     best->normal, best->depths[k]};
+        if (end.is_crossing() && !other.is_crossing() && by.depths[k] < loud * by.depths[1 - k]) continue;
+        if (end.speaker != nullptr || !(by.depths[k] > enough) || !(static_cast<float>(by.depths[k]) > 0)) continue;
+        const FeatureContact contact{source,  Feature::edge, piece.edge, end.crossing,
+                                     by.face, end.point,     by.normal,  by.depths[k]};
         if (end.is_crossing())
             found.push_back(contact);
         else
@@ -309,10 +346,10 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
     return metres;
 }
 
-double PairEdges::loudest(std::uint32_t region) const {
+const PairEdges::Speaker* PairEdges::loudest(std::uint32_t region) const {
     const auto at = std::lower_bound(loudest_.begin(), loudest_.end(), region,
-                                     [](const auto& entry, std::uint32_t r) { return entry.first < r; });
-    return at != loudest_.end() && at->first == region ? at->second : 0;
+                                     [](const Speaker* s, std::uint32_t r) { return s->region < r; });
+    return at != loudest_.end() && (*at)->region == region ? *at : nullptr;
 }
 
 } // namespace raycontact

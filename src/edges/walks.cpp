@@ -12,11 +12,13 @@ namespace {
 constexpr int lanes = 16;
 static_assert(lanes == NODE_LANES && lanes == TRIANGLE_LANES);
 // Each level of a tree leaves at most fifteen children waiting.
-constexpr int most_waiting = NODE_LEVELS * NODE_LANES;
+constexpr int most_waiting = NODE_LEVELS * NODE_LANES + 1;
 constexpr double never = __builtin_inf();
 
-DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const float* inverse, float most) {
-    float enter[lanes], leave[lanes];
+// A bit for each child whose box the ray meets within `most`, and where it enters the boxes. In float: the boxes are
+// grown by far more than its rounding.
+DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const float* inverse, float most, float* enter) {
+    float leave[lanes];
     FOR_LANES(k, lanes) {
         enter[k] = 0;
         leave[k] = most;
@@ -84,21 +86,19 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
         inverse[axis] = static_cast<float>(1 / (__builtin_fabs(d) > 1e-20 ? d : 1e-20));
     }
     MeshHit hit{never, NONE, false};
+    // What waits, the nearest last among the children of one node.
     uint waiting[most_waiting];
+    float enters[most_waiting];
     int count = 0;
-    waiting[count++] = 0;
+    waiting[count] = 0;
+    enters[count++] = 0;
     while (count > 0) {
-        const kernels::Node& node = tree.nodes[waiting[--count]];
         const double limit = (ray.most < hit.distance ? ray.most : hit.distance) + ray.tolerance;
-        // In float: the boxes are grown by far more than its rounding.
         const float reach = limit < 3e38 ? static_cast<float>(1.000001 * limit) : 3e38f;
-        for (uint found = children_on_ray(node, from, inverse, reach); found != 0; found &= found - 1) {
-            const uint child = node.child[__builtin_ctz(found)];
-            if ((child & LEAF) == 0) {
-                waiting[count++] = child;
-                continue;
-            }
-            const kernels::TriangleBlock& block = tree.blocks[child & ~LEAF];
+        const uint next = waiting[--count];
+        if (enters[count] > reach) continue;
+        if ((next & LEAF) != 0) {
+            const kernels::TriangleBlock& block = tree.blocks[next & ~LEAF];
             double distances[lanes];
             meet_triangles(block, ray, distances);
             if (!(least_of(distances) <= hit.distance)) continue;
@@ -107,6 +107,20 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
                 if (at == never || at > hit.distance || (at == hit.distance && block.triangle[k] >= hit.face)) continue;
                 hit = {at, block.triangle[k], distances[k] > 0};
             }
+            continue;
+        }
+        const kernels::Node& node = tree.nodes[next];
+        float enter[lanes];
+        const int first = count;
+        for (uint found = children_on_ray(node, from, inverse, reach, enter); found != 0; found &= found - 1) {
+            const int k = __builtin_ctz(found);
+            int at = count++;
+            for (; at > first && enters[at - 1] < enter[k]; --at) {
+                enters[at] = enters[at - 1];
+                waiting[at] = waiting[at - 1];
+            }
+            enters[at] = enter[k];
+            waiting[at] = node.child[k];
         }
     }
     return hit;
@@ -161,7 +175,7 @@ DEVICE uint boxes_in_box(const float (*bounds)[lanes], const float* box) {
 /// Walks both trees at once.
 struct Walk {
     TwoTrees& trees;
-    Placed& first; // the block placed last
+    Placed& first;      // the block placed last
     float size[9] = {}; // |rotation|
     uint count = 0;
 
