@@ -18,8 +18,8 @@ void find_near_triangles(const SourceMesh& first_to_second, double margin, std::
     const SourceMesh& placed = first_to_second;
     const ShapeData &first = placed.source, &second = placed.target;
     edges::TwoTrees trees{};
-    trees.first = {first.nodes.data(), first.triangle_blocks.data()};
-    trees.second = {second.nodes.data(), second.triangle_blocks.data()};
+    trees.first = {first.nodes.data(), first.triangle_blocks.data(), first.block_bounds.data()};
+    trees.second = {second.nodes.data(), second.triangle_blocks.data(), second.block_bounds.data()};
     for (std::size_t i = 0; i < 9; ++i) trees.rotation[i] = static_cast<float>(placed.pose.rotation[i]);
     const Vec3& t = placed.pose.translation;
     for (std::size_t i = 0; i < 3; ++i) trees.translation[i] = static_cast<float>(axis(t, i));

@@ -37,14 +37,6 @@ Vec3 inward(const ShapeData& source, std::uint32_t edge) {
     return size > 1e-6 ? (-1 / size) * n : Vec3{};
 }
 
-struct Candidate {
-    std::uint32_t face;
-    Vec3 normal;
-    double height;
-    std::array<double, 2> depths; ///< of both ends
-    double deeper() const { return std::max(depths[0], depths[1]); }
-};
-
 } // namespace
 
 bool PairEdges::find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
@@ -175,10 +167,11 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     loudest_.clear();
     extents_.clear();
     quiet_.clear();
+    choices_.clear();
     for (Speaker& speaker : speakers_[side]) {
         speaker.region = regions_.of(speaker.region);
         points_.push_back({speaker.region, static_cast<std::uint32_t>(points_.size()), speaker.point});
-        loudest_.emplace_back(speaker.region, speaker.depth);
+        loudest_.push_back(&speaker);
     }
     for (Piece& piece : pieces_[side]) {
         piece.region = regions_.of(piece.region);
@@ -189,10 +182,19 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     std::sort(points_.begin(), points_.end(), [](const RegionPoint& p, const RegionPoint& q) {
         return std::pair(p.region, p.number) < std::pair(q.region, q.number);
     });
-    std::sort(loudest_.begin(), loudest_.end(), [](const auto& p, const auto& q) {
-        return p.first != q.first ? p.first < q.first : p.second > q.second;
+    std::sort(loudest_.begin(), loudest_.end(), [](const Speaker* p, const Speaker* q) {
+        if (p->region != q->region) return p->region < q->region;
+        return p->depth != q->depth ? p->depth > q->depth : p->vertex < q->vertex;
     });
-    for (const Piece& piece : pieces_[side]) speak(placed, static_cast<VertexBody>(side), piece, found);
+    for (const Piece& piece : pieces_[side]) choose(placed, piece);
+    std::sort(choices_.begin(), choices_.end(), [](const Choice& p, const Choice& q) {
+        return std::pair(p.piece->region, p.piece) < std::pair(q.piece->region, q.piece);
+    });
+    for (std::size_t begin = 0, end = 0; begin < choices_.size(); begin = end) {
+        while (end < choices_.size() && choices_[end].piece->region == choices_[begin].piece->region) ++end;
+        agree(placed, std::span(choices_).subspan(begin, end - begin));
+    }
+    for (const Choice& choice : choices_) speak(static_cast<VertexBody>(side), choice, found);
     // Several edges may speak for one vertex: the lowest does.
     std::sort(quiet_.begin(), quiet_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
@@ -201,8 +203,19 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
         if (i == 0 || quiet_[i].first != quiet_[i - 1].first) found.push_back(quiet_[i].second);
 }
 
-void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& piece,
-                      std::vector<FeatureContact>& found) {
+PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face) {
+    Candidate candidate{face, normal_of(placed.target, face), 0, {}};
+    candidate.height = dot(placed.target.corner(face, 0), candidate.normal);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3& end = piece.ends[k].point;
+        // Just below the face that it crosses the plane is the face.
+        candidate.depths[k] = piece.faces[k] == face ? candidate.height - dot(end, candidate.normal)
+                                                     : way_out(placed.target, end, candidate.normal, candidate.height);
+    }
+    return candidate;
+}
+
+void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
     const ShapeData& target = placed.target;
     for (std::size_t k = 0; k < 2; ++k) {
         const Speaker* speaker = piece.ends[k].speaker;
@@ -217,17 +230,14 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
     const auto add = [&](std::uint32_t face) {
         for (std::size_t i = 0; i < count; ++i)
             if (candidates[i].face == face) return;
-        Candidate& added = candidates[count];
-        added.face = face;
-        added.normal = normal_of(target, face);
-        added.height = dot(target.corner(face, 0), added.normal);
+        const Vec3 normal = normal_of(target, face);
+        const double height = dot(target.corner(face, 0), normal);
         for (std::size_t i = 0; i < count; ++i) // the other triangle of a flat face
-            if (dot(candidates[i].normal, added.normal) > 1 - 1e-12
-                && std::fabs(candidates[i].height - added.height) < 1e-9 * target.diagonal)
+            if (dot(candidates[i].normal, normal) > 1 - 1e-12
+                && std::fabs(candidates[i].height - height) < 1e-9 * target.diagonal)
                 return;
-        for (std::size_t k = 0; k < 2; ++k)
-            added.depths[k] = way_out(target, piece.ends[k].point, added.normal, added.height);
-        if (added.deeper() > 0) ++count;
+        candidates[count] = candidate_of(placed, piece, face);
+        if (candidates[count].deeper() > 0) ++count;
     };
     for (const std::uint32_t face : piece.faces)
         if (face != NONE) add(face);
@@ -238,14 +248,14 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
             const MeshHit hit = closest_hit(target, origin, in, 0, never);
             if (hit.face == NONE || !hit.from_inside) continue;
             // The paper's second test: before leaving the source (section 2.1).
-            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, never).distance >= hit.distance)
+            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, hit.distance).distance
+                >= hit.distance)
                 add(hit.face);
         }
     }
     double deepest = 0;
     for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
-    const double beside = loudest(piece.region);
-    if (count == 0 || deepest < loud * beside) return;
+    if (count == 0 || deepest < loud * loudness(piece.region)) return;
 
     // What is equal to a hair is equal, so that rounding decides nothing. No region is shallower than its piece: from
     // the shallowest on, the rest need not be asked.
@@ -265,17 +275,49 @@ void PairEdges::speak(const SourceMesh& placed, VertexBody source, const Piece& 
         if (regions[i] < shallowest + hair) shallowest_piece = std::min(shallowest_piece, candidates[i].deeper());
     std::size_t chosen = 0;
     while (!(regions[chosen] < shallowest + hair && candidates[chosen].deeper() < shallowest_piece + hair)) ++chosen;
-    const Candidate* best = &candidates[chosen];
-    const double least = regions[chosen];
-    const double enough = beside > 0 ? loud * least : 0;
+    choices_.push_back({&piece, candidates[chosen], regions[chosen]});
+}
+
+// Where an edge grazes a side of the target, its own candidates may be that side and one a whole body away, although
+// the region leaves by another face at once: then by that.
+void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
+    double least = never, most = 0;
+    for (const Choice& choice : region) {
+        most = std::max(most, choice.metres);
+        least = std::min(least, choice.metres);
+    }
+    std::size_t shallowest = 0;
+    while (region[shallowest].metres >= least + placed.hair) ++shallowest;
+    std::uint32_t face = region[shallowest].by.face;
+    least = region[shallowest].metres;
+    if (const Speaker* speaker = loudest(region[0].piece->region); speaker && speaker->depth < loud * most) {
+        const Vec3 normal = normal_of(placed.target, speaker->face);
+        const double height = dot(placed.target.corner(speaker->face, 0), normal);
+        const double metres = extent(placed, speaker->region, normal, height, least);
+        if (metres < least - placed.hair) {
+            least = metres;
+            face = speaker->face;
+        }
+    }
+    if (!(least < loud * most)) return;
+    for (Choice& choice : region) {
+        if (!(least < loud * choice.metres)) continue;
+        const Candidate other = candidate_of(placed, *choice.piece, face);
+        if (other.deeper() > 0) choice = {choice.piece, other, least};
+    }
+}
+
+void PairEdges::speak(VertexBody source, const Choice& choice, std::vector<FeatureContact>& found) {
+    const Piece& piece = *choice.piece;
+    const Candidate& by = choice.by;
+    const double enough = loudest(piece.region) ? loud * choice.metres : 0;
     for (std::size_t k = 0; k < 2; ++k) {
         const End &end = piece.ends[k], &other = piece.ends[1 - k];
         // Above a vertex for which this piece speaks, the crossing adds nothing.
-        if (end.is_crossing() && !other.is_crossing() && best->depths[k] < loud * best->depths[1 - k]) continue;
-        if (end.speaker != nullptr || !(best->depths[k] > enough) || !(static_cast<float>(best->depths[k]) > 0))
-            continue;
-        const FeatureContact contact{source,     Feature::edge, piece.edge,   end.crossing,
-                                     best->face, end.point,     best->normal, best->depths[k]};
+        if (end.is_crossing() && !other.is_crossing() && by.depths[k] < loud * by.depths[1 - k]) continue;
+        if (end.speaker != nullptr || !(by.depths[k] > enough) || !(static_cast<float>(by.depths[k]) > 0)) continue;
+        const FeatureContact contact{source,  Feature::edge, piece.edge, end.crossing,
+                                     by.face, end.point,     by.normal,  by.depths[k]};
         if (end.is_crossing())
             found.push_back(contact);
         else
@@ -292,9 +334,26 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
     const auto end = std::lower_bound(begin, points_.end(), region + 1, less);
     const auto count = static_cast<std::size_t>(end - begin);
     const std::size_t asked = std::min(count, most_points);
-    double metres = 0;
+    const auto point_at = [&](std::size_t i) -> const Vec3& {
+        return begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+    };
+    // The point deepest below the plane first: it is likely to decide. Most others then need no more than a short ray.
+    std::size_t first = 0;
+    double lowest = -never;
     for (std::size_t i = 0; i < asked; ++i) {
-        const Vec3& point = begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+        const double below = height - dot(point_at(i), normal);
+        if (below <= lowest) continue;
+        lowest = below;
+        first = i;
+    }
+    double metres = 0;
+    for (std::size_t i = 0; i <= asked; ++i) {
+        if (i == first + 1) continue;
+        const Vec3& point = point_at(i == 0 ? first : i - 1);
+        if (metres > 0) {
+            const MeshHit hit = closest_hit(placed.target, point, normal, 0, metres);
+            if (hit.face != NONE && hit.from_inside) continue;
+        }
         metres = std::max(metres, way_out(placed.target, point, normal, height));
         if (metres >= enough) return metres;
     }
@@ -302,10 +361,10 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
     return metres;
 }
 
-double PairEdges::loudest(std::uint32_t region) const {
+const PairEdges::Speaker* PairEdges::loudest(std::uint32_t region) const {
     const auto at = std::lower_bound(loudest_.begin(), loudest_.end(), region,
-                                     [](const auto& entry, std::uint32_t r) { return entry.first < r; });
-    return at != loudest_.end() && at->first == region ? at->second : 0;
+                                     [](const Speaker* s, std::uint32_t r) { return s->region < r; });
+    return at != loudest_.end() && (*at)->region == region ? *at : nullptr;
 }
 
 } // namespace raycontact

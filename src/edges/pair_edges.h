@@ -44,6 +44,20 @@ private:
         std::array<End, 2> ends;
         std::array<std::uint32_t, 2> faces; ///< crossed at either end, NONE at a vertex
     };
+    /// A face by which a piece may leave the target.
+    struct Candidate {
+        std::uint32_t face;
+        Vec3 normal;
+        double height;                ///< of its plane
+        std::array<double, 2> depths; ///< of both ends of the piece
+        double deeper() const { return depths[0] > depths[1] ? depths[0] : depths[1]; }
+    };
+    /// The face by which a piece speaks.
+    struct Choice {
+        const Piece* piece;
+        Candidate by;
+        double metres; ///< that the region must move to leave by it
+    };
     struct RegionPoint {
         std::uint32_t region;
         std::uint32_t number; ///< among all
@@ -65,10 +79,17 @@ private:
                         bool source_first);
     void join_vertices(const ShapeData& source, std::size_t side);
     void speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
-    void speak(const SourceMesh& placed, VertexBody source, const Piece& piece, std::vector<FeatureContact>& found);
+    static Candidate candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face);
+    void choose(const SourceMesh& placed, const Piece& piece);
+    void agree(const SourceMesh& placed, std::span<Choice> region);
+    void speak(VertexBody source, const Choice& choice, std::vector<FeatureContact>& found);
     double extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height, double enough);
-    /// Depth of the deepest vertex contact of this side in a region; 0: none.
-    double loudest(std::uint32_t region) const;
+    /// The deepest vertex contact of this side in a region; null: none.
+    const Speaker* loudest(std::uint32_t region) const;
+    double loudness(std::uint32_t region) const {
+        const Speaker* speaker = loudest(region);
+        return speaker ? speaker->depth : 0;
+    }
 
     std::array<std::vector<Crossing>, 2> crossings_;
     std::array<std::vector<Speaker>, 2> speakers_; ///< by vertex
@@ -78,7 +99,8 @@ private:
     std::vector<Extent> extents_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
     std::vector<std::pair<std::uint32_t, FeatureContact>> quiet_;    ///< of one side: vertices for which an edge speaks
-    std::vector<std::pair<std::uint32_t, double>> loudest_; ///< of one side: the deepest vertex contact of each region
+    std::vector<const Speaker*> loudest_;                            ///< of one side: by region, the deepest first
+    std::vector<Choice> choices_;                                    ///< of one side
 };
 
 } // namespace raycontact

@@ -12,11 +12,13 @@ namespace {
 constexpr int lanes = 16;
 static_assert(lanes == NODE_LANES && lanes == TRIANGLE_LANES);
 // Each level of a tree leaves at most fifteen children waiting.
-constexpr int most_waiting = NODE_LEVELS * NODE_LANES;
+constexpr int most_waiting = NODE_LEVELS * NODE_LANES + 1;
 constexpr double never = __builtin_inf();
 
-DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const float* inverse, float most) {
-    float enter[lanes], leave[lanes];
+// A bit for each child whose box the ray meets within `most`, and where it enters the boxes. In float: the boxes are
+// grown by far more than its rounding.
+DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const float* inverse, float most, float* enter) {
+    float leave[lanes];
     FOR_LANES(k, lanes) {
         enter[k] = 0;
         leave[k] = most;
@@ -84,21 +86,19 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
         inverse[axis] = static_cast<float>(1 / (__builtin_fabs(d) > 1e-20 ? d : 1e-20));
     }
     MeshHit hit{never, NONE, false};
+    // What waits, the nearest last among the children of one node.
     uint waiting[most_waiting];
+    float enters[most_waiting];
     int count = 0;
-    waiting[count++] = 0;
+    waiting[count] = 0;
+    enters[count++] = 0;
     while (count > 0) {
-        const kernels::Node& node = tree.nodes[waiting[--count]];
         const double limit = (ray.most < hit.distance ? ray.most : hit.distance) + ray.tolerance;
-        // In float: the boxes are grown by far more than its rounding.
         const float reach = limit < 3e38 ? static_cast<float>(1.000001 * limit) : 3e38f;
-        for (uint found = children_on_ray(node, from, inverse, reach); found != 0; found &= found - 1) {
-            const uint child = node.child[__builtin_ctz(found)];
-            if ((child & LEAF) == 0) {
-                waiting[count++] = child;
-                continue;
-            }
-            const kernels::TriangleBlock& block = tree.blocks[child & ~LEAF];
+        const uint next = waiting[--count];
+        if (enters[count] > reach) continue;
+        if ((next & LEAF) != 0) {
+            const kernels::TriangleBlock& block = tree.blocks[next & ~LEAF];
             double distances[lanes];
             meet_triangles(block, ray, distances);
             if (!(least_of(distances) <= hit.distance)) continue;
@@ -107,81 +107,58 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
                 if (at == never || at > hit.distance || (at == hit.distance && block.triangle[k] >= hit.face)) continue;
                 hit = {at, block.triangle[k], distances[k] > 0};
             }
+            continue;
+        }
+        const kernels::Node& node = tree.nodes[next];
+        float enter[lanes];
+        const int first = count;
+        for (uint found = children_on_ray(node, from, inverse, reach, enter); found != 0; found &= found - 1) {
+            const int k = __builtin_ctz(found);
+            int at = count++;
+            for (; at > first && enters[at - 1] < enter[k]; --at) {
+                enters[at] = enters[at - 1];
+                waiting[at] = waiting[at - 1];
+            }
+            enters[at] = enter[k];
+            waiting[at] = node.child[k];
         }
     }
     return hit;
 }
 
-/// Boxes, corners and planes of a block's triangles, in the frame of the second body. Empty lanes hold NaN.
+/// A block of the first body in the frame of the second, its boxes grown.
 struct Placed {
-    float box[6][lanes];    // lower x y z, upper x y z
+    BlockBounds bounds;
     float corner[9][lanes]; // as in TriangleBlock
-    float plane[4][lanes];  // unit normal and height; all 0 where the normal is not accurate
-    float whole[6];         // the box of all
-    uint block = NONE;
+    uint block;
 };
 
-// rotation and translation: nullptr for a block of the second body, which is there already.
-DEVICE_BATCH void place(const kernels::TriangleBlock& from, const float* rotation, const float* translation, float grow,
-                        Placed& placed) {
+DEVICE_BATCH void place(const kernels::TriangleBlock& from, const BlockBounds& own, const float* rotation,
+                        const float* translation, float grow, Placed& placed) {
     for (int corner = 0; corner < 9; corner += 3) {
         const float *x = from.corner[corner], *y = from.corner[corner + 1], *z = from.corner[corner + 2];
         for (int axis = 0; axis < 3; ++axis) {
-            float* to = placed.corner[corner + axis];
-            if (rotation == nullptr) {
-                FOR_LANES(k, lanes) {
-                    to[k] = from.corner[corner + axis][k];
-                }
-                continue;
-            }
             const float *row = rotation + 3 * axis, move = translation[axis];
+            float* to = placed.corner[corner + axis];
             FOR_LANES(k, lanes) {
                 to[k] = row[0] * x[k] + row[1] * y[k] + row[2] * z[k] + move;
             }
         }
     }
     for (int axis = 0; axis < 3; ++axis) {
+        const float *row = rotation + 3 * axis, *x = own.plane[0], *y = own.plane[1], *z = own.plane[2];
         const float *p = placed.corner[axis], *q = placed.corner[3 + axis], *r = placed.corner[6 + axis];
         FOR_LANES(k, lanes) {
             const float low = p[k] < q[k] ? p[k] : q[k], high = p[k] < q[k] ? q[k] : p[k];
-            placed.box[axis][k] = (low < r[k] ? low : r[k]) - grow;
-            placed.box[3 + axis][k] = (high > r[k] ? high : r[k]) + grow;
-        }
-        float lower = 3e38f, upper = -3e38f;
-        for (int k = 0; k < lanes; ++k) { // comparisons with the NaN of empty lanes are false
-            lower = placed.box[axis][k] < lower ? placed.box[axis][k] : lower;
-            upper = placed.box[3 + axis][k] > upper ? placed.box[3 + axis][k] : upper;
-        }
-        placed.whole[axis] = lower;
-        placed.whole[3 + axis] = upper;
-    }
-    const float(*c)[lanes] = placed.corner;
-    FOR_LANES(k, lanes) {
-        // From the corners as stored: those that are placed are rounded, which turns the plane of a needle.
-        const double ax = double(from.corner[3][k]) - from.corner[0][k],
-                     ay = double(from.corner[4][k]) - from.corner[1][k],
-                     az = double(from.corner[5][k]) - from.corner[2][k];
-        const double bx = double(from.corner[6][k]) - from.corner[0][k],
-                     by = double(from.corner[7][k]) - from.corner[1][k],
-                     bz = double(from.corner[8][k]) - from.corner[2][k];
-        const double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
-        const double size2 = x * x + y * y + z * z;
-        const bool sure = size2 > 1e-16 * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz);
-        const double scale = sure ? 1 / __builtin_sqrt(size2) : 0;
-        placed.plane[0][k] = static_cast<float>(scale * x);
-        placed.plane[1][k] = static_cast<float>(scale * y);
-        placed.plane[2][k] = static_cast<float>(scale * z);
-    }
-    if (rotation != nullptr) {
-        FOR_LANES(k, lanes) {
-            const float x = placed.plane[0][k], y = placed.plane[1][k], z = placed.plane[2][k];
-            placed.plane[0][k] = rotation[0] * x + rotation[1] * y + rotation[2] * z;
-            placed.plane[1][k] = rotation[3] * x + rotation[4] * y + rotation[5] * z;
-            placed.plane[2][k] = rotation[6] * x + rotation[7] * y + rotation[8] * z;
+            placed.bounds.box[axis][k] = (low < r[k] ? low : r[k]) - grow;
+            placed.bounds.box[3 + axis][k] = (high > r[k] ? high : r[k]) + grow;
+            placed.bounds.plane[axis][k] = row[0] * x[k] + row[1] * y[k] + row[2] * z[k];
         }
     }
     FOR_LANES(k, lanes) {
-        placed.plane[3][k] = placed.plane[0][k] * c[0][k] + placed.plane[1][k] * c[1][k] + placed.plane[2][k] * c[2][k];
+        placed.bounds.plane[3][k] = placed.bounds.plane[0][k] * placed.corner[0][k]
+                                    + placed.bounds.plane[1][k] * placed.corner[1][k]
+                                    + placed.bounds.plane[2][k] * placed.corner[2][k];
     }
 }
 
@@ -198,9 +175,9 @@ DEVICE uint boxes_in_box(const float (*bounds)[lanes], const float* box) {
 /// Walks both trees at once.
 struct Walk {
     TwoTrees& trees;
+    Placed& first;      // the block placed last
     float size[9] = {}; // |rotation|
     uint count = 0;
-    Placed first = {}, second = {};
 
     // The box of a child of the first body's tree, seen from the second, grown.
     void box_of(const kernels::Node& node, int k, float* box) const {
@@ -234,7 +211,7 @@ struct Walk {
         const bool first_leaf = (first_child & LEAF) != 0, second_leaf = (second_child & LEAF) != 0;
         if (second_child == NONE) return;
         if (first_leaf && second_leaf) {
-            leaves(first_child & ~LEAF, second_child & ~LEAF);
+            leaves(first_child & ~LEAF, box, second_child & ~LEAF);
         } else if (first_leaf) {
             const kernels::Node& b = trees.second.nodes[second_child];
             for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
@@ -248,43 +225,43 @@ struct Walk {
 
     // A node of the first body against a block of the second.
     void under_first(uint first_node, uint block) {
-        need_second(block);
         const kernels::Node& a = trees.first.nodes[first_node];
         for (int k = 0; k < lanes; ++k) {
             if (a.child[k] == NONE) continue;
             float box[6];
             box_of(a, k, box);
-            bool apart = false;
-            for (int i = 0; i < 3; ++i) apart |= box[i] > second.whole[3 + i] || box[3 + i] < second.whole[i];
-            if (apart) continue;
+            if (boxes_in_box(trees.second.bounds[block].box, box) == 0) continue;
             if ((a.child[k] & LEAF) != 0)
-                leaves(a.child[k] & ~LEAF, block);
+                leaves(a.child[k] & ~LEAF, box, block);
             else
                 under_first(a.child[k], block);
         }
     }
 
-    void need_second(uint block) {
-        if (second.block == block) return;
-        second.block = block;
-        place(trees.second.blocks[block], nullptr, nullptr, 0, second);
-    }
-
-    void leaves(uint first_block, uint second_block) {
-        need_second(second_block);
+    // first_box: that of the first block, in the frame of the second.
+    void leaves(uint first_block, const float* first_box, uint second_block) {
+        const BlockBounds& bounds = trees.second.bounds[second_block];
+        const uint near_first = boxes_in_box(bounds.box, first_box);
+        if (near_first == 0) return;
+        const kernels::TriangleBlock &a = trees.first.blocks[first_block], &b = trees.second.blocks[second_block];
         if (first.block != first_block) {
             first.block = first_block;
-            place(trees.first.blocks[first_block], trees.rotation, trees.translation, trees.apart, first);
+            place(a, trees.first.bounds[first_block], trees.rotation, trees.translation, trees.apart, first);
         }
-        float all[6];
-        for (int i = 0; i < 6; ++i) all[i] = second.whole[i];
-        const kernels::TriangleBlock &a = trees.first.blocks[first_block], &b = trees.second.blocks[second_block];
-        for (uint own = boxes_in_box(first.box, all); own != 0; own &= own - 1) {
+        float all[6] = {3e38f, 3e38f, 3e38f, -3e38f, -3e38f, -3e38f};
+        for (uint in = near_first; in != 0; in &= in - 1) {
+            const int k = __builtin_ctz(in);
+            for (int i = 0; i < 3; ++i) {
+                all[i] = bounds.box[i][k] < all[i] ? bounds.box[i][k] : all[i];
+                all[3 + i] = bounds.box[3 + i][k] > all[3 + i] ? bounds.box[3 + i][k] : all[3 + i];
+            }
+        }
+        for (uint own = boxes_in_box(first.bounds.box, all); own != 0; own &= own - 1) {
             const int k = __builtin_ctz(own);
             float box[6];
-            for (int i = 0; i < 6; ++i) box[i] = first.box[i][k];
-            uint in = boxes_in_box(second.box, box);
-            if (in != 0) in &= ~apart_by_plane(k);
+            for (int i = 0; i < 6; ++i) box[i] = first.bounds.box[i][k];
+            uint in = boxes_in_box(bounds.box, box);
+            if (in != 0) in &= ~apart_by_plane(k, b, bounds);
             for (; in != 0; in &= in - 1) {
                 if (count == trees.room) flush();
                 trees.pairs[count++] = {a.triangle[k], b.triangle[__builtin_ctz(in)]};
@@ -294,18 +271,19 @@ struct Walk {
 
     // A bit for each triangle of the second block that lies on one side of the plane of the first's k-th, or the
     // other way round.
-    uint apart_by_plane(int k) const {
+    uint apart_by_plane(int k, const kernels::TriangleBlock& b, const BlockBounds& bounds) const {
         const float apart = trees.apart;
-        const float x = first.plane[0][k], y = first.plane[1][k], z = first.plane[2][k], height = first.plane[3][k];
+        const float x = first.bounds.plane[0][k], y = first.bounds.plane[1][k], z = first.bounds.plane[2][k];
+        const float height = first.bounds.plane[3][k];
         float corner[9];
         for (int i = 0; i < 9; ++i) corner[i] = first.corner[i][k];
         int out[lanes];
         FOR_LANES(j, lanes) {
-            const float p = x * second.corner[0][j] + y * second.corner[1][j] + z * second.corner[2][j] - height;
-            const float q = x * second.corner[3][j] + y * second.corner[4][j] + z * second.corner[5][j] - height;
-            const float r = x * second.corner[6][j] + y * second.corner[7][j] + z * second.corner[8][j] - height;
-            const float nx = second.plane[0][j], ny = second.plane[1][j], nz = second.plane[2][j];
-            const float by = second.plane[3][j];
+            const float p = x * b.corner[0][j] + y * b.corner[1][j] + z * b.corner[2][j] - height;
+            const float q = x * b.corner[3][j] + y * b.corner[4][j] + z * b.corner[5][j] - height;
+            const float r = x * b.corner[6][j] + y * b.corner[7][j] + z * b.corner[8][j] - height;
+            const float nx = bounds.plane[0][j], ny = bounds.plane[1][j], nz = bounds.plane[2][j];
+            const float by = bounds.plane[3][j];
             const float s = nx * corner[0] + ny * corner[1] + nz * corner[2] - by;
             const float t = nx * corner[3] + ny * corner[4] + nz * corner[5] - by;
             const float u = nx * corner[6] + ny * corner[7] + nz * corner[8] - by;
@@ -324,7 +302,9 @@ struct Walk {
 };
 
 void near_triangles(TwoTrees& trees) {
-    Walk walk{trees};
+    Placed first;
+    first.block = NONE;
+    Walk walk{trees, first};
     for (int i = 0; i < 9; ++i) walk.size[i] = __builtin_fabsf(trees.rotation[i]);
     walk.both(0, 0);
     walk.flush();

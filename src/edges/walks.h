@@ -22,10 +22,18 @@ struct TrianglePair {
 
 namespace edges {
 
+/// Boxes (lower x y z, upper x y z) and planes (unit normal, height) of a block's triangles. Empty lanes hold NaN. A
+/// needle's plane is all 0: its normal would not be accurate.
+struct BlockBounds {
+    float box[6][TRIANGLE_LANES];
+    float plane[4][TRIANGLE_LANES];
+};
+
 /// A mesh's tree, without anything that code for one instruction set must not share with another.
 struct Tree {
     const kernels::Node* nodes;
     const kernels::TriangleBlock* blocks;
+    const BlockBounds* bounds; ///< of the blocks
 };
 
 struct Ray {

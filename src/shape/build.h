@@ -22,6 +22,9 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 /// Fills component_vertices. Needs vertex_triangle.
 void find_components(ShapeData& shape);
 
+/// Fills block_bounds. Needs triangle_blocks.
+void find_block_bounds(ShapeData& shape);
+
 /// Fills hair_moves; needs the vertices' normals.
 void find_hair_moves(ShapeData& shape);
 

@@ -88,6 +88,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
     build_caps(shape, normals);
+    find_block_bounds(shape);
 
     shape.exit_distances = measure_exits(shape, normals);
     float longest_exit = 0;
@@ -149,9 +150,9 @@ std::uint64_t Shape::memory_bytes() const {
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
            + bytes(d.sharp_edges) + bytes(d.vertex_triangle) + bytes(d.hair_moves) + bytes(d.component_vertices)
-           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
-           + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells)
-           + bytes(d.clearances);
+           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.block_bounds)
+           + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
+           + bytes(d.outside_cells) + bytes(d.clearances);
 }
 
 } // namespace raycontact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/host_kernels.h"
+#include "edges/walks.h"
 
 #include <raycontact/shape.h>
 
@@ -34,6 +34,7 @@ struct ShapeData {
     double reach = 0; ///< largest distance of a vertex from centre, metres
 
     std::vector<kernels::TriangleBlock> triangle_blocks;
+    std::vector<edges::BlockBounds> block_bounds; ///< of the triangle blocks
     std::vector<kernels::Node> nodes;
     std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;

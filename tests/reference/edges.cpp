@@ -209,19 +209,23 @@ public:
     std::vector<ReferenceContact> speak(const std::vector<std::uint32_t>& region, VertexBody body,
                                         Direction direction) {
         gather_points(region);
+        std::vector<std::optional<Choice>> choices;
+        for (const Piece& piece : pieces) choices.push_back(choose(piece, region[piece.ends[0].node]));
+        agree(choices, region);
         std::vector<ReferenceContact> contacts;
         std::set<std::uint32_t> spoken; // vertices
-        for (const Piece& piece : pieces) {
-            const std::optional<Choice> choice = choose(piece, region[piece.ends[0].node]);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const Piece& piece = pieces[i];
+            const std::optional<Choice>& choice = choices[i];
             if (!choice) continue;
             for (const int k : {0, 1}) {
                 const End& end = piece.ends[k];
                 const End& other = piece.ends[1 - k];
                 if (end.vertex != none && contact[end.vertex]) continue;
-                const double out = way_out(end.point, choice->face);
+                const double out = end_out(end, choice->face);
                 if (out <= 0) continue;
                 if (choice->deepest > 0 && out < choice->region / 2) continue;
-                if (other.vertex != none && out < way_out(other.point, choice->face) / 2) continue;
+                if (other.vertex != none && out < end_out(other, choice->face) / 2) continue;
                 if (end.vertex != none && !spoken.insert(end.vertex).second) continue;
                 contacts.push_back(made(piece, end, choice->face, out, body, direction));
             }
@@ -365,8 +369,13 @@ private:
         return at->second = out;
     }
 
+    double end_out(const End& end, std::uint32_t face) {
+        if (end.face != face) return way_out(end.point, face);
+        return dot(target.face_normals[face], target.vertices[target.triangles[face][0]] - points_[end.point]);
+    }
+
     double piece_depth(const Piece& piece, std::uint32_t face) {
-        return std::max(way_out(piece.ends[0].point, face), way_out(piece.ends[1].point, face));
+        return std::max(end_out(piece.ends[0], face), end_out(piece.ends[1], face));
     }
 
     double region_depth(std::uint32_t region, std::uint32_t face) {
@@ -442,6 +451,36 @@ private:
             break;
         }
         return choice;
+    }
+
+    // Step 5: a region that leaves by another face at once.
+    void agree(std::vector<std::optional<Choice>>& choices, const std::vector<std::uint32_t>& region) {
+        std::map<std::uint32_t, std::vector<std::size_t>> of_region; // pieces that speak
+        for (std::size_t i = 0; i < pieces.size(); ++i)
+            if (choices[i]) of_region[region[pieces[i].ends[0].node]].push_back(i);
+        for (const auto& [name, list] : of_region) {
+            double least = std::numeric_limits<double>::infinity(), most = 0;
+            for (const std::size_t i : list) {
+                least = std::min(least, choices[i]->region);
+                most = std::max(most, choices[i]->region);
+            }
+            const auto first = std::find_if(list.begin(), list.end(),
+                                            [&](std::size_t i) { return choices[i]->region < least + hair; });
+            Choice other = *choices[*first];
+            const CastRay* deepest = nullptr;
+            for (std::uint32_t v = 0; v < source.vertices.size(); ++v)
+                if (contact[v] && region[nodes[v]] == name && (!deepest || contact[v]->depth > deepest->depth))
+                    deepest = &*contact[v];
+            if (deepest && deepest->depth < most / 2) {
+                const double depth = std::max(0.0, region_depth(name, deepest->triangle));
+                if (depth < other.region - hair) {
+                    other.region = depth;
+                    other.face = deepest->triangle;
+                }
+            }
+            for (const std::size_t i : list)
+                if (other.region < choices[i]->region / 2 && piece_depth(pieces[i], other.face) > 0) choices[i] = other;
+        }
     }
 
     ReferenceContact made(const Piece& piece, const End& end, std::uint32_t face, double out, VertexBody body,

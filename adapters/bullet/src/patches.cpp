@@ -25,6 +25,9 @@ int absent_steps(const btManifoldPoint& p) {
     return (p.m_contactPointFlags & absent_mask) >> absent_shift;
 }
 
+/// Cosine from which on two normals at one place count as one.
+constexpr btScalar like_normals = btScalar(0.9);
+
 /// A point of the step before, moved along with its bodies.
 struct Old {
     btManifoldPoint point;
@@ -104,6 +107,26 @@ void call_added(btManifoldPoint& point, const btCollisionObject* a, const btColl
     (*gContactAddedCallback)(point, &wrap0, point.m_partId0, point.m_index0, &wrap1, point.m_partId1, point.m_index1);
 }
 
+bool of_edge(const PointKey& key) {
+    return key.feature == Feature::edge;
+}
+
+/// A point that was there in the step before under another key: where faces lie on each other, now a vertex speaks for
+/// a corner and now an edge that ends there. The nearest of those not found again; null where none is near.
+Old* predecessor_of(std::vector<Old>& old, const Candidate& c, const std::vector<Patch>& patches) {
+    Old* found = nullptr;
+    btScalar least = BT_LARGE_FLOAT;
+    for (Old& o : old) {
+        if (o.matched || (!of_edge(o.key) && !of_edge(c.key))) continue;
+        const btScalar limit = patches[o.patch].manifold->getContactBreakingThreshold();
+        const btScalar away = (middle(o.on0, o.on1) - middle(c.on0, c.on1)).length2();
+        if (away > limit * limit || away >= least || o.point.m_normalWorldOnB.dot(c.normal) < like_normals) continue;
+        least = away;
+        found = &o;
+    }
+    return found;
+}
+
 /// The patch that suits a contact best, among those that suit at all; patches.size() when none does.
 std::size_t suitable(const std::vector<Patch>& patches, const Candidate& c, const ManifoldSettings& settings) {
     std::size_t found = patches.size();
@@ -163,18 +186,26 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
     // Each contact joins the patch that its key was in, else the most suitable one, else it begins a new patch.
     std::vector<const Old*> before(candidates.size(), nullptr);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
+        for (Old& o : old) {
+            if (o.matched || !(o.key == candidates[c].key)) continue;
+            o.matched = true;
+            before[c] = &o;
+            break;
+        }
+    }
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (before[c]) continue;
+        if (Old* o = predecessor_of(old, candidates[c], patches)) {
+            o->matched = true;
+            before[c] = o;
+        }
+    }
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
         const Candidate& contact = candidates[c];
         std::size_t home = patches.size();
-        for (Old& o : old) {
-            if (!o.matched && o.key == contact.key) {
-                o.matched = true;
-                before[c] = &o;
-                // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
-                if (patches[o.patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
-                    home = o.patch;
-                break;
-            }
-        }
+        // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
+        if (before[c] && patches[before[c]->patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
+            home = before[c]->patch;
         if (home == patches.size()) home = suitable(patches, contact, settings);
         if (home == patches.size()) {
             Patch patch;

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <scenes/stacks/stack_world.h>
+
+#include <raycontact/bullet/dispatcher.h>
+#include <raycontact/error.h>
+#include <raycontact/mass.h>
+#include <scenes/stacks/solids.h>
+
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <btBulletDynamicsCommon.h>
+
+namespace raycontact::scenes {
+
+namespace {
+
+constexpr double density = 500; // kg/m^3
+constexpr double friction = 0.8;
+
+btVector3 to_bullet(const Vec3& v) {
+    return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+}
+
+btTransform to_bullet(const Pose& pose) {
+    const auto& r = pose.rotation;
+    return btTransform(btMatrix3x3(btScalar(r[0]), btScalar(r[1]), btScalar(r[2]), btScalar(r[3]), btScalar(r[4]),
+                                   btScalar(r[5]), btScalar(r[6]), btScalar(r[7]), btScalar(r[8])),
+                       to_bullet(pose.translation));
+}
+
+std::unique_ptr<btTriangleMesh> triangles_of(const Mesh& mesh) {
+    auto out = std::make_unique<btTriangleMesh>();
+    for (const Vec3& v : mesh.vertices) out->findOrAddVertex(to_bullet(v), false);
+    for (const auto& t : mesh.triangles)
+        out->addTriangleIndices(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]));
+    return out;
+}
+
+Mesh ground_mesh(Ground ground) {
+    Mesh mesh = solid_box({2 * ground_reach, 2 * ground_reach, 1});
+    for (Vec3& v : mesh.vertices) v.z -= 0.5;
+    if (ground == Ground::quad) {
+        mesh.vertices.erase(mesh.vertices.begin(), mesh.vertices.begin() + 4);
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    }
+    return mesh;
+}
+
+std::unique_ptr<btCollisionDispatcher> make_dispatcher(Finder finder, btCollisionConfiguration& configuration) {
+    if (finder == Finder::edges || finder == Finder::vertices) {
+        Settings settings;
+        settings.features = finder == Finder::edges ? Features::edges : Features::vertices;
+        settings.threads = 1;
+        return std::make_unique<bullet::CollisionDispatcher>(&configuration, settings);
+    }
+    auto dispatcher = std::make_unique<btCollisionDispatcher>(&configuration);
+    if (finder == Finder::gimpact) btGImpactCollisionAlgorithm::registerAlgorithm(dispatcher.get());
+    return dispatcher;
+}
+
+} // namespace
+
+std::string_view to_string(Finder finder) {
+    switch (finder) {
+    case Finder::edges:
+        return "edges";
+    case Finder::vertices:
+        return "vertices";
+    case Finder::gimpact:
+        return "gimpact";
+    case Finder::convex:
+        return "convex";
+    }
+    return "";
+}
+
+std::string_view to_string(Ground ground) {
+    switch (ground) {
+    case Ground::plane:
+        return "plane";
+    case Ground::slab:
+        return "slab";
+    case Ground::quad:
+        return "quad";
+    }
+    return "";
+}
+
+struct StackWorld::State {
+    explicit State(Finder finder)
+        : dispatcher(make_dispatcher(finder, configuration)),
+          world(dispatcher.get(), &broadphase, &solver, &configuration) {
+        world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+    }
+    ~State() {
+        for (const auto& body : bodies) world.removeRigidBody(body.get());
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    void add_ground(Ground ground);
+    void add_shape(const StackShape& shape, bool convex);
+    void add_body(btCollisionShape& shape, btScalar mass, const btVector3& inertia, const Pose& pose);
+
+    btDefaultCollisionConfiguration configuration;
+    std::unique_ptr<btCollisionDispatcher> dispatcher;
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world;
+    std::vector<std::unique_ptr<btTriangleMesh>> meshes;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btRigidBody>> bodies; ///< the ground first
+};
+
+void StackWorld::State::add_ground(Ground ground) {
+    if (ground == Ground::plane) {
+        shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)));
+    } else {
+        meshes.push_back(triangles_of(ground_mesh(ground)));
+        shapes.push_back(std::make_unique<btBvhTriangleMeshShape>(meshes.back().get(), true));
+    }
+    add_body(*shapes.back(), 0, btVector3(0, 0, 0), {});
+}
+
+void StackWorld::State::add_shape(const StackShape& shape, bool convex) {
+    if (convex) {
+        if (shape.box) {
+            shapes.push_back(std::make_unique<btBoxShape>(to_bullet(*shape.box) / 2));
+            return;
+        }
+        auto hull = std::make_unique<btConvexHullShape>();
+        for (const Vec3& v : shape.mesh.vertices) hull->addPoint(to_bullet(v), false);
+        hull->recalcLocalAabb();
+        shapes.push_back(std::move(hull));
+        return;
+    }
+    meshes.push_back(triangles_of(shape.mesh));
+    auto mesh = std::make_unique<btGImpactMeshShape>(meshes.back().get());
+    mesh->setMargin(0);
+    mesh->updateBound();
+    shapes.push_back(std::move(mesh));
+}
+
+void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const btVector3& inertia, const Pose& pose) {
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+    info.m_startWorldTransform = to_bullet(pose);
+    info.m_friction = btScalar(friction);
+    bodies.push_back(std::make_unique<btRigidBody>(info));
+    if (mass > 0) bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(bodies.back().get());
+}
+
+StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver)
+    : state_(std::make_unique<State>(finder)) {
+    if (finder == Finder::convex && !stack.convex()) throw InputError("StackWorld: not all bodies are convex");
+    State& s = *state_;
+    btContactSolverInfo& info = s.world.getSolverInfo();
+    info.m_numIterations = solver.iterations;
+    info.m_linearSlop = btScalar(solver.slop);
+    if (solver.two_friction_directions)
+        info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
+    s.add_ground(ground);
+    std::vector<Mass> masses;
+    const std::size_t first = s.shapes.size();
+    for (const StackShape& shape : stack.shapes) {
+        masses.push_back(mass_of(shape.mesh.vertices, shape.mesh.triangles));
+        s.add_shape(shape, finder == Finder::convex);
+    }
+    for (const StackBody& body : stack.bodies) {
+        const Mass& m = masses[body.shape];
+        const btVector3 inertia = btScalar(density) * to_bullet(Vec3{m.inertia[0], m.inertia[4], m.inertia[8]});
+        s.add_body(*s.shapes[first + body.shape], btScalar(density * m.volume), inertia, body.pose);
+    }
+}
+
+StackWorld::~StackWorld() = default;
+
+void StackWorld::step() {
+    state_->world.stepSimulation(btScalar(1.0 / 60), 0);
+}
+
+Pose StackWorld::pose(std::size_t body) const {
+    const btTransform& at = state_->bodies[body + 1]->getWorldTransform();
+    Pose pose;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) pose.rotation[static_cast<std::size_t>(3 * i + k)] = double(at.getBasis()[i][k]);
+    pose.translation = {double(at.getOrigin().x()), double(at.getOrigin().y()), double(at.getOrigin().z())};
+    return pose;
+}
+
+std::vector<Pose> StackWorld::poses() const {
+    std::vector<Pose> all;
+    for (std::size_t i = 0; i + 1 < state_->bodies.size(); ++i) all.push_back(pose(i));
+    return all;
+}
+
+void StackWorld::print_points(std::FILE* out) const {
+    const auto number = [&](const btCollisionObject* object) {
+        for (std::size_t i = 0; i < state_->bodies.size(); ++i)
+            if (state_->bodies[i].get() == object) return static_cast<int>(i) - 1;
+        return -1;
+    };
+    for (int i = 0; i < state_->dispatcher->getNumManifolds(); ++i) {
+        const btPersistentManifold& m = *state_->dispatcher->getManifoldByIndexInternal(i);
+        for (int k = 0; k < m.getNumContacts(); ++k) {
+            const btManifoldPoint& p = m.getContactPoint(k);
+            std::fprintf(out, "%d-%d at %.4f %.4f %.4f normal %.4f %.4f %.4f distance %.6f impulse %.3f age %d",
+                         number(m.getBody0()), number(m.getBody1()), double(p.m_positionWorldOnB.x()),
+                         double(p.m_positionWorldOnB.y()), double(p.m_positionWorldOnB.z()),
+                         double(p.m_normalWorldOnB.x()), double(p.m_normalWorldOnB.y()), double(p.m_normalWorldOnB.z()),
+                         double(p.m_distance1), double(p.m_appliedImpulse), p.m_lifeTime);
+            if (bullet::CollisionDispatcher::is_ours(p)) {
+                const bullet::PointKey key = bullet::CollisionDispatcher::key(p);
+                std::fprintf(out, " key %d:%d:%d:%u", key.vertex_body, static_cast<int>(key.feature), key.vertex,
+                             key.crossing);
+            }
+            std::fprintf(out, "\n");
+        }
+    }
+}
+
+} // namespace raycontact::scenes

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/settings.h>
+#include <scenes/stacks/stack.h>
+
+#include <cstdio>
+#include <memory>
+#include <string_view>
+
+namespace raycontact::scenes {
+
+/// What finds the contacts in Bullet.
+enum class Finder {
+    edges,    ///< RayContact, Features::edges
+    vertices, ///< RayContact, Features::vertices
+    gimpact,  ///< Bullet's own for moving meshes
+    convex,   ///< btBoxShape and, for wedges, btConvexHullShape in place of the meshes, where all are convex
+};
+enum class Ground {
+    plane, ///< btStaticPlaneShape
+    slab,  ///< a mesh of 12 triangles, 1 m thick
+    quad,  ///< two triangles
+};
+inline constexpr double ground_reach = 10; ///< half its width, metres; the plane has none
+std::string_view to_string(Finder finder);
+std::string_view to_string(Ground ground);
+
+/// Of Bullet's solver, the same for every finder. Defaults: Bullet's own.
+struct StackSolver {
+    int iterations = 10;
+    double slop = 0;                      ///< metres
+    bool two_friction_directions = false; ///< fixed by the normal
+};
+
+/// A stack in a Bullet world with deactivation off. z is up, 60 steps a second, friction 0.8 x 0.8. Moving meshes are
+/// btGImpactMeshShape for every finder: one line differs.
+class StackWorld {
+public:
+    /// Throws InputError for Finder::convex where bodies are not.
+    StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver = {});
+    ~StackWorld();
+    StackWorld(const StackWorld&) = delete;
+    StackWorld& operator=(const StackWorld&) = delete;
+
+    void step();
+    Pose pose(std::size_t body) const;
+    std::vector<Pose> poses() const;
+    /// Every manifold point of the last step; the ground is body -1.
+    void print_points(std::FILE* out) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace raycontact::scenes
