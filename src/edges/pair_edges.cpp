@@ -201,9 +201,8 @@ PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Pie
     for (std::size_t k = 0; k < 2; ++k) {
         const Vec3& end = piece.ends[k].point;
         // Just below the face that it crosses the plane is the face.
-        candidate.depths[k] = piece.faces[k] == face
-                                  ? candidate.height - dot(end, candidate.normal)
-                                  : way_out(placed.target, end, candidate.normal, candidate.height);
+        candidate.depths[k] = piece.faces[k] == face ? candidate.height - dot(end, candidate.normal)
+                                                     : way_out(placed.target, end, candidate.normal, candidate.height);
     }
     return candidate;
 }
