@@ -152,21 +152,26 @@ WorkNote note_of(const Work& work) {
 void bench_peers(const PeersOptions& options) {
     const std::vector<Entrant> who = choose_entrants(options.only);
     Machine machine = this_machine();
+    BenchFiles files(options.out, machine, {"peers"});
     std::vector<WorkNote> notes;
     std::vector<Result> results;
-    for (const auto& [name, make] : choose_works(options)) {
-        tell(name + ": poses and pairs");
-        const Work work = make();
-        notes.push_back(note_of(work));
-        const std::vector<Result> some = contest(work, who, options.runs, tell);
-        results.insert(results.end(), some.begin(), some.end());
-    }
-    machine.load = this_machine().load;
-    tell("");
+    until_stopped([&] {
+        for (const auto& [name, make] : choose_works(options)) {
+            tell(name + ": poses and pairs");
+            const Work work = make();
+            const std::vector<Result> some = contest(work, who, options.runs, tell);
+            notes.push_back(note_of(work));
+            results.insert(results.end(), some.begin(), some.end());
+        }
+    });
+    finish(machine);
+    if (results.empty() && machine.cut_short) return;
     name_absent(options.only);
-    if (!options.out.empty())
-        std::cerr << "written: " << write_results(options.out, machine, notes, results).string() << " and .svg\n";
-    std::cout << (options.json ? json(machine, notes, results) : table(machine, notes, results));
+    std::cout << (options.json ? json(machine, notes, results) : table(machine, notes, results)) << std::flush;
+    if (files) {
+        write_results(files.folder(), machine, notes, results);
+        files.keep(machine);
+    }
     if (std::any_of(results.begin(), results.end(), [](const Result& r) { return !r.agrees; }))
         throw std::runtime_error("basic or certified gave other bits than bvh; this must not be");
 }
@@ -174,12 +179,15 @@ void bench_peers(const PeersOptions& options) {
 void bench_growth(const GrowthCommand& command) {
     refuse_unknown("--only", command.options.parts, {std::begin(growth_parts), std::end(growth_parts)});
     Machine machine = this_machine();
+    BenchFiles files(command.out, machine, {"growth"});
     const std::vector<GrowthRow> rows = growth(command.options, tell);
-    machine.load = this_machine().load;
-    tell("");
-    if (!command.out.empty())
-        std::cerr << "written: " << write_results(command.out, machine, rows).string() << " and .svg\n";
-    std::cout << (command.json ? json(machine, rows) : table(machine, rows));
+    finish(machine);
+    if (rows.empty() && machine.cut_short) return;
+    std::cout << (command.json ? json(machine, rows) : table(machine, rows)) << std::flush;
+    if (files) {
+        write_results(files.folder(), machine, rows);
+        files.keep(machine);
+    }
 }
 
 std::vector<MakeWork> choose_sweeps(const SweepCommand& command) {
@@ -201,32 +209,37 @@ void bench_sweep(const SweepCommand& command) {
     if (!command.recording.empty() && !command.only.empty() && chosen(command.only, "seeds"))
         throw InputError("--only seeds: simulates its avalanches itself; give no recording");
     Machine machine = this_machine();
+    BenchFiles files(command.out, machine, {"sweep-thresholds", "sweep-seeds"});
     std::vector<WorkNote> notes;
     std::vector<ThresholdRow> thresholds;
     std::vector<SeedRow> seeds;
     if (chosen(command.only, "thresholds")) {
-        for (const MakeWork& make : choose_sweeps(command)) {
-            tell("poses and pairs");
-            const Work work = make();
-            notes.push_back(note_of(work));
-            const std::vector<ThresholdRow> some = sweep_thresholds(work, command.thresholds, tell);
-            thresholds.insert(thresholds.end(), some.begin(), some.end());
-        }
+        until_stopped([&] {
+            for (const MakeWork& make : choose_sweeps(command)) {
+                tell("poses and pairs");
+                const Work work = make();
+                const std::vector<ThresholdRow> some = sweep_thresholds(work, command.thresholds, tell);
+                notes.push_back(note_of(work));
+                thresholds.insert(thresholds.end(), some.begin(), some.end());
+            }
+        });
     }
     if (command.recording.empty() && chosen(command.only, "seeds"))
         seeds = sweep_seeds({command.seed, command.seeds, command.bodies, command.steps}, tell);
-    machine.load = this_machine().load;
-    tell("");
-    if (!command.out.empty() && !thresholds.empty())
-        std::cerr << "written: " << write_results(command.out, machine, notes, thresholds).string() << " and .svg\n";
-    if (!command.out.empty() && !seeds.empty())
-        std::cerr << "written: " << write_results(command.out, machine, seeds).string() << " and .svg\n";
+    finish(machine);
+    if (thresholds.empty() && seeds.empty() && machine.cut_short) return;
     if (command.json) {
         std::cout << json(machine, notes, thresholds, seeds);
     } else {
         if (!thresholds.empty()) std::cout << table(machine, notes, thresholds);
         if (!thresholds.empty() && !seeds.empty()) std::cout << '\n';
         if (!seeds.empty()) std::cout << table(machine, seeds);
+    }
+    std::cout.flush();
+    if (files) {
+        if (!thresholds.empty()) write_results(files.folder(), machine, notes, thresholds);
+        if (!seeds.empty()) write_results(files.folder(), machine, seeds);
+        files.keep(machine);
     }
     const bool wrong =
         std::any_of(thresholds.begin(), thresholds.end(),
@@ -240,7 +253,7 @@ void add_peers(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "peers", "The same poses and pairs through ours, Bullet GImpact, FCL, ODE and Embree, one thread each");
     auto o = std::make_shared<PeersOptions>();
-    command->add_option("--out", o->out, "write DIR/<machine>/peers-<date>.csv and .svg")->type_name("DIR");
+    add_out(*command, "--out", o->out, "write DIR/<machine>/peers-<date>.csv and .svg")->type_name("DIR");
     add_number(*command, "--steps", o->approach.steps, "steps of the approaching pairs", 1u, 100'000u);
     add_number(*command, "--pairs", o->approach.pairs, "approaching pairs, all in one step", 1u, 10'000u);
     add_number(*command, "--depth", o->approach.depth, "metres that they are pushed in beyond first touch", 0.0, 0.5);
@@ -273,7 +286,7 @@ void add_growth(CLI::App& bench) {
     CLI::App* command =
         bench.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
     auto c = std::make_shared<GrowthCommand>();
-    command->add_option("--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
+    add_out(*command, "--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
     command->add_option("--only", c->options.parts, "parts: triangles,contacts,creeping,still,displacement,bodies")
         ->type_name("NAMES")
         ->delimiter(',');
@@ -296,7 +309,7 @@ void add_sweep(CLI::App& bench) {
         ->add_option("recording", c->recording,
                      "poses and pairs (run --record); without: an avalanche, and a few fast, large bodies")
         ->type_name("RECORDING");
-    command->add_option("--out", c->out, "write DIR/<machine>/sweep-thresholds-<date>.csv and .svg, sweep-seeds too")
+    add_out(*command, "--out", c->out, "write DIR/<machine>/sweep-thresholds-<date>.csv and .svg, sweep-seeds too")
         ->type_name("DIR");
     command->add_option("--only", c->only, "parts: thresholds,seeds")->type_name("NAMES")->delimiter(',');
     add_number(*command, "--first", c->first, "first step of the thresholds' avalanche or recording", 0u, 1'000'000u);

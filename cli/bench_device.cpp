@@ -91,18 +91,20 @@ void bench_device(DeviceCommand command) {
     options.first = range_of(command.work.range).first;
 
     Machine machine = this_machine();
+    BenchFiles files(command.out, machine, {"device"}, {".csv"});
     tell("poses and pairs");
     const Work work = make_work(command.work);
     const DeviceResults results = measure_devices(work, options, tell);
-    machine.load = this_machine().load;
-    tell("");
-    if (!command.out.empty())
-        std::cerr << "written: " << write_results(command.out, machine, work, options, results).string() << '\n';
-    std::cout << (command.json ? json(machine, work, options, results) : table(machine, work, options, results));
-    if (!std::ranges::all_of(results.results, &DeviceResult::agrees)) {
-        std::cout.flush();
-        throw std::runtime_error("a device failed or gave other bits than the CPU; this must not be");
+    finish(machine);
+    if (results.results.empty() && machine.cut_short) return;
+    std::cout << (command.json ? json(machine, work, options, results) : table(machine, work, options, results))
+              << std::flush;
+    if (files) {
+        write_results(files.folder(), machine, work, options, results);
+        files.keep(machine);
     }
+    if (!std::ranges::all_of(results.results, &DeviceResult::agrees))
+        throw std::runtime_error("a device failed or gave other bits than the CPU; this must not be");
 }
 
 void bench_roofline(RooflineCommand command) {
@@ -120,8 +122,7 @@ void bench_roofline(RooflineCommand command) {
     tell("poses and pairs");
     const Work work = make_work(command.work);
     const std::vector<RooflineRow> rows = count_roofline(work, options, tell);
-    machine.load = this_machine().load;
-    tell("");
+    finish(machine);
     std::cout << (command.json ? json(machine, work, options, rows) : table(machine, work, options, rows));
     if (!std::ranges::all_of(rows, &RooflineRow::agrees)) {
         std::cout.flush();
@@ -147,7 +148,7 @@ void add_device(CLI::App& bench) {
                100'000u);
     add_number(*command, "--runs", c->options.runs, "figures are medians over runs and steps", 1u, 1000u);
     add_number(*command, "--threads", c->options.threads, "of the host, 0: one per core", 0u, 1024u);
-    command->add_option("--out", c->out, "write DIR/<machine>/device-<date>.csv")->type_name("DIR");
+    add_out(*command, "--out", c->out, "write DIR/<machine>/device-<date>.csv")->type_name("DIR");
     command->add_flag("--json", c->json, "print one JSON object on stdout");
     command->footer("Single kernels are timed in a run of their own, each waited for, by the device's clock.\n"
                     "Exit status: 0 fine, 1 a device failed or its contacts are not the CPU's, 2 bad usage or input.");
@@ -163,12 +164,11 @@ void add_roofline(CLI::App& bench) {
         ->type_name("WORDS")
         ->delimiter(',');
     command->add_option("--caster", c->caster, "bvh or basic")->type_name("WORD")->capture_default_str();
-    command->add_option("--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_option("--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+    add_number(*command, "--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)", 1e-3,
+               1e9)
+        ->type_name("GB/S");
+    add_number(*command, "--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)", 1e-3, 1e9)
+        ->type_name("TFLOPS");
     command->add_flag("--json", c->json, "print one JSON object on stdout");
     command->callback([c] { bench_roofline(*c); });
 }

@@ -1,26 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cli/number_option.h"
+#include "cli/out_option.h"
+#include "cli/stop.h"
+
+#include <bench/peers/files.h>
+#include <bench/peers/stopped.h>
+
 #include <CLI/CLI.hpp>
 
+#include <initializer_list>
 #include <iostream>
+#include <optional>
 #include <string>
-#include <type_traits>
 
 #include <unistd.h>
 
 // What the subcommands of `bench` share.
 
-/// One line that says what is being done, on a terminal only.
+/// Whether a signal ended the benchmark before its last row.
+inline bool bench_stopped = false;
+
+/// One line that says what is being done, on a terminal only. Throws Stopped where a signal has come.
 inline void tell(const std::string& what) {
+    if (stop_signal() != 0 && !what.empty()) {
+        bench_stopped = true;
+        throw raycontact::bench::Stopped();
+    }
     if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K" << what << std::flush;
 }
 
-template <class Number>
-void add_number(CLI::App& command, const std::string& name, Number& value, const std::string& help, Number least,
-                Number most) {
-    command.add_option(name, value, help)
-        ->type_name(std::is_integral_v<Number> ? "N" : "METRES")
-        ->capture_default_str()
-        ->check(CLI::Range(least, most));
+/// Does the work, as far as it gets.
+template <class Do>
+void until_stopped(Do work) {
+    try {
+        work();
+    } catch (const raycontact::bench::Stopped&) {
+        // What is whole is written.
+    }
 }
+
+/// The machine as it is at the end.
+inline void finish(raycontact::bench::Machine& machine) {
+    machine.load = raycontact::bench::this_machine().load;
+    machine.cut_short = bench_stopped;
+    tell("");
+    if (bench_stopped) std::cerr << "cut short by " << stop_name() << '\n';
+}
+
+/// What a benchmark writes with --out: DIR/<machine>/<name>-<date>, claimed before it begins. Without --out nothing.
+class BenchFiles {
+public:
+    BenchFiles(const std::string& out, const raycontact::bench::Machine& machine,
+               std::initializer_list<const char*> names,
+               std::initializer_list<const char*> endings = {".csv", ".svg"}) {
+        listen_for_stop();
+        if (out.empty()) return;
+        folder_.emplace(raycontact::bench::results_folder(out, machine));
+        for (const char* name : names)
+            for (const char* ending : endings) folder_->claim(result_name(machine, name, ending));
+        name_left_overs(folder_->left_overs());
+    }
+    explicit operator bool() const { return folder_.has_value(); }
+    raycontact::output::OutFolder& folder() { return *folder_; }
+    void keep(const raycontact::bench::Machine& machine) {
+        for (const auto& file : folder_->keep(machine.cut_short)) std::cerr << "written: " << file.string() << '\n';
+    }
+
+private:
+    std::optional<raycontact::output::OutFolder> folder_;
+};

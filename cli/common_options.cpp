@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/common_options.h"
 
+#include "cli/number_option.h"
+
 #include <raycontact/device.h>
 #include <raycontact/error.h>
 
@@ -8,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -17,11 +18,6 @@
 using raycontact::InputError;
 
 namespace {
-
-bool read_number(std::string_view text, std::uint32_t& number) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc{} && end == text.data() + text.size();
-}
 
 /// As check_settings names them, and as a user does.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> spelt{
@@ -40,10 +36,9 @@ std::string with_options(std::string text) {
 }
 
 double read_real(const std::string& word, const std::string& wanted) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size()) throw InputError("\"" + word + "\" is not " + wanted);
-    return value;
+    const std::optional<double> value = read_number<double>(word);
+    if (!value) throw InputError("\"" + word + "\" is not " + wanted);
+    return *value;
 }
 
 /// A name whose bad values are InputErrors already, so that one sentence reaches the user, with the option in front.
@@ -125,12 +120,11 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
                "predictive: metres by which the bounds are widened whose vertices are looked at, at least the "
                "displacement threshold; auto: the culling distance");
     add_setting(command, settings, &Settings::max_iterations, "--max-iterations",
-                "iterative, predictive: triangles a ray may visit when it is followed, at least 1", "N",
+                "iterative, predictive: triangles a ray may visit when it is followed, 1 to 4096", "N",
                 std::to_string(settings.max_iterations), [](const std::string& word) {
-                    std::uint32_t number = 0;
-                    if (!read_number(word, number))
-                        throw InputError("\"" + word + "\" is not a number of triangles: give 1 or more");
-                    return number;
+                    const std::optional<std::uint32_t> number = read_number<std::uint32_t>(word);
+                    if (!number) throw InputError("\"" + word + "\" is not a number of triangles: give 1 to 4096");
+                    return *number;
                 });
     command.add_flag("--walk-casts,!--no-walk-casts", settings.cast_lost_walks,
                      "predictive: cast a ray in full (the default) or give it up where following it ends "
@@ -151,10 +145,8 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
              [&](const std::string& word) { settings.schedule = schedule_from(word); });
     command.add_flag("--inexact", settings.inexact,
                      "also use a device that rounds otherwise, whose contacts may differ from all others'");
-    command.add_option("--threads", settings.threads, "threads of the host, 0: one per core; changes no result")
-        ->type_name("N")
-        ->default_str("0")
-        ->check(CLI::Range(0u, 1024u));
+    add_number(command, "--threads", settings.threads, "threads of the host, 0: one per core; changes no result", 0u,
+               1024u);
 }
 
 void check_common_options(const raycontact::Settings& settings) {

@@ -6,12 +6,14 @@
 #include "cli/replay.h"
 #include "cli/reproduce.h"
 #include "cli/run.h"
+#include "cli/stop.h"
 #include "cli/view.h"
 
 #include <raycontact/error.h>
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -35,7 +37,7 @@ int run_program(int argc, char** argv) {
                  "raycontact"};
     app.set_version_flag("--version", "raycontact " RAYCONTACT_VERSION);
     app.require_subcommand(0, 1); // none is refused below: CLI11 would not name a misspelt one
-    app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input.");
+    app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 130 ended by Ctrl-C.");
     add_devices(app);
     add_mesh(app);
     add_collide(app);
@@ -56,12 +58,13 @@ int run_program(int argc, char** argv) {
                                      "or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
-    return fine;
+    return stop_signal() == 0 ? fine : 128 + stop_signal(); // as a shell has it
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
+    std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is then an error like a full disk
     try {
         return run_program(argc, argv);
     } catch (const raycontact::InputError& error) {

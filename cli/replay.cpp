@@ -2,10 +2,12 @@
 #include "cli/replay.h"
 
 #include "cli/common_options.h"
-#include "cli/out_folder.h"
+#include "cli/out_option.h"
 #include "cli/progress.h"
+#include "cli/stop.h"
 #include "cli/summary.h"
 
+#include <output/out_folder.h>
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <recording/replay.h>
@@ -17,6 +19,7 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,9 +39,12 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
              double wall_ms) {
     const Settings& recorded = reader.info().settings;
     const Work work(replay.steps);
+    const bool cut_short = replay.steps.size() < reader.steps();
     Json result{{"scene", reader.info().scene},
                 {"seed", reader.info().seed},
-                {"steps", reader.steps()},
+                {"steps", replay.steps.size()},
+                {"steps_planned", reader.steps()},
+                {"cut_short", cut_short},
                 {"bodies", reader.info().bodies},
                 {"pairs_max", replay.pairs_max},
                 {"rays", replay.rays},
@@ -63,7 +69,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"complete", reader.hash().has_value()}};
     if (reader.hash()) {
         result["recorded_hash"] = *reader.hash();
-        result["hash_reproduced"] = *reader.hash() == replay.hash;
+        if (!cut_short) result["hash_reproduced"] = *reader.hash() == replay.hash;
     }
     if (replay.wrong_rays) {
         const recording::WrongRays& wrong = *replay.wrong_rays;
@@ -83,6 +89,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
 std::string hash_for_a_person(const Json& s) {
     const auto hash = s["hash"].get<std::string>();
     if (s["recorded_hash"].is_null()) return hash + " (the recording was not finished, so it has none to compare with)";
+    if (s["cut_short"].get<bool>()) return hash + ", of these steps alone";
     const auto recorded = s["recorded_method"].get<std::string>();
     const bool other_method = recorded != s["method"].get<std::string>();
     if (s["hash_reproduced"].get<bool>())
@@ -103,6 +110,9 @@ std::string for_a_person(const Json& s) {
         s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
         s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(),
         s["narrow_ms"]["median"].get<double>());
+    if (s["cut_short"].get<bool>())
+        text += fmt::format("cut short  by {}: {} steps of {}\n", stop_name(), s["steps"].get<std::uint64_t>(),
+                            s["steps_planned"].get<std::uint64_t>());
     text += work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + hash_for_a_person(s) + "\n";
     if (s.contains("wrong_rays")) {
         const Json& wrong = s["wrong_rays"];
@@ -132,31 +142,32 @@ std::string steps_csv(const std::vector<recording::ReplayStep>& steps, bool comp
 }
 
 template <class Value>
-void write_plot(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,
+void write_plot(output::OutFolder& folder, const recording::Reader& reader, const recording::Replay& replay,
                 const std::string& name, report::Plot plot, Value value) {
     plot.over = report::over_steps(reader.info().dt);
     auto& points = plot.lines.front().points;
     for (const recording::ReplayStep& step : replay.steps) points.emplace_back(points.size(), value(step));
-    write_out(given.out, name, report::plot_svg({plot}));
+    folder.write(name, report::plot_svg({plot}));
 }
 
-void write_files(const ReplayCommand& given, const recording::Reader& reader, const recording::Replay& replay,
+void write_files(output::OutFolder& folder, const recording::Reader& reader, const recording::Replay& replay,
                  const Settings& settings) {
     const bool compared = replay.wrong_rays.has_value();
     const std::string how = "method " + std::string(to_string(settings.method));
-    write_out(given.out, "steps.csv", steps_csv(replay.steps, compared));
-    write_plot(given, reader, replay, "narrow_ms.svg",
+    folder.write("steps.csv", steps_csv(replay.steps, compared));
+    write_plot(folder, reader, replay, "narrow_ms.svg",
                {"Narrow phase", "ms", "Wall clock of contact finding, " + how + ", on this machine.", {{how, {}}}},
                [](const recording::ReplayStep& step) { return step.narrow_ms; });
-    if (!compared) return;
-    write_plot(given, reader, replay, "wrong_rays.svg",
-               {"Wrong rays",
-                "%",
-                "Rays of " + how
-                    + " that end otherwise than those of method standard: a contact missed, invented or on another "
-                      "triangle; of all rays that standard casts.",
-                {{how, {}}}},
-               [](const recording::ReplayStep& step) { return step.wrong.percent(); });
+    if (compared)
+        write_plot(folder, reader, replay, "wrong_rays.svg",
+                   {"Wrong rays",
+                    "%",
+                    "Rays of " + how
+                        + " that end otherwise than those of method standard: a contact missed, invented or on another "
+                          "triangle; of all rays that standard casts.",
+                    {{how, {}}}},
+                   [](const recording::ReplayStep& step) { return step.wrong.percent(); });
+    folder.keep(replay.steps.size() < reader.steps());
 }
 
 void replay(const CLI::App& command, const ReplayCommand& given) {
@@ -166,20 +177,33 @@ void replay(const CLI::App& command, const ReplayCommand& given) {
     recording::ReplayOptions options;
     options.settings = recorded_unless_given(command, given.settings, reader.info().settings);
     options.compare = !given.compare.empty();
-    if (!given.out.empty()) make_out_folder(given.out);
+    std::optional<output::OutFolder> folder;
+    if (!given.out.empty()) {
+        folder.emplace(given.out);
+        for (const char* name : {"steps.csv", "narrow_ms.svg", "wrong_rays.svg"}) folder->claim(name);
+        name_left_overs(folder->left_overs());
+    }
 
     Progress progress("replay", reader.steps());
     options.progress = [&](std::uint32_t done) { progress.show(done); };
+    options.stop = [] { return stop_signal() != 0; };
+    listen_for_stop();
     const auto start = std::chrono::steady_clock::now();
     const recording::Replay result = recording::replay(reader, options);
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
     progress.done();
 
     const Json json = summary(reader, result, options.settings, wall.count());
-    if (!given.out.empty()) write_files(given, reader, result, options.settings);
-    std::cout << (given.json ? json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" : for_a_person(json));
+    std::string error; // told last
+    try {
+        if (folder) write_files(*folder, reader, result, options.settings);
+    } catch (const std::exception& unwritten) {
+        error = unwritten.what();
+    }
+    std::cout << (given.json ? json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" : for_a_person(json))
+              << std::flush;
+    if (!error.empty()) throw std::runtime_error(error);
     if (json["hash_reproduced"] == false && json["hash_expected"] == true) {
-        std::cout.flush();
         throw std::runtime_error(given.file
                                  + ": the recorded hash was not reproduced: these are other contacts than the run's");
     }
@@ -195,17 +219,16 @@ void add_replay(CLI::App& app) {
     command
         ->add_option("--compare", given->compare, "standard: count the rays that end otherwise than with that method")
         ->type_name("METHOD");
-    command
-        ->add_option("--out", given->out,
-                     "write steps.csv and narrow_ms.svg there; with --compare also wrong_rays.svg, the percentage of "
-                     "wrong rays in each step")
+    add_out(*command, "--out", given->out,
+            "write steps.csv and narrow_ms.svg there; with --compare also wrong_rays.svg, the percentage of "
+            "wrong rays in each step")
         ->type_name("DIR");
     command->add_flag("--json", given->json, "print one JSON object on stdout");
     add_common_options(*command, given->settings);
     command->footer(
         "What decides the contacts (method, caster, direction, thresholds) is the recording's unless given.\n"
         "Methods standard and certified find the same contacts, so either reproduces the other's hash.\n"
-        "Exit status: 0 fine, 1 the run failed or its hash should have been reproduced and was not, 2 bad "
-        "usage or input.");
+        "A hash that should have been reproduced and was not is a failed run.\n"
+        + std::string(stop_footer));
     command->callback([command, given] { replay(*command, *given); });
 }

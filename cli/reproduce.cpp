@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/reproduce.h"
 
+#include "cli/out_option.h"
 #include "cli/progress.h"
 
 #include <reproduce/reproduce.h>
@@ -50,7 +51,7 @@ void add_reproduce(CLI::App& app) {
     std::string known;
     for (const std::string& name : repro::experiment_names()) known += (known.empty() ? "" : ", ") + name;
     command->add_option("WHAT", given->what, known)->capture_default_str();
-    command->add_option("--out", given->out, "write report.html, results.json and cache/ there")
+    add_out(*command, "--out", given->out, "write report.html, results.json and cache/ there")
         ->type_name("DIR")
         ->required();
     command->add_flag("--quick", given->quick, "a short version: fewer bodies, steps, seeds and orientations");

@@ -3,12 +3,14 @@
 
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
-#include "cli/out_folder.h"
+#include "cli/out_option.h"
 #include "cli/progress.h"
 #include "cli/record.h"
 #include "cli/run_scene.h"
+#include "cli/stop.h"
 #include "cli/summary.h"
 
+#include <output/out_folder.h>
 #include <raycontact/error.h>
 #include <report/report.h>
 #include <scenes/simulation.h>
@@ -22,6 +24,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -49,6 +53,8 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"scene", log.scene},
         {"seed", log.seed},
         {"steps", scene.steps()},
+        {"steps_planned", scene.description().steps},
+        {"cut_short", scene.steps() < scene.description().steps},
         {"bodies", scene.body_count()},
         {"pairs_max", scene.pairs_max()},
         {"rays", scene.rays_total()},
@@ -100,6 +106,9 @@ std::string for_a_person(const Json& s) {
         s["below_ground"].get<std::uint64_t>(), s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000,
         s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
         s["narrow_ms_last_second"].get<double>());
+    if (s["cut_short"].get<bool>())
+        text += fmt::format("cut short  by {}: {} steps of {}\n", stop_name(), s["steps"].get<std::uint64_t>(),
+                            s["steps_planned"].get<std::uint64_t>());
     return text + work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + s["hash"].get<std::string>()
            + "\n";
 }
@@ -120,38 +129,81 @@ void check_record(const std::string& file) {
     if (ending != ".glb") throw InputError("--record: \"" + file + "\" does not end in .glb; name a .glb file");
 }
 
+/// All that the run is to write, claimed before its first step.
+struct Outputs {
+    explicit Outputs(const RunOptions& options) {
+        if (!options.record.empty()) {
+            recording.emplace(options.record);
+            name_left_overs(recording->left_overs());
+        }
+        if (options.out.empty()) return;
+        folder.emplace(options.out);
+        folder->claim("steps.csv");
+        raycontact::report::claim_report(*folder);
+        name_left_overs(folder->left_overs());
+    }
+    std::optional<raycontact::output::OutFile> recording;
+    std::optional<raycontact::output::OutFolder> folder;
+};
+
+/// With the last step's picture, where the run was cut short before that of its plan.
+RunLog log_of(const Simulation& scene, const std::string& summary_json) {
+    RunLog log = scene.log();
+    log.summary_json = summary_json;
+    if (log.rows.size() < scene.description().steps && log.frames.back().step != log.rows.back().step) {
+        Frame& last = log.frames.emplace_back();
+        last.step = log.rows.back().step;
+        for (std::uint32_t body = 0; body < log.body_shape.size(); ++body) last.poses.push_back(scene.pose(body));
+    }
+    return log;
+}
+
+void write_files(raycontact::output::OutFolder& folder, const RunLog& log, bool cut_short) {
+    std::cerr << "drawing the report\n";
+    folder.write("steps.csv", steps_csv(log.rows));
+    raycontact::report::write_report(folder, log, compare_with_gimpact(log));
+    folder.keep(cut_short);
+    std::cerr << "report: " << folder.kept("report.html").string() << '\n';
+}
+
 void run(const RunOptions& options) {
     check_common_options(options.settings);
-    if (!options.out.empty()) make_out_folder(options.out);
+    Outputs outputs(options);
     const auto start = std::chrono::steady_clock::now();
     SceneDescription described = describe_scene(options.scene, options.settings);
     if (!options.out.empty()) described.frames = raycontact::report::film_frames;
     Simulation scene(std::move(described));
     const SceneDescription& description = scene.description();
-    RunRecorder recorder(options.record, scene);
+    RunRecorder recorder(std::move(outputs.recording), scene);
     Progress progress(description.name, description.steps);
-    for (std::uint32_t i = 0; i < description.steps; ++i) {
+    listen_for_stop();
+    for (std::uint32_t i = 0; i < description.steps && stop_signal() == 0; ++i) {
         scene.step();
         recorder.step();
         progress.show(i + 1);
     }
     progress.done();
-    recorder.finish();
+    if (scene.steps() == 0) {
+        std::cerr << "ended before the first step\n";
+        return;
+    }
+    const bool cut_short = scene.steps() < description.steps;
+    recorder.finish(cut_short);
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
     print_warnings(scene.log().rows);
     const Json result = summary(options, scene, wall.count());
     // File names are in it, which need not be text.
     const std::string text = result.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (!options.out.empty()) {
-        RunLog log = scene.log();
-        log.summary_json = text;
-        write_out(options.out, "steps.csv", steps_csv(log.rows));
-        std::cerr << "drawing the report\n";
-        raycontact::report::write_report(options.out, log, compare_with_gimpact(log));
-        std::cerr << "report: " << (std::filesystem::path(options.out) / "report.html").string() << '\n';
+    // What cannot be written is told last: the summary of a run of hours is worth more.
+    std::string error = recorder.error();
+    try {
+        if (outputs.folder) write_files(*outputs.folder, log_of(scene, text), cut_short);
+    } catch (const std::exception& unwritten) {
+        error += (error.empty() ? "" : "; ") + std::string(unwritten.what());
     }
-    std::cout << (options.json ? text + "\n" : for_a_person(result));
+    std::cout << (options.json ? text + "\n" : for_a_person(result)) << std::flush;
+    if (!error.empty()) throw std::runtime_error(error);
 }
 
 } // namespace
@@ -160,16 +212,15 @@ void add_run(CLI::App& app) {
     CLI::App* command = app.add_subcommand("run", "Simulate a scene: Bullet's response to RayContact's contacts");
     auto options = std::make_shared<RunOptions>();
     add_scene_options(*command, options->scene);
-    command
-        ->add_option("--record", options->record,
-                     "write a recording there: for `raycontact replay`, and any glTF viewer")
+    add_out(*command, "--record", options->record,
+            "write a recording there: for `raycontact replay`, and any glTF viewer")
         ->type_name("FILE.glb");
-    command
-        ->add_option("--out", options->out,
-                     "write report.html, pictures and steps.csv there; drawing takes some seconds")
+    add_out(*command, "--out", options->out,
+            "write report.html, pictures and steps.csv there; drawing takes some seconds")
         ->type_name("DIR");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     add_common_options(*command, options->settings);
+    command->footer(stop_footer);
     command->callback([command, options] {
         if (command->count("--record") > 0) check_record(options->record);
         run(*options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_scene.h"
 
+#include "cli/number_option.h"
 #include "cli/scene_file.h"
 
 #include <raycontact/error.h>
@@ -14,6 +15,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace {
 
@@ -106,25 +108,23 @@ void add_scene_options(CLI::App& command, RunScene& scene) {
                     "in place of SCENE: these meshes, in turn, fall from a cubic grid; z is up, units are metres")
         ->type_name("FILE")
         ->expected(1, 1000);
-    command.add_option("--size", scene.size, "with --mesh: longest edge of each mesh's box; else as in the file")
-        ->type_name("METRES");
+    add_number(command, "--size", scene.size, "with --mesh: longest edge of each mesh's box; else as in the file", 0.0,
+               std::numeric_limits<double>::max());
     command
         .add_option("--ground", scene.ground,
                     "with --mesh: a mesh that stands still where its file places it, or plane: an endless one, z = 0, "
                     "whose contacts are not counted; else a slab")
         ->type_name("FILE|plane");
-    command.add_option("--density", scene.density, "with --mesh: kilograms a cubic metre")
+    add_number(command, "--density", scene.density, "with --mesh: kilograms a cubic metre", 0.0,
+               std::numeric_limits<double>::max())
         ->type_name("D")
         ->default_str("1000");
-    command.add_option("--steps", scene.steps, "steps of 1/60 s, or of the scene file's dt")
-        ->type_name("N")
-        ->default_str("avalanche and --mesh 600, rain 3000")
-        ->check(CLI::Range(1u, 10'000'000u));
-    command.add_option("--bodies", scene.bodies, "moving bodies")
-        ->type_name("N")
-        ->default_str("avalanche 512, rain 500, --mesh 64")
-        ->check(CLI::Range(1u, 1'000'000u));
-    command.add_option("--seed", scene.seed, "of the bodies' small offsets and tilts; same seed, same hash")
+    add_number(command, "--steps", scene.steps, "steps of 1/60 s, or of the scene file's dt", 1u, 10'000'000u)
+        ->default_str("avalanche and --mesh 600, rain 3000");
+    add_number(command, "--bodies", scene.bodies, "moving bodies", 1u, 1'000'000u)
+        ->default_str("avalanche 512, rain 500, --mesh 64");
+    add_number(command, "--seed", scene.seed, "of the bodies' small offsets and tilts; same seed, same hash",
+               std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max())
         ->type_name("S")
         ->default_str("1");
 }

@@ -2,8 +2,11 @@
 #include "cli/view.h"
 
 #include "cli/common_options.h"
+#include "cli/number_option.h"
+#include "cli/out_option.h"
 #include "cli/progress.h"
 
+#include <output/out_file.h>
 #include <raycontact/error.h>
 #include <view/motion.h>
 #include <view/view.h>
@@ -17,7 +20,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -54,14 +56,6 @@ bool open_in_browser(const std::string& file) {
     return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-void write_page(const std::string& file, const std::string& html) {
-    std::ofstream out(file, std::ios::binary);
-    if (!out)
-        throw InputError("--out: " + file + " cannot be written; name a file in a folder that exists and is yours");
-    out << html;
-    if (!out.flush()) throw std::runtime_error(file + ": writing failed; is the disk full?");
-}
-
 void view_recording(const CLI::App& command, const ViewCommand& given) {
     recording::Reader reader(given.file);
     const std::filesystem::path source(given.file);
@@ -70,6 +64,8 @@ void view_recording(const CLI::App& command, const ViewCommand& given) {
     std::error_code ignored;
     if (std::filesystem::equivalent(out, source, ignored))
         throw InputError("--out: " + out + " is the recording itself; name another file");
+    output::OutFile file(out);
+    name_left_overs(file.left_overs());
 
     view::ViewOptions options;
     options.settings = recorded_unless_given(command, given.settings, reader.info().settings);
@@ -80,7 +76,8 @@ void view_recording(const CLI::App& command, const ViewCommand& given) {
     options.progress = [&](std::uint32_t done) { progress.show(done); };
     const view::View page = make_view(reader, options);
     progress.done();
-    write_page(out, page.html);
+    file.write(page.html);
+    file.keep();
 
     if (given.json) {
         std::cout << Json{{"file", out},
@@ -117,18 +114,15 @@ void add_view(CLI::App& app) {
     auto given = std::make_shared<ViewCommand>();
     command->add_option("RECORDING", given->file, "a file made by `raycontact run --record` or by a Recorder")
         ->required();
-    command->add_option("--out", given->out, "the page to write; default: beside the recording, with the ending .html")
+    add_out(*command, "--out", given->out, "the page to write; default: beside the recording, with the ending .html")
         ->type_name("FILE");
-    command
-        ->add_option("--layers-every", given->layer_every,
-                     "find contacts, rays, normals and predictions in every N-th step, 0: none; default: about "
-                         + std::to_string(layer_steps) + " steps")
-        ->type_name("N");
-    command
-        ->add_option("--every", given->every,
-                     "keep the poses of every N-th step; default: every step, fewer in long recordings of many bodies")
-        ->type_name("N")
-        ->check(CLI::Range(1u, 1'000'000u));
+    add_number(*command, "--layers-every", given->layer_every,
+               "find contacts, rays, normals and predictions in every N-th step, 0: none; default: about "
+                   + std::to_string(layer_steps) + " steps",
+               0u, 1'000'000u);
+    add_number(*command, "--every", given->every,
+               "keep the poses of every N-th step; default: every step, fewer in long recordings of many bodies", 1u,
+               1'000'000u);
     command->add_flag("--no-open", given->no_open, "only write the file");
     command->add_flag("--json", given->json, "print one JSON object on stdout; opens nothing");
     add_common_options(*command, given->settings);

@@ -120,6 +120,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
         }
         result.steps.push_back(step);
         if (options.progress) options.progress(i + 1);
+        if (options.stop && options.stop()) break;
     }
     result.hash = hash.hex();
     return result;

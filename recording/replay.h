@@ -65,13 +65,14 @@ struct ReplayOptions {
     Settings settings;
     bool compare = false;                        ///< with method `standard`, in a second scene; its time is not counted
     std::function<void(std::uint32_t)> progress; ///< told how many steps are done
+    std::function<bool()> stop;                  ///< asked after each step; true: the replay ends there
 };
 
 /// Whether contacts found with `used` must be those found with `recorded`: method, direction and thresholds are the
 /// same, or both methods are among those that find what `standard` finds.
 bool must_agree(const Settings& recorded, const Settings& used);
 
-/// Detection only, over all recorded steps. Throws InputError for a damaged recording or unusable settings.
+/// Detection only, over all recorded steps, or up to where it was stopped. Throws InputError for a damaged recording or unusable settings.
 Replay replay(Reader& reader, const ReplayOptions& options);
 
 } // namespace raycontact::recording

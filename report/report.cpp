@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace raycontact::report {
 namespace {
@@ -21,12 +20,8 @@ constexpr std::uint32_t picture_width = 1920, picture_height = 1080, film_width 
 constexpr std::size_t most_pictures = 8;
 constexpr int jpeg_quality = 82; // in the page; the files beside it are PNG
 
-void write_file(const std::filesystem::path& file, const std::string& bytes) {
-    std::ofstream out(file, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) throw InputError(file.string() + ": cannot be written; is the folder writable, is the disk full?");
-}
+const char* const page_name = "report.html";
+const char* const film_name = "pictures/film.webp";
 
 /// A log that would index out of its own lists must not reach the renderer.
 void check(const scenes::RunLog& log) {
@@ -137,13 +132,13 @@ std::string film_of(const scenes::RunLog& log, const Renderer& renderer) {
 
 } // namespace
 
-void write_report(const std::filesystem::path& folder, const scenes::RunLog& log, const Comparison& comparison) {
-    check(log);
-    const std::filesystem::path pictures = folder / "pictures";
-    std::error_code error;
-    std::filesystem::create_directories(pictures, error);
-    if (error) throw InputError(pictures.string() + ": the folder cannot be made (" + error.message() + ")");
+void claim_report(output::OutFolder& folder) {
+    folder.claim(page_name);
+    folder.claim(film_name);
+}
 
+void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Comparison& comparison) {
+    check(log);
     Page page;
     describe(log, page);
     page.plots = plots_of(log);
@@ -152,16 +147,16 @@ void write_report(const std::filesystem::path& folder, const scenes::RunLog& log
     for (const std::size_t k : chosen_frames(log.frames.size())) {
         const scenes::Frame& frame = log.frames[k];
         const Image image = renderer.render(frame, picture_width, picture_height);
-        write_file(pictures / fmt::format("step-{:03}.png", frame.step), encode_png(image));
+        folder.write(fmt::format("pictures/step-{:03}.png", frame.step), encode_png(image));
         page.stills.push_back({encode_jpeg(image, jpeg_quality),
                                fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
     }
     page.film = film_of(log, renderer);
     if (!page.film.empty()) {
-        write_file(pictures / "film.webp", page.film);
+        folder.write(film_name, page.film);
         page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
     }
-    write_file(folder / "report.html", make_page(page));
+    folder.write(page_name, make_page(page));
 }
 
 std::string picture_png(const scenes::RunLog& log, std::size_t frame, std::uint32_t width, std::uint32_t height) {

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <output/out_folder.h>
 #include <report/page.h>
 #include <scenes/run_log.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace raycontact::report {
 
-/// Writes folder/report.html, one file that needs no network and no other file, and the pictures in it once more as
-/// folder/pictures/step-NNN.png. Up to eight of the log's frames are drawn; all of them, up to 48, are a film, kept as
-/// folder/pictures/film.webp, too. The folder is made where missing. Throws InputError naming the file that cannot be
-/// written, or for a log without steps or frames.
-void write_report(const std::filesystem::path& folder, const scenes::RunLog& log, const Comparison& comparison = {});
+/// Claims what write_report will write, as far as its names are known.
+void claim_report(output::OutFolder& folder);
+
+/// Writes report.html, one file that needs no network and no other file, and the pictures in it once more as
+/// pictures/step-NNN.png. Up to eight of the log's frames are drawn; all of them, up to 48, are a film,
+/// pictures/film.webp, too. The caller keeps them. Throws InputError for a log without steps or frames, and as
+/// OutFolder::write does.
+void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Comparison& comparison = {});
 
 /// Frames that a log should have for a film.
 constexpr std::uint32_t film_frames = 48;

@@ -189,6 +189,11 @@ void describe(const scenes::RunLog& log, Page& page) {
     };
     take("scene");
     take("mesh_source"); // in the summary already
+    if (const Json planned = take("steps_planned"), cut = take("cut_short"); cut == true) {
+        page.title += " (cut short)";
+        page.summary =
+            fmt::format("Cut short: {} of {} steps were done. ", log.rows.size(), as_text(planned, 1)) + page.summary;
+    }
     for (const Known& k : known)
         if (const Json value = take(k.key); !value.is_null()) {
             // A seed is a name, not an amount.

@@ -20,7 +20,7 @@ public:
 
     /// Nothing when it is not there, damaged, or has another key.
     std::optional<Json> find(const std::string& name, const Json& key) const;
-    /// Throws InputError naming a file that cannot be written.
+    /// Throws std::runtime_error naming a file that cannot be written.
     void keep(const std::string& name, const Json& key, const Json& result) const;
 
     /// Where something larger with this key lies, or is to be written: FOLDER/name-<hash of the key>ending.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/write_file.h>
 
-#include <raycontact/error.h>
-
 #include <fstream>
+#include <stdexcept>
 
 #include <unistd.h>
 
@@ -19,7 +18,7 @@ void write_whole(const std::filesystem::path& file, const std::string& bytes) {
     if (out) std::filesystem::rename(draft, file, error);
     if (!out || error) {
         std::filesystem::remove(draft, error);
-        throw InputError(file.string() + ": cannot be written; is the folder writable, is the disk full?");
+        throw std::runtime_error(file.string() + ": cannot be written; is the folder writable, is the disk full?");
     }
 }
 

@@ -6,7 +6,7 @@
 
 namespace raycontact::reproduce {
 
-/// Writes beside and renames: a reader sees the old file or the whole new one. Throws InputError naming the file.
+/// Writes beside and renames: a reader sees the old file or the whole new one. Throws std::runtime_error naming the file.
 void write_whole(const std::filesystem::path& file, const std::string& bytes);
 
 } // namespace raycontact::reproduce

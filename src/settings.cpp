@@ -3,13 +3,19 @@
 
 #include <raycontact/error.h>
 
+#include "real_text.h"
+
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace raycontact {
 
 namespace {
+
+constexpr std::uint32_t most_iterations = 4096; // bounds what one pair can cost; a mesh of a million triangles is some
+                                                // 2000 of them across
 
 constexpr std::array methods{std::pair{Method::standard, std::string_view("standard")},
                              std::pair{Method::iterative, std::string_view("iterative")},
@@ -48,7 +54,7 @@ void need_length(const char* name, const std::optional<double>& metres, bool zer
     if (!metres) return;
     if (!std::isfinite(*metres) || *metres < 0 || (*metres == 0 && !zero_too))
         throw InputError(std::string(name) + " must be a finite length "
-                         + (zero_too ? "of at least 0 metres" : "above 0 metres") + ", not " + std::to_string(*metres));
+                         + (zero_too ? "of at least 0 metres" : "above 0 metres") + ", not " + text_of(*metres));
 }
 
 } // namespace
@@ -58,15 +64,16 @@ void check_settings(const Settings& settings) {
     need_length("culling_distance", settings.culling_distance, true);
     need_length("distance_extension", settings.distance_extension, true);
     if (!(std::isfinite(settings.confidence) && settings.confidence >= 1))
-        throw InputError("confidence must be at least 1 (paper equation 1), not "
-                         + std::to_string(settings.confidence));
+        throw InputError("confidence must be at least 1 (paper equation 1), not " + text_of(settings.confidence));
     if (settings.max_iterations == 0)
         throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
+    if (settings.max_iterations > most_iterations)
+        throw InputError("max_iterations must be at most " + std::to_string(most_iterations)
+                         + ": a walk that is longer goes in circles");
     if (settings.displacement_threshold && settings.distance_extension
         && *settings.distance_extension < *settings.displacement_threshold)
-        throw InputError("distance_extension (" + std::to_string(*settings.distance_extension)
-                         + " m) must not be below displacement_threshold ("
-                         + std::to_string(*settings.displacement_threshold)
+        throw InputError("distance_extension (" + text_of(*settings.distance_extension)
+                         + " m) must not be below displacement_threshold (" + text_of(*settings.displacement_threshold)
                          + " m), or vertices could arrive unseen (paper section 3.1)");
 }
 

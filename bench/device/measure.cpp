@@ -5,6 +5,7 @@
 #include "bench/device/timing_device.h"
 
 #include <bench/peers/clock.h>
+#include <bench/peers/stopped.h>
 
 #include <algorithm>
 #include <numeric>
@@ -121,10 +122,8 @@ void measure(Replayer& replayer, Timings& timings, const Way& way, const DeviceO
     result.kernels = rows_of(timings, way.steps - 1);
 }
 
-} // namespace
-
-DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
-                              const std::function<void(const std::string&)>& tell) {
+void measure_all(const Work& work, const DeviceOptions& options, const std::function<void(const std::string&)>& tell,
+                 DeviceResults& all) {
     std::vector<Way> ways = ways_of(work, options);
     {
         Settings settings;
@@ -135,7 +134,6 @@ DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
             way.cpu_hash = run(cpu, settings_of(way, options), way.steps, [](std::uint32_t) {});
         }
     }
-    DeviceResults all;
     for (const std::string& id : options.devices) {
         tell(id + ": bandwidth");
         OpenDevice opened = open_device(id, options.threads);
@@ -160,6 +158,18 @@ DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
                 timings->on = false;
             }
         }
+    }
+}
+
+} // namespace
+
+DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
+                              const std::function<void(const std::string&)>& tell) {
+    DeviceResults all;
+    try {
+        measure_all(work, options, tell, all);
+    } catch (const Stopped&) {
+        // What was measured before counts.
     }
     return all;
 }

@@ -126,9 +126,9 @@ std::string json(const Machine& machine, const Work& work, const DeviceOptions& 
     return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine, const Work& work,
-                                    const DeviceOptions& options, const DeviceResults& results) {
-    return write_csv(folder, machine, "device", csv(machine, work, options, results));
+void write_results(output::OutFolder& folder, const Machine& machine, const Work& work, const DeviceOptions& options,
+                   const DeviceResults& results) {
+    folder.write(result_name(machine, "device", ".csv"), csv(machine, work, options, results));
 }
 
 } // namespace raycontact::bench

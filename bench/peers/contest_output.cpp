@@ -142,9 +142,9 @@ std::string json(const Machine& machine, std::span<const WorkNote> works, std::s
     return out.dump() + "\n";
 }
 
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const WorkNote> works, std::span<const Result> results) {
-    return write_both(folder, machine, "peers", csv(machine, works, results), chart(works, results));
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const WorkNote> works,
+                   std::span<const Result> results) {
+    write_both(folder, machine, "peers", csv(machine, works, results), chart(works, results));
 }
 
 } // namespace raycontact::bench

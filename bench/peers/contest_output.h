@@ -4,8 +4,8 @@
 #include <bench/peers/contest.h>
 #include <bench/peers/machine.h>
 #include <bench/peers/notes.h>
+#include <output/out_folder.h>
 
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -17,7 +17,7 @@ std::string table(const Machine& machine, std::span<const WorkNote> works, std::
 std::string json(const Machine& machine, std::span<const WorkNote> works, std::span<const Result> results);
 
 /// peers, as write_both() does.
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const WorkNote> works, std::span<const Result> results);
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const WorkNote> works,
+                   std::span<const Result> results);
 
 } // namespace raycontact::bench

@@ -1,33 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/files.h>
 
-#include <raycontact/error.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-
 namespace raycontact::bench {
 
-namespace {
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw InputError(file.string() + ": cannot be written; name another folder with --out");
-}
-
-} // namespace
-
 std::string heading(const Machine& m) {
-    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}\n", m.date, m.cpu, m.cores,
-                       m.governor, m.load, m.compiler, m.commit);
+    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}{}\n", m.date, m.cpu, m.cores,
+                       m.governor, m.load, m.compiler, m.commit, m.cut_short ? "; cut short" : "");
 }
 
 nlohmann::ordered_json machine_json(const Machine& m) {
-    return {{"date", m.date},         {"commit", m.commit},     {"cpu", m.cpu},  {"cores", m.cores},
-            {"compiler", m.compiler}, {"governor", m.governor}, {"load", m.load}};
+    return {{"date", m.date},         {"commit", m.commit},     {"cpu", m.cpu},   {"cores", m.cores},
+            {"compiler", m.compiler}, {"governor", m.governor}, {"load", m.load}, {"cut_short", m.cut_short}};
 }
 
 std::string quoted(const std::string& text) {
@@ -41,22 +27,18 @@ std::string machine_fields(const Machine& m) {
                        m.governor, m.load);
 }
 
-std::filesystem::path write_csv(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                const std::string& csv) {
-    const std::filesystem::path where = folder / machine.slug;
-    std::error_code error;
-    std::filesystem::create_directories(where, error);
-    if (error) throw InputError("--out " + folder.string() + ": cannot be made a folder; name another");
-    std::filesystem::path file = where / (name + "-" + machine.date + ".csv");
-    write_file(file, csv);
-    return file;
+std::filesystem::path results_folder(const std::filesystem::path& folder, const Machine& machine) {
+    return folder / machine.slug;
 }
 
-std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                 const std::string& csv, const std::string& svg) {
-    std::filesystem::path file = write_csv(folder, machine, name, csv);
-    write_file(std::filesystem::path(file).replace_extension(".svg"), svg);
-    return file;
+std::string result_name(const Machine& machine, const std::string& name, const std::string& ending) {
+    return name + "-" + machine.date + ending;
+}
+
+void write_both(output::OutFolder& folder, const Machine& machine, const std::string& name, const std::string& csv,
+                const std::string& svg) {
+    folder.write(result_name(machine, name, ".csv"), csv);
+    folder.write(result_name(machine, name, ".svg"), svg);
 }
 
 } // namespace raycontact::bench

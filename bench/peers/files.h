@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bench/peers/machine.h>
+#include <output/out_folder.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -20,12 +21,12 @@ std::string machine_fields(const Machine& machine);
 /// A field that may hold commas.
 std::string quoted(const std::string& text);
 
-/// DIR/<machine>/<name>-<date>.csv; the folders are made where missing. Returns its path. Throws InputError naming what
-/// cannot be written.
-std::filesystem::path write_csv(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                const std::string& csv);
-/// The same, and a chart: .svg.
-std::filesystem::path write_both(const std::filesystem::path& folder, const Machine& machine, const std::string& name,
-                                 const std::string& csv, const std::string& svg);
+/// DIR/<machine>.
+std::filesystem::path results_folder(const std::filesystem::path& folder, const Machine& machine);
+/// <name>-<date> and the ending.
+std::string result_name(const Machine& machine, const std::string& name, const std::string& ending);
+/// A table, .csv, and a chart, .svg. Throws as OutFolder::write does.
+void write_both(output::OutFolder& folder, const Machine& machine, const std::string& name, const std::string& csv,
+                const std::string& svg);
 
 } // namespace raycontact::bench

@@ -4,6 +4,7 @@
 #include <bench/peers/approaching.h>
 #include <bench/peers/clock.h>
 #include <bench/peers/rolling.h>
+#include <bench/peers/stopped.h>
 #include <bench/peers/work.h>
 #include <scenes/models/model.h>
 
@@ -115,14 +116,12 @@ Work rolling(std::uint32_t triangles, double displacement, const GrowthOptions& 
     return rolling_pairs("rolling", sphere(triangles), "a bumpy sphere", roll);
 }
 
-} // namespace
-
-std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress) {
+void grow(const GrowthOptions& options, const std::function<void(const std::string&)>& progress,
+          std::vector<GrowthRow>& rows) {
     const auto wanted = [&](const char* part) {
         return options.parts.empty()
                || std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
     };
-    std::vector<GrowthRow> rows;
     for (const std::uint32_t triangles : sizes) {
         if (triangles > options.triangles || !wanted("triangles")) break;
         progress("approaching meshes of " + std::to_string(triangles) + " triangles");
@@ -150,6 +149,17 @@ std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<
         progress("avalanche of " + std::to_string(bodies) + " bodies");
         measure(end_of_avalanche(static_cast<std::uint32_t>(bodies), options), "bodies", static_cast<double>(bodies), 3,
                 options, rows);
+    }
+}
+
+} // namespace
+
+std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress) {
+    std::vector<GrowthRow> rows;
+    try {
+        grow(options, progress, rows);
+    } catch (const Stopped&) {
+        // The sizes before count.
     }
     return rows;
 }

@@ -42,6 +42,7 @@ struct GrowthRow {
     double pace = 0; ///< what a pair really moved a step, as a part of the size: the median
 };
 
+/// Where `progress` throws Stopped, the rows before.
 std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress);
 
 /// Of the parts with contacts alike: what grows is the mesh alone.

@@ -102,9 +102,8 @@ std::string json(const Machine& machine, std::span<const GrowthRow> rows) {
     return out.dump() + "\n";
 }
 
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const GrowthRow> rows) {
-    return write_both(folder, machine, "growth", csv(machine, rows), chart(rows));
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const GrowthRow> rows) {
+    write_both(folder, machine, "growth", csv(machine, rows), chart(rows));
 }
 
 } // namespace raycontact::bench

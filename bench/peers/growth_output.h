@@ -3,8 +3,8 @@
 
 #include <bench/peers/growth.h>
 #include <bench/peers/machine.h>
+#include <output/out_folder.h>
 
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -15,7 +15,6 @@ std::string table(const Machine& machine, std::span<const GrowthRow> rows);
 /// One object.
 std::string json(const Machine& machine, std::span<const GrowthRow> rows);
 /// growth, as write_both() does.
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const GrowthRow> rows);
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const GrowthRow> rows);
 
 } // namespace raycontact::bench

@@ -12,10 +12,11 @@ struct Machine {
     std::string commit; ///< of the build, "+changes" where the tree was not clean, "unknown" without git
     std::string cpu;    ///< model name
     std::uint32_t cores = 0;
-    std::string compiler; ///< of the program
-    std::string governor; ///< of the first core; "unknown" where the kernel does not say
-    double load = 0;      ///< average of the last minute, this program included
-    std::string slug;     ///< "amd-epyc-2": names the folder of the results
+    std::string compiler;   ///< of the program
+    std::string governor;   ///< of the first core; "unknown" where the kernel does not say
+    double load = 0;        ///< average of the last minute, this program included
+    std::string slug;       ///< "amd-epyc-2": names the folder of the results
+    bool cut_short = false; ///< a signal ended the benchmark: some of its rows are missing
 };
 
 /// As it is now.

@@ -2,6 +2,7 @@
 #include <bench/peers/seeds.h>
 
 #include <bench/peers/clock.h>
+#include <bench/peers/stopped.h>
 #include <bench/peers/sums.h>
 #include <scenes/avalanche.h>
 #include <scenes/simulation.h>
@@ -46,10 +47,8 @@ std::vector<Watcher> watchers(std::uint64_t seed) {
     return all;
 }
 
-} // namespace
-
-std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function<void(const std::string&)>& progress) {
-    std::vector<SeedRow> rows;
+void sweep(const SeedOptions& options, const std::function<void(const std::string&)>& progress,
+           std::vector<SeedRow>& rows) {
     for (std::uint32_t i = 0; i < options.count; ++i) {
         scenes::AvalancheOptions how;
         how.bodies = options.bodies;
@@ -84,6 +83,17 @@ std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function
             }
         }
         for (const Watcher& one : all) rows.push_back(one.row);
+    }
+}
+
+} // namespace
+
+std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function<void(const std::string&)>& progress) {
+    std::vector<SeedRow> rows;
+    try {
+        sweep(options, progress, rows);
+    } catch (const Stopped&) {
+        // The seeds before count.
     }
     return rows;
 }

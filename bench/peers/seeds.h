@@ -35,6 +35,7 @@ struct SeedOptions {
 };
 
 /// Every avalanche is simulated with the contacts of `certified`; the methods watch it.
+/// Where `progress` throws Stopped, the seeds before.
 std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function<void(const std::string&)>& progress);
 
 /// How much fewer rays `predictive` got wrong than `iterative`: 1 - predictive / iterative.

@@ -184,8 +184,8 @@ std::string json(const Machine& machine, std::span<const WorkNote> works, std::s
     return out.dump() + "\n";
 }
 
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const WorkNote> works, std::span<const ThresholdRow> rows) {
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const WorkNote> works,
+                   std::span<const ThresholdRow> rows) {
     std::string csv = fmt::format("{},work,source,pace_median,pace_most,size_m,method,threshold,steps,pair_steps,"
                                   "us_per_step,wall_us_per_step,{}\n",
                                   machine_columns, work_columns);
@@ -196,11 +196,10 @@ std::filesystem::path write_results(const std::filesystem::path& folder, const M
                            r.work, quoted(note.source), note.pace.median, note.pace.most, r.size, to_string(r.method),
                            fraction_of(r), r.steps, r.pair_steps, r.us, r.wall_us, work_fields(r.sums, r.wrong));
     }
-    return write_both(folder, machine, "sweep-thresholds", csv, chart(works, rows));
+    write_both(folder, machine, "sweep-thresholds", csv, chart(works, rows));
 }
 
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const SeedRow> rows) {
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const SeedRow> rows) {
     std::string csv = fmt::format("{},seed,method,setting,cast_lost_walks,steps,{}\n", machine_columns, work_columns);
     std::vector<report::BarGroup> groups;
     std::set<std::uint64_t> seeds;
@@ -210,9 +209,8 @@ std::filesystem::path write_results(const std::filesystem::path& folder, const M
         if (seeds.insert(r.seed).second) groups.push_back({"seed " + std::to_string(r.seed), {}});
         groups.back().bars.emplace_back(name_of(r), wrong_a_million(r.wrong));
     }
-    return write_both(
-        folder, machine, "sweep-seeds", csv,
-        report::bar_chart("Wrong rays over the avalanche", "a million rays, logarithmic; none: no bar", groups));
+    write_both(folder, machine, "sweep-seeds", csv,
+               report::bar_chart("Wrong rays over the avalanche", "a million rays, logarithmic; none: no bar", groups));
 }
 
 } // namespace raycontact::bench

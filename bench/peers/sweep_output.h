@@ -5,8 +5,8 @@
 #include <bench/peers/notes.h>
 #include <bench/peers/seeds.h>
 #include <bench/peers/thresholds.h>
+#include <output/out_folder.h>
 
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -20,9 +20,8 @@ std::string json(const Machine& machine, std::span<const WorkNote> works, std::s
                  std::span<const SeedRow> seeds);
 
 /// sweep-thresholds and sweep-seeds, as write_both() does.
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const WorkNote> works, std::span<const ThresholdRow> rows);
-std::filesystem::path write_results(const std::filesystem::path& folder, const Machine& machine,
-                                    std::span<const SeedRow> rows);
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const WorkNote> works,
+                   std::span<const ThresholdRow> rows);
+void write_results(output::OutFolder& folder, const Machine& machine, std::span<const SeedRow> rows);
 
 } // namespace raycontact::bench

@@ -60,7 +60,7 @@ struct Settings {
     /// Metres by which `predictive` widens the bounds whose vertices it looks at (paper section 3.1); not below a
     /// displacement threshold that is given, too. Empty: the culling distance.
     std::optional<double> distance_extension;
-    /// Triangles a ray may visit when it is followed from step to step (maxIt of Algorithm 1); at least 1.
+    /// Triangles a ray may visit when it is followed from step to step (maxIt of Algorithm 1); 1 to 4096.
     std::uint32_t max_iterations = 16;
     /// If a walk of `predictive` ends nowhere, its ray is cast in full (counted in StepStats); off, it is given up.
     bool cast_lost_walks = true;

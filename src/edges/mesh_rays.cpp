@@ -21,9 +21,13 @@ const edges::Walks& walks() {
 } // namespace
 
 MeshHit closest_hit(const ShapeData& mesh, const Vec3& origin, const Vec3& direction, double least, double most) {
-    return walks().closest_hit(
-        {mesh.nodes.data(), mesh.triangle_blocks.data(), mesh.block_bounds.data()},
-        {{origin.x, origin.y, origin.z}, {direction.x, direction.y, direction.z}, least, most, mesh.header.tolerance});
+    return walks().closest_hit({mesh.nodes.data(), mesh.triangle_blocks.data(), mesh.block_bounds.data()},
+                               {{origin.x, origin.y, origin.z},
+                                {direction.x, direction.y, direction.z},
+                                least,
+                                most,
+                                mesh.header.tolerance,
+                                mesh.reach});
 }
 
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -40,6 +40,7 @@ struct Ray {
     double origin[3], direction[3]; ///< direction: unit
     double least, most;             ///< hits with least < distance <= most count
     double tolerance;               ///< metres that boxes are looked beyond `most`
+    double reach;                   ///< of the mesh: largest distance of a vertex from its centre
 };
 
 /// Two trees, the pose of the first in the frame of the second, and where the pairs go.

@@ -7,13 +7,12 @@
 #include "mesh/input_file.h"
 #include "mesh/nesting.h"
 #include "mesh/self_intersection.h"
+#include "real_text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <locale>
 #include <numeric>
-#include <sstream>
 #include <vector>
 
 namespace raycontact {
@@ -97,11 +96,8 @@ void check_size(std::span<const Vec3> vertices, const std::string& name) {
     const Vec3 extent = box.high - box.low;
     const double longest = std::max({extent.x, extent.y, extent.z});
     if (longest >= least_size) return;
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << name << ": its box is " << longest << " m long, less than the " << least_size
-         << " m that rays need; scale the mesh";
-    throw InputError(text.str());
+    throw InputError(name + ": its box is " + text_of(longest) + " m long, less than the " + text_of(least_size)
+                     + " m that rays need; scale the mesh");
 }
 
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,

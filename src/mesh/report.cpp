@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "real_text.h"
+
 #include <raycontact/mesh.h>
 
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cstdio>
-
 namespace raycontact {
 namespace {
 
-std::string number(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.6g", value);
-    return text.data();
-}
-
 std::string point(const Vec3& p) {
-    return number(p.x) + " " + number(p.y) + " " + number(p.z);
+    return text_of(p.x) + " " + text_of(p.y) + " " + text_of(p.z);
 }
 
 } // namespace
@@ -38,8 +31,8 @@ std::string to_text(const MeshReport& report) {
     line("self-intersecting  ", yes(report.self_intersecting));
     line("outward            ", yes(report.outward));
     line("components         ", std::to_string(report.components));
-    line("volume             ", report.closed ? number(report.volume) + " m^3" : "none, not closed");
-    line("area               ", number(report.area) + " m^2");
+    line("volume             ", report.closed ? text_of(report.volume) + " m^3" : "none, not closed");
+    line("area               ", text_of(report.area) + " m^2");
     line("box                ", point(report.box_min) + "  to  " + point(report.box_max) + " m");
     if (report.repairs.empty()) line("repairs            ", "none");
     for (const std::string& repair : report.repairs) line("repair             ", repair);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -22,13 +23,14 @@ std::string read_text(const std::filesystem::path& file) {
 
 } // namespace
 
-ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                          const std::string& out_file) {
-    const TemporaryFolder streams;
-    const std::string out = out_file.empty() ? (streams.path() / "out").string() : out_file;
-    const std::string err = (streams.path() / "err").string();
+StartedProgram::StartedProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                               const std::string& out_file, const std::vector<std::string>& launcher)
+    : out_file_(out_file) {
+    const std::string out = out_file.empty() ? (streams_.path() / "out").string() : out_file;
+    const std::string err = (streams_.path() / "err").string();
 
-    std::vector<std::string> words{RAYCONTACT_PROGRAM_FILE};
+    std::vector<std::string> words = launcher;
+    words.emplace_back(RAYCONTACT_PROGRAM_FILE);
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
@@ -41,18 +43,48 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const std::
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-    pid_t child = 0;
-    const int error = posix_spawn(&child, RAYCONTACT_PROGRAM_FILE, &actions, nullptr, argv.data(), environ);
+    posix_spawnattr_t attributes; // a test that runs in the background may have them ignored
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &signals);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    const int error = posix_spawn(&process_, words[0].c_str(), &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw std::runtime_error(std::string("cannot start ") + RAYCONTACT_PROGRAM_FILE);
+    if (error != 0) throw std::runtime_error("cannot start " + words[0]);
+}
 
+StartedProgram::~StartedProgram() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+}
+
+void StartedProgram::send(int signal) const {
+    if (::kill(process_, signal) != 0) throw std::runtime_error("kill failed");
+}
+
+ProgramResult StartedProgram::wait() {
     int state = 0;
-    if (waitpid(child, &state, 0) != child) throw std::runtime_error("waitpid failed");
+    if (waitpid(process_, &state, 0) != process_) throw std::runtime_error("waitpid failed");
+    process_ = -1;
     ProgramResult result;
     result.status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
-    if (out_file.empty()) result.out = read_text(out);
-    result.err = read_text(err);
+    if (out_file_.empty()) result.out = read_text(streams_.path() / "out");
+    result.err = read_text(streams_.path() / "err");
     return result;
+}
+
+ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                          const std::string& out_file) {
+    return StartedProgram(arguments, folder, out_file).wait();
+}
+
+ProgramResult run_limited(const std::string& limit, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder) {
+    return StartedProgram(arguments, folder, {}, {"/bin/sh", "-c", "ulimit " + limit + "; exec \"$0\" \"$@\""}).wait();
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -16,11 +16,6 @@ struct ProgramResult {
     std::string out, err;
 };
 
-/// Runs the built program (no shell) in `folder` and waits. `out_file`: where stdout goes instead of
-/// ProgramResult::out.
-ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                          const std::string& out_file = {});
-
 /// A folder of its own, gone with the test.
 class TemporaryFolder {
 public:
@@ -34,6 +29,32 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+/// The built program (no shell), running in `folder` from the start; killed where nobody waits for it.
+class StartedProgram {
+public:
+    StartedProgram(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                   const std::string& out_file = {}, const std::vector<std::string>& launcher = {});
+    ~StartedProgram();
+    StartedProgram(const StartedProgram&) = delete;
+    StartedProgram& operator=(const StartedProgram&) = delete;
+    void send(int signal) const;
+    ProgramResult wait();
+
+private:
+    TemporaryFolder streams_;
+    std::string out_file_;
+    int process_ = -1;
+};
+
+/// Runs the built program (no shell) in `folder` and waits. `out_file`: where stdout goes instead of
+/// ProgramResult::out.
+ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                          const std::string& out_file = {});
+
+/// The same under a shell's `ulimit` with these words, "-f 16".
+ProgramResult run_limited(const std::string& limit, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder);
 
 /// A cube of edge 1 about the origin: 8 vertices, 12 triangles, closed, outward.
 std::string cube_obj();

@@ -100,6 +100,8 @@ TEST_F(Usage, ThresholdsThatMakeNoSenseNameTheirOption) {
                                                            {"--max-iterations", "0"},
                                                            {"--max-iterations", "-1"},
                                                            {"--max-iterations", "2.5"},
+                                                           {"--max-iterations", "4097"},
+                                                           {"--max-iterations", "4294967295"},
                                                            {"--max-iterations", "99999999999"}};
     for (const auto& [option, value] : refused) {
         expect_refused(run({"collide", "cube.obj", "cube.obj", option, value}), option);
@@ -112,6 +114,67 @@ TEST_F(Usage, ThresholdsThatMakeNoSenseNameTheirOption) {
     expect_refused(result, "--displacement-threshold");
     expect_refused(result, "--distance-extension");
     expect_refused(run({"mesh", "cube.obj", "--confidence", "2"}), "--confidence");
+}
+
+TEST_F(Usage, NumbersAreDecimalAndInTheirRange) {
+    for (const char* option : {"--seed", "--bodies", "--steps"}) {
+        for (const char* value : {"-1", "99999999999999999999", "1e3", "0x10", "2.5", "7 ", " 7", "+7", ""})
+            expect_refused(run({"run", "avalanche", std::string(option) + "=" + value}), option);
+    }
+    for (const char* value : {"-1", "nan", "inf", "0x1p3", "1,5", ""})
+        expect_refused(run({"run", "--mesh", "cube.obj", std::string("--size=") + value}), "--size");
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"collide", "cube.obj", "cube.obj"},
+                                                  {"run", "avalanche"},
+                                                  {"replay", "missing.glb"},
+                                                  {"bench", "growth"}}) {
+        auto all = words;
+        all.emplace_back("--threads=-1");
+        expect_refused(run(all), "--threads");
+    }
+    const auto run_log = [&](const char* bodies, const char* seed) {
+        const auto result = run({"run", "avalanche", "--bodies", bodies, "--seed", seed, "--steps", "03", "--json"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    };
+    EXPECT_EQ(run_log("010", "18446744073709551615")["bodies"], 10);
+    EXPECT_EQ(run_log("10", "18446744073709551615")["seed"], 18446744073709551615u);
+    EXPECT_EQ(run({"collide", "cube.obj", "cube.obj", "--max-iterations", "4096"}).status, 0);
+}
+
+TEST_F(Usage, EmptyNamesAreRefused) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"run", "avalanche"},
+                                                  {"replay", "missing.glb"},
+                                                  {"view", "missing.glb"},
+                                                  {"reproduce"},
+                                                  {"bench", "growth"},
+                                                  {"bench", "device"}}) {
+        auto all = words;
+        all.insert(all.end(), {"--out", ""});
+        expect_refused(run(all), "--out");
+    }
+    expect_refused(run({"run", "avalanche", "--record", ""}), "--record");
+}
+
+TEST_F(Usage, TooLittleMemoryIsOneLine) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer needs terabytes of addresses";
+#endif
+    // Too little to load the program at all is the system's to report; from there on in steps, to where it is enough.
+    bool begun = false, enough = false;
+    for (int megabytes = 16; !enough && megabytes <= 4096; megabytes += 4) {
+        const auto result =
+            run_limited("-v " + std::to_string(1024 * megabytes),
+                        {"run", "avalanche", "--bodies", "64", "--steps", "2", "--json"}, folder_.path());
+        enough = result.status == 0;
+        if (enough || (!begun && result.err.find("error while loading shared libraries") != std::string::npos))
+            continue;
+        begun = true;
+        EXPECT_EQ(result.status, 1) << megabytes << " MB: " << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << megabytes << " MB: " << result.err;
+        EXPECT_TRUE(result.err.starts_with("raycontact: ")) << megabytes << " MB: " << result.err;
+    }
+    EXPECT_TRUE(begun);
+    EXPECT_TRUE(enough);
 }
 
 TEST_F(Usage, DeviceLists) {

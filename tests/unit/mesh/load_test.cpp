@@ -4,12 +4,14 @@
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
+#include <raycontact/settings.h>
 
 #include <gtest/gtest.h>
 #include <tiny_obj_loader.h>
 
 #include <clocale>
 #include <cstdlib>
+#include <locale>
 
 using namespace raycontact;
 using namespace raycontact::test;
@@ -24,6 +26,13 @@ Mesh odd_mesh() {
     mesh.vertices[3].x = 1.0 / 3;
     return mesh;
 }
+
+/// Thousands apart, a comma for a point: what a host program may set for all streams.
+struct Grouped : std::numpunct<char> {
+    char do_thousands_sep() const override { return '.'; }
+    char do_decimal_point() const override { return ','; }
+    std::string do_grouping() const override { return "\3"; }
+};
 
 void expect_equal(const Mesh& loaded, const Mesh& made) {
     EXPECT_EQ(loaded.vertices, made.vertices);
@@ -105,6 +114,45 @@ TEST(Load, NumbersHaveAPointInEveryLocale) {
     std::setlocale(LC_NUMERIC, "C");
     ::unsetenv("LOCPATH");
     EXPECT_EQ(mesh.vertices[0], (Vec3{0, 0, 0}));
+}
+
+TEST(Load, NoTextOfOursFollowsTheHostsLocale) {
+    const TempFolder folder;
+    const auto texts = [&] {
+        Mesh cube = box();
+        for (Vec3& vertex : cube.vertices) vertex = {1234.5 * vertex.x, 0.25 * vertex.y, vertex.z};
+        std::string all = to_text(prepare_mesh(cube).report) + to_json(prepare_mesh(cube).report);
+        Mesh tiny = box();
+        for (Vec3& vertex : tiny.vertices) vertex = {1.5e-9 * vertex.x, 1.5e-9 * vertex.y, 1.5e-9 * vertex.z};
+        try {
+            prepare_mesh(tiny);
+        } catch (const InputError& error) {
+            all += error.what();
+        }
+        Settings settings;
+        settings.confidence = 0.5;
+        try {
+            check_settings(settings);
+        } catch (const InputError& error) {
+            all += error.what();
+        }
+        return all;
+    };
+    const std::string classic = texts();
+    EXPECT_NE(classic.find("0.5"), std::string::npos);
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Grouped));
+    const std::string grouped = texts();
+    std::locale::global(before);
+    EXPECT_EQ(grouped, classic);
+
+    const std::string make = "localedef -i de_DE -f UTF-8 " + (folder.path() / "comma").string();
+    ASSERT_EQ(std::system(make.c_str()), 0) << "on Debian: apt-get install locales";
+    ::setenv("LOCPATH", folder.path().c_str(), 1);
+    ASSERT_NE(std::setlocale(LC_ALL, "comma"), nullptr);
+    const std::string german = texts();
+    std::setlocale(LC_ALL, "C");
+    ::unsetenv("LOCPATH");
+    EXPECT_EQ(german, classic);
 }
 
 TEST(Load, LinesMayEndInCarriageReturnAlone) {

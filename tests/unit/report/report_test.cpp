@@ -9,6 +9,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <locale>
 #include <unistd.h>
 
 using namespace raycontact;
@@ -67,6 +68,12 @@ std::string bytes_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
+void write_report(const std::filesystem::path& folder, const scenes::RunLog& log, const Comparison& comparison = {}) {
+    output::OutFolder out(folder);
+    write_report(out, log, comparison);
+    out.keep();
+}
+
 class Report : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -93,6 +100,34 @@ TEST_F(Report, IsOneFileWithTheNumbersOfTheLog) {
     for (const std::string attribute : {" src=\"", " href=\""})
         for (std::size_t at = 0; (at = html.find(attribute, at)) != std::string::npos; ++at)
             EXPECT_EQ(html.substr(at + attribute.size(), 5), "data:");
+}
+
+/// What a host program may set for all streams.
+struct Grouped : std::numpunct<char> {
+    char do_thousands_sep() const override { return '.'; }
+    char do_decimal_point() const override { return ','; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_F(Report, DoesNotFollowTheHostsLocale) {
+    scenes::RunLog log = small_log();
+    log.frames.resize(1);
+    write_report(folder_ / "classic", log);
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Grouped));
+    write_report(folder_ / "grouped", log);
+    std::locale::global(before);
+    EXPECT_EQ(bytes_of(folder_ / "grouped" / "report.html"), bytes_of(folder_ / "classic" / "report.html"));
+}
+
+TEST_F(Report, ACutRunSaysSo) {
+    scenes::RunLog log = small_log();
+    log.frames.resize(1);
+    log.summary_json = R"({"bodies": 9, "steps": 20, "steps_planned": 600, "cut_short": true})";
+    write_report(folder_, log);
+    const std::string html = bytes_of(folder_ / "report.html");
+    EXPECT_NE(html.find("(cut short)"), std::string::npos);
+    EXPECT_NE(html.find("Cut short: 20 of 600 steps were done."), std::string::npos);
+    EXPECT_EQ(html.find("steps_planned"), std::string::npos);
 }
 
 TEST_F(Report, PicturesDecodeAndShowSomething) {
