@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -77,6 +78,13 @@ std::string cell(const Stack& stack, const Row& row) {
 
 int run_all(const Options& options) {
     const rc::bench::Machine machine = rc::bench::this_machine();
+    // What cannot be written is known before the work.
+    std::optional<rc::output::OutFolder> folder;
+    const std::string name = rc::bench::result_name(machine, "stacks", ".csv");
+    if (!options.out.empty()) {
+        folder.emplace(rc::bench::results_folder(options.out, machine));
+        folder->claim(name);
+    }
     std::printf("%s\n%g s; drift in parts of a body's size, turn in degrees; of plates: sunk, overlap\n",
                 rc::bench::heading(machine).c_str(), options.seconds);
     std::printf("%-14s %-6s", "stack", "ground");
@@ -109,7 +117,10 @@ int run_all(const Options& options) {
             std::printf("\n");
         }
     }
-    if (!options.out.empty()) std::printf("%s\n", rc::bench::write_csv(options.out, machine, "stacks", csv).c_str());
+    if (folder) {
+        folder->write(name, csv);
+        for (const auto& file : folder->keep()) std::printf("%s\n", file.c_str());
+    }
     return 0;
 }
 

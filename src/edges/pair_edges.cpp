@@ -118,7 +118,9 @@ void PairEdges::join_crossings(const SourceMesh& placed, std::span<const Crossin
         const Crossing& c = crossings[i];
         for (const std::uint32_t own : {c.edge / 3, placed.source.neighbours[c.edge / 3][c.edge % 3]}) {
             if (own == NONE) continue;
-            const std::uint64_t first = source_first ? own : c.face, second = source_first ? c.face : own;
+            const std::uint64_t of_source = placed.source.flat_faces[own], of_target = placed.target.flat_faces[c.face];
+            const std::uint64_t first = source_first ? of_source : of_target;
+            const std::uint64_t second = source_first ? of_target : of_source;
             regions_.add_key(first << 32 | second, first_node + static_cast<std::uint32_t>(i));
         }
     }

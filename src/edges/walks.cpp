@@ -178,36 +178,43 @@ DEVICE uint boxes_in_box(const float (*bounds)[lanes], const float* box) {
     return pack_sixteen(in);
 }
 
+constexpr uint kept_blocks = 8;
+
 /// Walks both trees at once.
 struct Walk {
     TwoTrees& trees;
-    Placed& first;      // the block placed last
+    Placed* kept;       // blocks placed before, each in the place of its number
     float size[9] = {}; // |rotation|
     uint count = 0;
 
-    // The box of a child of the first body's tree, seen from the second, grown.
-    void box_of(const kernels::Node& node, int k, float* box) const {
-        float middle[3], half[3];
-        for (int i = 0; i < 3; ++i) {
-            middle[i] = 0.5f * (node.bounds[i][k] + node.bounds[3 + i][k]);
-            half[i] = 0.5f * (node.bounds[3 + i][k] - node.bounds[i][k]);
-        }
+    // The boxes of a node of the first body's tree, seen from the second, grown.
+    void boxes_of(const kernels::Node& node, float (*boxes)[lanes]) const {
         for (int i = 0; i < 3; ++i) {
             const float *r = trees.rotation + 3 * i, *s = size + 3 * i;
-            const float at = r[0] * middle[0] + r[1] * middle[1] + r[2] * middle[2] + trees.translation[i];
-            const float by = s[0] * half[0] + s[1] * half[1] + s[2] * half[2] + trees.apart;
-            box[i] = at - by;
-            box[3 + i] = at + by;
+            const float move = trees.translation[i], grow = trees.apart;
+            FOR_LANES(k, lanes) {
+                const float x = 0.5f * (node.bounds[0][k] + node.bounds[3][k]);
+                const float y = 0.5f * (node.bounds[1][k] + node.bounds[4][k]);
+                const float z = 0.5f * (node.bounds[2][k] + node.bounds[5][k]);
+                const float half_x = 0.5f * (node.bounds[3][k] - node.bounds[0][k]);
+                const float half_y = 0.5f * (node.bounds[4][k] - node.bounds[1][k]);
+                const float half_z = 0.5f * (node.bounds[5][k] - node.bounds[2][k]);
+                const float at = r[0] * x + r[1] * y + r[2] * z + move;
+                const float by = s[0] * half_x + s[1] * half_y + s[2] * half_z + grow;
+                boxes[i][k] = at - by;
+                boxes[3 + i][k] = at + by;
+            }
         }
     }
 
     // Empty lanes of a node hold inverted boxes, which meet nothing.
     void both(uint first_node, uint second_node) {
         const kernels::Node &a = trees.first.nodes[first_node], &b = trees.second.nodes[second_node];
+        float boxes[6][lanes], box[6];
+        boxes_of(a, boxes);
         for (int k = 0; k < lanes; ++k) {
             if (a.child[k] == NONE) continue;
-            float box[6];
-            box_of(a, k, box);
+            for (int i = 0; i < 6; ++i) box[i] = boxes[i][k];
             for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
                 pair(a.child[k], box, b.child[__builtin_ctz(in)]);
         }
@@ -232,10 +239,11 @@ struct Walk {
     // A node of the first body against a block of the second.
     void under_first(uint first_node, uint block) {
         const kernels::Node& a = trees.first.nodes[first_node];
+        float boxes[6][lanes], box[6];
+        boxes_of(a, boxes);
         for (int k = 0; k < lanes; ++k) {
             if (a.child[k] == NONE) continue;
-            float box[6];
-            box_of(a, k, box);
+            for (int i = 0; i < 6; ++i) box[i] = boxes[i][k];
             if (boxes_in_box(trees.second.bounds[block].box, box) == 0) continue;
             if ((a.child[k] & LEAF) != 0)
                 leaves(a.child[k] & ~LEAF, box, block);
@@ -250,6 +258,7 @@ struct Walk {
         const uint near_first = boxes_in_box(bounds.box, first_box);
         if (near_first == 0) return;
         const kernels::TriangleBlock &a = trees.first.blocks[first_block], &b = trees.second.blocks[second_block];
+        Placed& first = kept[first_block % kept_blocks];
         if (first.block != first_block) {
             first.block = first_block;
             place(a, trees.first.bounds[first_block], trees.rotation, trees.translation, trees.apart, first);
@@ -267,7 +276,7 @@ struct Walk {
             float box[6];
             for (int i = 0; i < 6; ++i) box[i] = first.bounds.box[i][k];
             uint in = boxes_in_box(bounds.box, box);
-            if (in != 0) in &= ~apart_by_plane(k, b, bounds);
+            if (in != 0) in &= ~apart_by_plane(first, k, b, bounds);
             for (; in != 0; in &= in - 1) {
                 if (count == trees.room) flush();
                 trees.pairs[count++] = {a.triangle[k], b.triangle[__builtin_ctz(in)]};
@@ -277,7 +286,7 @@ struct Walk {
 
     // A bit for each triangle of the second block that lies on one side of the plane of the first's k-th, or the
     // other way round.
-    uint apart_by_plane(int k, const kernels::TriangleBlock& b, const BlockBounds& bounds) const {
+    uint apart_by_plane(const Placed& first, int k, const kernels::TriangleBlock& b, const BlockBounds& bounds) const {
         const float apart = trees.apart;
         const float x = first.bounds.plane[0][k], y = first.bounds.plane[1][k], z = first.bounds.plane[2][k];
         const float height = first.bounds.plane[3][k];
@@ -308,9 +317,9 @@ struct Walk {
 };
 
 void near_triangles(TwoTrees& trees) {
-    Placed first;
-    first.block = NONE;
-    Walk walk{trees, first};
+    Placed kept[kept_blocks];
+    for (Placed& placed : kept) placed.block = NONE;
+    Walk walk{trees, kept};
     for (int i = 0; i < 9; ++i) walk.size[i] = __builtin_fabsf(trees.rotation[i]);
     walk.both(0, 0);
     walk.flush();

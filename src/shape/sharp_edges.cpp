@@ -16,16 +16,22 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
     const auto& triangles = shape.mesh.triangles;
     shape.sharp_edges.assign(triangles.size(), 0);
     shape.vertex_triangle.assign(shape.points.size(), Shape::no_triangle);
+    DisjointSets flat;
+    flat.reset(triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t c = 0; c < 3; ++c) {
             std::uint32_t& first = shape.vertex_triangle[triangles[t][c]];
             if (first == Shape::no_triangle) first = t;
             const std::uint32_t across = shape.neighbours[t][c];
-            if (across != Shape::no_triangle && (across < t || dot(normals[t], normals[across]) > flat_cosine))
-                continue;
-            shape.sharp_edges[t] = static_cast<std::uint8_t>(shape.sharp_edges[t] | 1u << c);
+            if (across != Shape::no_triangle && across < t) continue;
+            if (across != Shape::no_triangle && dot(normals[t], normals[across]) > flat_cosine)
+                flat.join(t, across);
+            else
+                shape.sharp_edges[t] = static_cast<std::uint8_t>(shape.sharp_edges[t] | 1u << c);
         }
     }
+    shape.flat_faces.resize(triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) shape.flat_faces[t] = flat.of(t);
 }
 
 void find_components(ShapeData& shape) {

@@ -121,7 +121,8 @@ void expect_stands(const Stack& stack, Ground ground, double seconds, const Stac
 }
 
 /// Friction along directions that do not follow the sliding: what a slope needs. With Bullet's default, two wedges
-/// creep on each other, its own convex hulls most.
+/// creep on each other, its own convex hulls most, and a cube that stands on the corner of an open box creeps by 1 % of
+/// its size a second (docs/limits.md).
 constexpr StackSolver steady{50, 0.002, true};
 
 TEST(StacksApart, ByThreePercentAndNoMore) {
@@ -140,7 +141,7 @@ class Stacks : public testing::TestWithParam<Ground> {};
 
 TEST_P(Stacks, Stand) {
     for (const Stack& stack : all_stacks())
-        expect_stands(stack, GetParam(), 5, stack.name == "wedges" ? steady : StackSolver{});
+        expect_stands(stack, GetParam(), 5, stack.name == "wedges" || stack.name == "corner" ? steady : StackSolver{});
 }
 
 TEST_P(Stacks, LongStandOnASteadySolver) {

@@ -541,11 +541,21 @@ public:
     std::vector<Piece> pieces;
 };
 
-// Crossings that share a face of each body.
+// Names the flat face of each triangle.
+std::vector<std::uint32_t> flat_faces(const OneWay& side) {
+    Graph graph;
+    for (std::size_t t = 0; t < side.source.triangles.size(); ++t) graph.add();
+    for (const Edge& edge : side.edges)
+        if (!edge.sharp) graph.join(edge.faces[0], edge.faces[1]);
+    return graph.flood();
+}
+
+// Crossings that share a flat face of each body.
 void join_curves(const OneWay& of_a, const OneWay& of_b, Graph& graph) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first; // by faces of a and of b
+    const std::vector<std::uint32_t> flat_a = flat_faces(of_a), flat_b = flat_faces(of_b);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first; // by flat faces of a and of b
     const auto join = [&](std::uint32_t face_a, std::uint32_t face_b, std::uint32_t node) {
-        const auto [at, fresh] = first.try_emplace({face_a, face_b}, node);
+        const auto [at, fresh] = first.try_emplace({flat_a[face_a], flat_b[face_b]}, node);
         if (!fresh) graph.join(at->second, node);
     };
     for (std::size_t e = 0; e < of_a.edges.size(); ++e)
