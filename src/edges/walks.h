@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/host_kernels.h"
+#include "shape/block_bounds.h"
 
 #include <limits>
 #include <span>
@@ -21,13 +21,6 @@ struct TrianglePair {
 };
 
 namespace edges {
-
-/// Boxes (lower x y z, upper x y z) and planes (unit normal, height) of a block's triangles. Empty lanes hold NaN. A
-/// needle's plane is all 0: its normal would not be accurate.
-struct BlockBounds {
-    float box[6][TRIANGLE_LANES];
-    float plane[4][TRIANGLE_LANES];
-};
 
 /// A mesh's tree, without anything that code for one instruction set must not share with another.
 struct Tree {

@@ -17,7 +17,7 @@ constexpr double least_sine = 1e-8;
 
 void find_block_bounds(ShapeData& shape) {
     for (const kernels::TriangleBlock& block : shape.triangle_blocks) {
-        edges::BlockBounds& bounds = shape.block_bounds.emplace_back();
+        BlockBounds& bounds = shape.block_bounds.emplace_back();
         for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) {
             const std::uint32_t t = block.triangle[k];
             constexpr float nan = std::numeric_limits<float>::quiet_NaN();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/walks.h"
+#include "shape/block_bounds.h"
 
 #include <raycontact/shape.h>
 
@@ -36,7 +36,7 @@ struct ShapeData {
     double reach = 0; ///< largest distance of a vertex from centre, metres
 
     std::vector<kernels::TriangleBlock> triangle_blocks;
-    std::vector<edges::BlockBounds> block_bounds; ///< of the triangle blocks
+    std::vector<BlockBounds> block_bounds; ///< of the triangle blocks
     std::vector<kernels::Node> nodes;
     std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;
