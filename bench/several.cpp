@@ -28,7 +28,7 @@ struct Times {
 
 Times replay(const std::string& file, const rc::Settings& settings) {
     rc::recording::Reader reader(file);
-    const rc::recording::Replay result = rc::recording::replay(reader, {settings, false, {}});
+    const rc::recording::Replay result = rc::recording::replay(reader, {settings, false, {}, {}});
     Times times;
     double pairs = 0;
     for (const rc::recording::ReplayStep& step : result.steps) {

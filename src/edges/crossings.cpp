@@ -23,16 +23,20 @@ void find_crossings(const SourceMesh& placed, std::span<const TrianglePair> near
     const ShapeData &source = placed.source, &target = placed.target;
     const auto begin = static_cast<std::ptrdiff_t>(found.size());
     std::uint32_t known = NONE;
+    unsigned asked = 0; // a bit for each of its edges
     std::array<Vec3, 3> corners;
     for (const TrianglePair& pair : near) {
         const std::uint32_t own = source_first ? pair.first : pair.second,
                             face = source_first ? pair.second : pair.first;
-        const unsigned sharp = source.sharp_edges[own];
-        if (sharp == 0) continue;
         if (own != known) {
-            for (std::size_t k = 0; k < 3; ++k) corners[k] = placed.vertex(source.mesh.triangles[own][k]);
             known = own;
+            asked = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                if ((source.sharp_edges[own] >> k & 1u) != 0 && source.edge_span(own, k) > placed.span)
+                    asked |= 1u << k;
+            for (std::size_t k = 0; k < 3 && asked != 0; ++k) corners[k] = placed.vertex(source.mesh.triangles[own][k]);
         }
+        if (asked == 0) continue;
         const auto& index = target.mesh.triangles[face];
         const Vec3 v0 = target.point(index[0]), v1 = target.point(index[1]), v2 = target.point(index[2]);
         const Vec3 normal = cross(v1 - v0, v2 - v0);
@@ -40,7 +44,7 @@ void find_crossings(const SourceMesh& placed, std::span<const TrianglePair> near
         for (std::size_t k = 0; k < 3; ++k) above[k] = dot(corners[k] - v0, normal);
         for (std::size_t k = 0; k < 3; ++k) {
             const double from = above[k], to = above[(k + 1) % 3];
-            if ((sharp >> k & 1u) == 0 || (from < 0) == (to < 0)) continue;
+            if ((asked >> k & 1u) == 0 || (from < 0) == (to < 0)) continue;
             const bool leaves = from < 0;
             const Vec3 origin = corners[k], along = corners[(k + 1) % 3] - origin;
             const Vec3 a = v0 - origin, b = v1 - origin, c = v2 - origin;

@@ -83,13 +83,14 @@ void EdgeStage::find(Block& block, Direction direction, const SlotPair& pair, st
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
     const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
     if (a.shape->data().header.closed == 0 && b.shape->data().header.closed == 0) return;
-    const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
+    const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
+    const std::array<SourceMesh, 2> placed{SourceMesh(a, b, in_contact), SourceMesh(b, a, in_contact)};
     block.near.clear();
     block.found.clear();
     find_near_triangles(placed[0], 0, block.near);
     const bool crosses = block.edges.find(placed, block.near, vertices, block.found);
     // Surfaces that do not cross are apart, or one is inside the other.
-    for (std::size_t side = 0; side < 2 && !crosses && vertices[0].empty() && vertices[1].empty(); ++side) {
+    for (std::size_t side = 0; side < 2 && !crosses && !in_contact; ++side) {
         if (placed[side].target.header.closed == 0 || !has_part_inside(placed[side])) continue;
         if (const auto inside = contact_of_inside(placed[side], static_cast<VertexBody>(side)))
             block.found.push_back(*inside);

@@ -11,14 +11,18 @@ namespace raycontact {
 /// moved inwards by a hair and shaken by a hundredth of it, so that aligned faces, shared vertices and coincident edges
 /// decide nothing (docs/edges.md).
 struct SourceMesh {
+    static constexpr double small_face = 0.1; ///< longest edge of a small face, in diagonals of the smaller body
     const ShapeData& source;
     const ShapeData& target;
     Pose pose;   ///< of the source's centred frame in the target's
     double hair; ///< metres
+    float span;  ///< metres; only edges whose edge_span() is longer are asked
 
-    SourceMesh(const PlacedBody& from, const PlacedBody& to)
+    /// in_contact: a vertex of either body is. Then edges between small faces are not asked.
+    SourceMesh(const PlacedBody& from, const PlacedBody& to, bool in_contact)
         : source(from.shape->data()), target(to.shape->data()), pose(relative_pose(to.centred, from.centred)),
-          hair(1e-7 * smaller_size(from, to)) {}
+          hair(1e-7 * smaller_size(from, to)),
+          span(in_contact ? static_cast<float>(small_face * smaller_size(from, to)) : 0) {}
 
     Vec3 turned(const Vec3& v) const {
         const auto& r = pose.rotation;

@@ -178,6 +178,14 @@ DEVICE uint boxes_in_box(const float (*bounds)[lanes], const float* box) {
     return pack_sixteen(in);
 }
 
+DEVICE uint longer_than(const float* lengths, float length) {
+    int longer[lanes];
+    FOR_LANES(k, lanes) {
+        longer[k] = -static_cast<int>(lengths[k] > length);
+    }
+    return pack_sixteen(longer);
+}
+
 constexpr uint kept_blocks = 8;
 
 /// Walks both trees at once.
@@ -255,7 +263,11 @@ struct Walk {
     // first_box: that of the first block, in the frame of the second.
     void leaves(uint first_block, const float* first_box, uint second_block) {
         const BlockBounds& bounds = trees.second.bounds[second_block];
-        const uint near_first = boxes_in_box(bounds.box, first_box);
+        const uint asked_first = longer_than(trees.first.bounds[first_block].span, trees.span);
+        const uint asked_second = longer_than(bounds.span, trees.span);
+        if ((asked_first | asked_second) == 0) return;
+        uint near_first = boxes_in_box(bounds.box, first_box);
+        if (asked_first == 0) near_first &= asked_second;
         if (near_first == 0) return;
         const kernels::TriangleBlock &a = trees.first.blocks[first_block], &b = trees.second.blocks[second_block];
         Placed& first = kept[first_block % kept_blocks];
@@ -276,6 +288,7 @@ struct Walk {
             float box[6];
             for (int i = 0; i < 6; ++i) box[i] = first.bounds.box[i][k];
             uint in = boxes_in_box(bounds.box, box);
+            if ((asked_first >> k & 1u) == 0) in &= asked_second;
             if (in != 0) in &= ~apart_by_plane(first, k, b, bounds);
             for (; in != 0; in &= in - 1) {
                 if (count == trees.room) flush();

@@ -40,6 +40,7 @@ struct Ray {
 struct TwoTrees {
     Tree first, second;
     float rotation[9], translation[3];
+    float span;          ///< pairs of triangles neither of which has a longer BlockBounds::span are left out; metres
     float apart;         ///< triangles that a plane or a box shows to be farther apart than this are left out; metres
     TrianglePair* pairs; ///< a buffer, and what to do when it is full
     std::uint32_t room;

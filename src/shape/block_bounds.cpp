@@ -32,6 +32,10 @@ void find_block_bounds(ShapeData& shape) {
                 bounds.plane[i][k] = static_cast<float>(scale * axis(normal, i));
             }
             bounds.plane[3][k] = static_cast<float>(scale * dot(normal, a));
+            bounds.span[k] = 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                if (t != NONE && (shape.sharp_edges[t] >> c & 1u) != 0)
+                    bounds.span[k] = std::max(bounds.span[k], shape.edge_span(t, c));
         }
     }
 }

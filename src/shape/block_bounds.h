@@ -10,6 +10,7 @@ namespace raycontact {
 struct BlockBounds {
     float box[6][TRIANGLE_LANES];
     float plane[4][TRIANGLE_LANES];
+    float span[TRIANGLE_LANES]; ///< the longest edge_span() of the triangle's own sharp edges, 0 without any
 };
 
 } // namespace raycontact

@@ -5,6 +5,7 @@
 
 #include <raycontact/shape.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace raycontact {
@@ -25,8 +26,9 @@ struct ShapeData {
     /// lowest triangle.
     std::vector<std::uint8_t> sharp_edges;
     std::vector<std::uint32_t>
-        flat_faces;               ///< per triangle, the lowest of its flat face: those joined by edges not sharp
-    std::vector<Vec3> hair_moves; ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
+        flat_faces;                ///< per triangle, the lowest of its flat face: those joined by edges not sharp
+    std::vector<float> face_spans; ///< per triangle, its longest edge, metres
+    std::vector<Vec3> hair_moves;  ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
     std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
@@ -47,6 +49,11 @@ struct ShapeData {
     kernels::ShapeHeader header{};
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }
+    /// The longest edge of the faces at an edge, metres.
+    float edge_span(std::uint32_t triangle, std::size_t k) const {
+        const std::uint32_t across = neighbours[triangle][k];
+        return across == NONE ? face_spans[triangle] : std::max(face_spans[triangle], face_spans[across]);
+    }
     Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }
 };
 

@@ -142,10 +142,21 @@ public:
     Vec3 to_source(const Vec3& p) const { return rotate_back(source_pose, rotate(target_pose, p) - shift_); }
     Vec3 to_world(const Vec3& p) const { return target_pose.translation + rotate(target_pose, target.centre + p); }
 
-    void cross_all() {
+    bool is_small(std::uint32_t face) const {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto& t = source.triangles[face];
+            longest = std::max(longest, length(source.vertices[t[(k + 1) % 3]] - source.vertices[t[k]]));
+        }
+        return longest <= 0.1 * small;
+    }
+
+    // touching: a vertex of the pair is in contact.
+    void cross_all(bool touching) {
         for (const Edge& edge : edges) {
             auto& list = crossings.emplace_back();
             if (!target.closed || !edge.sharp) continue;
+            if (touching && is_small(edge.faces[0]) && (edge.faces[1] == none || is_small(edge.faces[1]))) continue;
             const Vec3 p = vertices[edge.from], q = vertices[edge.to];
             for (std::uint32_t f = 0; f < target.triangles.size(); ++f) {
                 const auto& t = target.triangles[f];
@@ -575,8 +586,9 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
     OneWay of_a(a, pose_a, b, pose_b);
     OneWay of_b(b, pose_b, a, pose_a);
     Graph graph;
+    const bool touching = of_a.in_contact() || of_b.in_contact();
     for (OneWay* side : {&of_a, &of_b}) {
-        side->cross_all();
+        side->cross_all(touching);
         side->add_nodes(graph);
         side->cut_pieces();
         side->join_regions(graph);
