@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/collide.h"
 
+#include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/pairs_file.h"
 
@@ -33,9 +34,12 @@ struct CollideOptions {
 /// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
 class ShapeCache {
 public:
+    explicit ShapeCache(const Settings& settings) : settings_(settings) {}
     std::shared_ptr<const Shape> get(const PairBody& body) {
         auto& shape = shapes_[{body.file.string(), body.scale}];
-        if (!shape) shape = make(body);
+        if (shape) return shape;
+        shape = make(body);
+        warn_if_coarse(*shape, settings_);
         return shape;
     }
 
@@ -55,6 +59,7 @@ private:
         }
     }
 
+    const Settings& settings_;
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
 
@@ -139,7 +144,7 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
 void collide(const CollideOptions& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
-    ShapeCache shapes;
+    ShapeCache shapes(options.settings);
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run.h"
 
+#include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
 #include "cli/out_option.h"
@@ -25,6 +26,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -174,6 +176,10 @@ void run(const RunOptions& options) {
     if (!options.out.empty()) described.frames = raycontact::report::film_frames;
     Simulation scene(std::move(described));
     const SceneDescription& description = scene.description();
+    std::set<std::uint32_t> moving;
+    for (const BodyStart& body : description.bodies)
+        if (body.density > 0) moving.insert(body.shape);
+    for (const std::uint32_t shape : moving) warn_if_coarse(*description.shapes[shape].shape, options.settings);
     RunRecorder recorder(std::move(outputs.recording), scene);
     Progress progress(description.name, description.steps);
     listen_for_stop();

@@ -37,6 +37,8 @@ public:
     Vec3 box_min() const; ///< body frame
     Vec3 box_max() const;
     double radius() const; ///< largest distance of a vertex from the body origin, metres
+    /// Metres. With Features::vertices it is what can pass through another mesh unseen, between two vertices.
+    double longest_edge() const;
 
     /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero
     /// where the triangles around a vertex cancel out: such a vertex casts no ray.

@@ -131,6 +131,9 @@ Vec3 Shape::box_max() const {
 double Shape::radius() const {
     return data_->radius;
 }
+double Shape::longest_edge() const {
+    return *std::max_element(data_->face_spans.begin(), data_->face_spans.end());
+}
 std::span<const Vec3> Shape::vertex_normals() const {
     return data_->vertex_normals;
 }

@@ -50,7 +50,8 @@ void expect_vector(const json& vector, double x, double y, double z) {
 TEST_F(Collide, TwoCorners) {
     const auto result = run(json::array({corner_pair()}));
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(result.err, "");
+    EXPECT_NE(result.err.find("cube.obj: coarse for --features vertices"), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
     const auto lines = json_lines(result.out);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "contacts"}));
@@ -83,7 +84,9 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
     json stacked{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 0.99)}};
     json touching{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 1)}};
     const json pairs = json::array({inside, stacked, touching});
-    const auto lines = json_lines(run(pairs, {"--json", "--features", "edges"}).out);
+    const auto result = run(pairs, {"--json", "--features", "edges"});
+    EXPECT_EQ(result.err, "");
+    const auto lines = json_lines(result.out);
     ASSERT_EQ(lines.size(), 3u);
     ASSERT_EQ(lines[0]["contacts"].size(), 1u);
     EXPECT_EQ(lines[0]["contacts"][0]["feature"], "inside");
