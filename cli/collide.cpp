@@ -34,13 +34,13 @@ struct CollideOptions {
 /// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
 class ShapeCache {
 public:
-    explicit ShapeCache(const Settings& settings) : settings_(settings) {}
     std::shared_ptr<const Shape> get(const PairBody& body) {
         auto& shape = shapes_[{body.file.string(), body.scale}];
-        if (shape) return shape;
-        shape = make(body);
-        warn_if_coarse(*shape, settings_);
+        if (!shape) shape = make(body);
         return shape;
+    }
+    void warn(const Settings& settings) const {
+        for (const auto& [body, shape] : shapes_) warn_if_coarse(*shape, settings);
     }
 
 private:
@@ -59,7 +59,6 @@ private:
         }
     }
 
-    const Settings& settings_;
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
 
@@ -144,11 +143,12 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
 void collide(const CollideOptions& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
-    ShapeCache shapes(options.settings);
+    ShapeCache shapes;
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }
     const Scene checks_the_settings(options.settings);
+    shapes.warn(options.settings);
     constexpr std::size_t batch = 4096;
     for (std::size_t first = 0; first < pairs.size(); first += batch) {
         const std::size_t count = std::min(batch, pairs.size() - first);
