@@ -2,7 +2,7 @@
 // Stacks of coarse meshes in a Bullet world that differs by one line: RayContact with edges and with vertices alone,
 // GImpact, and btBoxShape (btConvexHullShape for wedges) where all bodies are convex. Prints how far each has come from
 // where it was put. Usage: raycontact_bench_stacks [--seconds S] [--only PART OF A NAME] [--ground G] [--finder F]
-// [--out DIR] [--watch]
+// [--out DIR] [--watch] [--iterations N] [--slop METRES] [--two]
 #include <bench/peers/files.h>
 #include <scenes/stacks/stack_world.h>
 #include <scenes/stacks/verdict.h>
