@@ -85,7 +85,7 @@ void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> 
         const std::span<const Crossing> own = crossings.subspan(begin, end - begin);
         const auto [start, stop] = ends_of(placed.source, edge);
         const Vec3 origin = placed.vertex(start), along = placed.vertex(stop) - origin;
-        const double most = std::min(most_pull, pull * 1e7 * placed.hair / length(along));
+        const double most = std::min(most_pull, pull * placed.size / length(along));
         // The piece before crossing k, if it is inside.
         for (std::size_t k = 0; k <= own.size(); ++k) {
             const bool enters = k > 0, leaves = k < own.size();

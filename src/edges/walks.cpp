@@ -39,9 +39,9 @@ DEVICE uint children_on_ray(const kernels::Node& node, const float* o, const flo
     return pack_sixteen(in);
 }
 
-// A bit for each triangle that the ray's line passes within the rounding of floats: all that meet() can accept. S: the
-// largest distance of a corner from the middle of the mesh and of the origin from there, added: each of the volumes is
-// wrong by less than 2e-6 S^2.
+// A bit for each triangle that the ray's line passes within the rounding of floats: all that meet() can accept, and
+// some more. error: with S, the farthest corner's distance from the mesh's centre and the origin's added, a volume in
+// float is wrong by less than 2e-6 S^2; twice that serves.
 DEVICE uint triangles_on_line(const kernels::TriangleBlock& block, const float* origin, const float* direction,
                               float error) {
     const float ox = origin[0], oy = origin[1], oz = origin[2];

@@ -2,6 +2,7 @@
 // Pairs by hand, with edges: each with both casters, both orders of the bodies, at the origin and 10 km away, asked
 // once and as the last of 20 steps of a scene that moves there, by `standard` and `certified`.
 #include "exact/random_solids.h"
+#include "exact/words.h"
 #include "property/shapes.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -62,12 +63,7 @@ std::string difference(const std::vector<Contact>& p, const std::vector<Contact>
     std::string text = ", " + std::to_string(p.size()) + " and " + std::to_string(q.size());
     for (const auto* list : {&p, &q}) {
         if (i >= list->size()) continue;
-        const Contact& c = (*list)[i];
-        char part[200];
-        std::snprintf(part, sizeof part, "; %s triangle %u normal (%g, %g, %g) depth %.9g at (%.17g, %.17g, %.17g)",
-                      contact_key(c).c_str(), c.triangle, double(c.normal[0]), double(c.normal[1]), double(c.normal[2]),
-                      double(c.depth), c.point.x, c.point.y, c.point.z);
-        text += part;
+        text += "; " + words_of((*list)[i]);
     }
     return text;
 }

@@ -3,6 +3,7 @@
 // three thousand unless told.
 #include "exact/oracle.h"
 #include "exact/random_solids.h"
+#include "exact/words.h"
 #include "property/ray_sources.h"
 #include "property/shapes.h"
 #include "reference/random.h"
@@ -141,13 +142,7 @@ std::string words(const PosedPair& pair, std::size_t number) {
 
 std::string words(std::span<const Contact> contacts) {
     std::string text;
-    for (const Contact& c : contacts.first(std::min<std::size_t>(contacts.size(), 12))) {
-        char part[200];
-        std::snprintf(part, sizeof part, "\n  %s triangle %u normal (%g, %g, %g) depth %g at (%.9g, %.9g, %.9g)",
-                      contact_key(c).c_str(), c.triangle, double(c.normal[0]), double(c.normal[1]), double(c.normal[2]),
-                      double(c.depth), c.point.x, c.point.y, c.point.z);
-        text += part;
-    }
+    for (const Contact& c : contacts.first(std::min<std::size_t>(contacts.size(), 12))) text += "\n  " + words_of(c);
     return text;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/compare.h"
 
+#include "reference/text.h"
 #include "reference/vector.h"
 
 #include <algorithm>
@@ -10,20 +11,6 @@
 namespace raycontact::reference {
 
 namespace {
-
-template <class... Args>
-std::string text(const char* format, Args... args) {
-    char buffer[512];
-    std::snprintf(buffer, sizeof buffer, format, args...);
-    return buffer;
-}
-
-std::string text(const Pose& pose) {
-    std::string s = "{";
-    for (const double r : pose.rotation) s += text("%a, ", r);
-    const Vec3& t = pose.translation;
-    return s + text("| %a, %a, %a}", t.x, t.y, t.z);
-}
 
 struct Difference {
     double normal = 0, depth = 0, ray_length = 0, weight = 0, point = 0;

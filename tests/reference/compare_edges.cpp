@@ -2,6 +2,7 @@
 #include "reference/compare_edges.h"
 
 #include "reference/random.h"
+#include "reference/text.h"
 #include "reference/vector.h"
 
 #include <algorithm>
@@ -67,21 +68,7 @@ bool alike(const Answers& x, const Answers& y, const Key& key, double size, doub
     return difference(i->second, j->second, size).none(slack);
 }
 
-template <class... Args>
-std::string text(const char* format, Args... args) {
-    char buffer[512];
-    std::snprintf(buffer, sizeof buffer, format, args...);
-    return buffer;
-}
-
-std::string text(const Pose& pose) {
-    std::string s = "{";
-    for (const double r : pose.rotation) s += text("%a, ", r);
-    const Vec3& t = pose.translation;
-    return s + text("| %a, %a, %a}", t.x, t.y, t.z);
-}
-
-std::string text(const char* who, const Answers& list, const Key& key) {
+std::string answer_of(const char* who, const Answers& list, const Key& key) {
     const auto at = list.find(key);
     if (at == list.end()) return text("\n  %s: none", who);
     const ReferenceContact& c = at->second;
@@ -163,7 +150,7 @@ void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pos
         sum.complaints.push_back(
             text("%s %u, crossing %#x of ", feature == Feature::edge ? "edge" : "inside", vertex, crossing)
             + (body == VertexBody::a ? a.name + " (a) against " + b.name : b.name + " (b) against " + a.name)
-            + text("reference", expected, key) + text("library", found, key) + "\n  pose a " + text(pose_a)
+            + answer_of("reference", expected, key) + answer_of("library", found, key) + "\n  pose a " + text(pose_a)
             + "\n  pose b " + text(pose_b));
     }
 }
