@@ -39,7 +39,8 @@ private:
     };
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
     void place(Found& found, Part& part, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-               std::span<const kernels::LocalContact> local, std::vector<Contact>& contacts);
+               std::span<const kernels::LocalContact> local, const Motion* motion, std::vector<Contact>& contacts);
+    void forget();
     void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
                                      StepStats& stats);

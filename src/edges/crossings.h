@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/near_triangles.h"
+#include "edges/near_edges.h"
 
 #include <span>
 #include <vector>
@@ -25,9 +25,8 @@ inline EdgeEnds ends_of(const ShapeData& shape, std::uint32_t edge) {
     return {corners[edge % 3], corners[(edge + 1) % 3]};
 }
 
-/// The crossings of the source's sharp edges with the target's faces, sorted by edge, place and face. near: holds every
-/// triangle of the source that could meet one of the target; source_first: which one is the source's.
-void find_crossings(const SourceMesh& placed, std::span<const TrianglePair> near, bool source_first,
-                    std::vector<Crossing>& found);
+/// The crossings of the source's sharp edges with the target's faces, sorted by edge, place and face. near: sorted,
+/// with every edge that could cross a face.
+void find_crossings(const SourceMesh& placed, std::span<const NearEdge> near, std::vector<Crossing>& found);
 
 } // namespace raycontact

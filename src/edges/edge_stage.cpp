@@ -25,6 +25,18 @@ float weight_of(const ShapeData& source, const FeatureContact& found) {
     return static_cast<float>((area_of(source, found.index / 3) + (across == NONE ? 0 : area_of(source, across))) / 6);
 }
 
+// Whether either body has a part inside the other. Of bodies whose surfaces do not cross.
+bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureContact>& found) {
+    bool any = false;
+    for (std::size_t side = 0; side < 2; ++side) {
+        if (placed[side].target.header.closed == 0 || !has_part_inside(placed[side])) continue;
+        any = true;
+        if (const auto inside = contact_of_inside(placed[side], static_cast<VertexBody>(side)))
+            found.push_back(*inside);
+    }
+    return any;
+}
+
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
               Direction direction) {
     const ShapeData& shape = source.shape->data();
@@ -51,7 +63,7 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 } // namespace
 
 void EdgeStage::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
+                    std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local, const Motion* motion,
                     std::vector<Contact>& contacts) {
     firsts_.resize(2 * pairs.size() + 1);
     std::uint32_t at = 0;
@@ -61,9 +73,12 @@ void EdgeStage::run(Executor& executor, Direction direction, std::span<const Pla
     }
     const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
     if (blocks_.size() < block_count) blocks_.resize(block_count);
+    if (motion != nullptr) lists_.match(pairs);
+    const Question question{direction, bodies, pairs, motion};
     executor.run(block_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t b = begin; b < end; ++b) {
             Block& block = blocks_[b];
+            block.lists.clear();
             block.contacts.clear();
             block.ends.clear();
             const std::size_t last = std::min<std::size_t>(pairs.size(), (b + 1) * std::size_t{pairs_in_block});
@@ -71,34 +86,46 @@ void EdgeStage::run(Executor& executor, Direction direction, std::span<const Pla
                 const auto vertices_of = [&](std::size_t directed) {
                     return local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
                 };
-                find(block, direction, pairs[i], bodies, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+                find(block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
                 block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
             }
         }
     });
+    if (motion != nullptr)
+        for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
     merge(pairs, contacts);
 }
 
-void EdgeStage::find(Block& block, Direction direction, const SlotPair& pair, std::span<const PlacedBody> bodies,
+void EdgeStage::find(Block& block, const Question& question, std::size_t i,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
-    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    const SlotPair& pair = question.pairs[i];
+    const PlacedBody &a = question.bodies[pair.first], &b = question.bodies[pair.second];
     if (a.shape->data().header.closed == 0 && b.shape->data().header.closed == 0) return;
     const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
+    const Motion* motion = question.motion;
+    if (motion != nullptr) {
+        lists_.move(i, pair, *motion);
+        if (!in_contact && lists_.is_apart(i)) return;
+    }
     const std::array<SourceMesh, 2> placed{SourceMesh(a, b, in_contact), SourceMesh(b, a, in_contact)};
-    block.near.clear();
+    NearEdges near;
+    if (motion != nullptr) {
+        near = lists_.near(i, pair, question.bodies, placed, *motion, block.lists);
+    } else {
+        block.lists.clear();
+        near = block.lists.find(placed);
+    }
     block.found.clear();
-    find_near_triangles(placed[0], 0, block.near);
-    const bool crosses = block.edges.find(placed, block.near, vertices, block.found);
     // Surfaces that do not cross are apart, or one is inside the other.
-    for (std::size_t side = 0; side < 2 && !crosses && !in_contact; ++side) {
-        if (placed[side].target.header.closed == 0 || !has_part_inside(placed[side])) continue;
-        if (const auto inside = contact_of_inside(placed[side], static_cast<VertexBody>(side)))
-            block.found.push_back(*inside);
+    if (!block.edges.find(placed, near, vertices, block.found) && !in_contact
+        && !(motion != nullptr && lists_.is_apart(i))) {
+        const bool apart = !find_inside(placed, block.found);
+        if (apart && motion != nullptr) lists_.found_apart(i);
     }
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : block.found) {
         const bool from_a = found.source == VertexBody::a;
-        block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, direction));
+        block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, question.direction));
     }
     std::sort(block.contacts.begin() + first, block.contacts.end(),
               [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });

@@ -39,12 +39,12 @@ Vec3 inward(const ShapeData& source, std::uint32_t edge) {
 
 } // namespace
 
-bool PairEdges::find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
+bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
                      std::vector<FeatureContact>& found) {
     for (std::size_t side = 0; side < 2; ++side) {
         crossings_[side].clear();
-        if (placed[side].target.header.closed != 0) find_crossings(placed[side], near, side == 0, crossings_[side]);
+        find_crossings(placed[side], near[side], crossings_[side]);
     }
     if (crossings_[0].empty() && crossings_[1].empty()) return false;
     const std::array<std::uint32_t, 2> first{0, static_cast<std::uint32_t>(crossings_[0].size())};

@@ -14,9 +14,9 @@ namespace raycontact {
 /// The edges' rule for one pair (docs/edges.md). Keeps nothing but memory from one pair to the next.
 class PairEdges {
 public:
-    /// placed: a in b, b in a. near: triangles of a and of b that could meet. vertices: the vertex contacts of a, of b.
+    /// placed: a in b, b in a. near: the edges that could cross. vertices: the vertex contacts of a, of b.
     /// Adds contacts in any order; returns whether any edge crosses a face.
-    bool find(const std::array<SourceMesh, 2>& placed, std::span<const TrianglePair> near,
+    bool find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
               const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
               std::vector<FeatureContact>& found);
 

@@ -18,6 +18,8 @@ public:
     const DeviceInfo& device() const { return device_->info(); }
     Executor& executor() { return *executor_; }
     ShapeStore& shapes() { return shapes_; }
+    /// Of the step that began, if needs_motion().
+    const Motion& motion() const { return motion_; }
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
     /// next begin().

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/pipeline.h"
 
+#include "edges/near_lists.h"
+
 namespace raycontact {
 
 namespace {
@@ -20,7 +22,7 @@ Finds finds(const Update& update) {
 } // namespace
 
 bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
-    return finds(settings, traits) != Finds::standard;
+    return finds(settings, traits) != Finds::standard || keeps_near_lists(settings);
 }
 
 void Pipeline::forget() {

@@ -41,7 +41,7 @@ private:
     LocalContacts local_;
 };
 
-/// Whether the method reads Update::motion on this device.
+/// Whether the method, or what is asked of edges, needs the motion of bodies on this device.
 bool needs_motion(const Settings& settings, const DeviceTraits& traits);
 
 } // namespace raycontact
