@@ -49,6 +49,7 @@ Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last)
     for (const rc::Method method : {rc::Method::standard, rc::Method::iterative}) {
         rc::recording::Reader reader(file);
         rc::Settings settings;
+        settings.features = rc::Features::vertices;
         settings.method = method;
         settings.devices = "cpu/0";
         rc::recording::Follower follower(reader, settings);

@@ -57,6 +57,7 @@ double median(std::vector<double> values) {
 
 void compare(const std::string& file, const std::string& devices, rc::Method method, rc::Schedule schedule, int runs) {
     rc::Settings alone, shared;
+    alone.features = shared.features = rc::Features::vertices;
     alone.method = shared.method = method;
     shared.schedule = schedule;
     shared.devices = devices;

@@ -260,8 +260,8 @@ void add_peers(CLI::App& bench) {
     add_number(*command, "--runs", o->runs, "of everyone in turn; figures are medians", 1u, 1000u);
     command
         ->add_option("--only", o->only,
-                     "who: bvh,basic,iterative,iterative-basic,predictive,certified,gimpact,fcl,ode,embree,rays,"
-                     "grid-rays,embree-rays")
+                     "who: bvh,basic,iterative,iterative-basic,predictive,certified (all of vertices alone), edges "
+                     "(certified with edges), gimpact,fcl,ode,embree,rays,grid-rays,embree-rays")
         ->type_name("NAMES")
         ->delimiter(',');
     command->add_option("--works", o->works, "what: pairs-453,pairs-1598,pairs-10000,avalanche,avalanche-moving")

@@ -46,6 +46,7 @@ Plan tiny_plan() {
 
 Settings as_in_the_paper(Method method, double displacement_threshold) {
     Settings settings;
+    settings.features = Features::vertices; // the paper's rule
     settings.method = method;
     settings.displacement_threshold = displacement_threshold;
     settings.confidence = constants::confidence;
@@ -58,6 +59,7 @@ Settings as_in_the_paper(Method method, double displacement_threshold) {
 
 Settings by_default(Method method) {
     Settings settings;
+    settings.features = Features::vertices;
     settings.method = method;
     return settings;
 }

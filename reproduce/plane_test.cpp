@@ -51,6 +51,7 @@ struct Force {
 
 Deviation plane_deviation(const PlaneTest& test, Direction direction) {
     Settings settings;
+    settings.features = Features::vertices;
     settings.method = Method::standard;
     settings.direction = direction;
     Scene scene(settings);

@@ -25,6 +25,7 @@ struct Way {
 
 Settings settings_of(const Way& way, const DeviceOptions& options) {
     Settings settings;
+    settings.features = Features::vertices;
     settings.method = way.method;
     settings.caster = way.caster;
     settings.threads = options.threads;

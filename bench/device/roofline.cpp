@@ -141,6 +141,7 @@ std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions&
     for (const Method method : options.methods) {
         tell("counting " + std::string(to_string(method)));
         Settings settings;
+        settings.features = Features::vertices;
         settings.method = method;
         settings.caster = options.caster;
         settings.threads = 1;

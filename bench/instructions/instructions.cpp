@@ -76,6 +76,7 @@ void count_host(const char* name, std::size_t items, const std::function<void()>
 
 rc::Settings settings(rc::Method method, rc::Caster caster = rc::Caster::bvh) {
     rc::Settings settings;
+    settings.features = rc::Features::vertices;
     settings.method = method;
     settings.caster = caster;
     return settings;

@@ -66,6 +66,7 @@ void measure(const Work& work, const std::string& part, double size, int runs, c
     std::vector<Trial> trials;
     for (const Method method : methods) {
         Settings settings;
+        settings.features = Features::vertices;
         settings.method = method;
         settings.threads = options.threads;
         trials.push_back({method, make_scene(work, settings), {}, {}, {}, {}, {}, {}});

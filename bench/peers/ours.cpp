@@ -34,12 +34,13 @@ private:
 
 } // namespace
 
-Entrant ours(std::string name, Method method, Caster caster) {
-    const Settings settings = one_thread(method, caster);
+Entrant ours(std::string name, Method method, Caster caster, Features features) {
+    const Settings settings = one_thread(method, caster, features);
     Entrant entrant;
     entrant.name = std::move(name);
-    entrant.what = "RayContact " + std::string(to_string(method)) + " " + std::string(to_string(caster));
-    entrant.exact = method == Method::standard || method == Method::certified;
+    entrant.what = "RayContact " + std::string(to_string(method)) + " " + std::string(to_string(caster))
+                   + (features == Features::edges ? ", edges" : "");
+    entrant.exact = (method == Method::standard || method == Method::certified) && features == Features::vertices;
     entrant.all_steps = method != Method::standard || caster == Caster::bvh;
     entrant.every = 10;
     entrant.make = [settings](const Work& work) { return std::make_unique<Ours>(work, settings); };

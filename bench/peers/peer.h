@@ -55,7 +55,7 @@ std::uint32_t stride(const Entrant& entrant, const Work& work);
 bool is_given(const Entrant& entrant, const Work& work, std::size_t step);
 
 // One a file; those of libraries that CMake did not find are answered by entrants() itself.
-Entrant ours(std::string name, Method method, Caster caster);
+Entrant ours(std::string name, Method method, Caster caster, Features features = Features::vertices);
 Entrant gimpact();
 Entrant fcl();
 Entrant ode();

@@ -25,6 +25,7 @@ std::vector<Entrant> entrants() {
         ours("iterative-basic", Method::iterative, Caster::basic),
         ours("predictive", Method::predictive, Caster::bvh),
         ours("certified", Method::certified, Caster::bvh),
+        ours("edges", Method::certified, Caster::bvh, Features::edges),
         gimpact(),
 #ifdef RAYCONTACT_HAS_FCL
         fcl(),

@@ -30,6 +30,7 @@ std::vector<Watcher> watchers(std::uint64_t seed) {
         one.row.fixed = fixed;
         one.row.cast_lost_walks = cast_lost_walks;
         Settings settings;
+        settings.features = Features::vertices;
         settings.method = method;
         settings.cast_lost_walks = cast_lost_walks;
         if (fixed) {
@@ -56,6 +57,7 @@ void sweep(const SeedOptions& options, const std::function<void(const std::strin
         scenes::Simulation simulation(scenes::avalanche(how));
         const scenes::RunLog& log = simulation.log();
         Settings standard;
+        standard.features = Features::vertices;
         standard.method = Method::standard;
         standard.skip_outside = false;
         Scene reference(standard);

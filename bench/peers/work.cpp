@@ -37,8 +37,9 @@ std::uint64_t Work::pair_steps() const {
     return count;
 }
 
-Settings one_thread(Method method, Caster caster) {
+Settings one_thread(Method method, Caster caster, Features features) {
     Settings settings;
+    settings.features = features;
     settings.method = method;
     settings.caster = caster;
     settings.threads = 1;

@@ -64,7 +64,7 @@ Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions
 /// A work's bodies in one scene of ours.
 std::unique_ptr<Scene> make_scene(const Work& work, const Settings& settings);
 /// The default settings but for the method, on one thread.
-Settings one_thread(Method method, Caster caster = Caster::bvh);
+Settings one_thread(Method method, Caster caster = Caster::bvh, Features features = Features::vertices);
 void place(Scene& scene, const WorkStep& step);
 /// Before a run over the steps of a work: the scene keeps nothing, as if it had never moved; its arrays stay.
 void rest(Scene& scene, const WorkStep& first);

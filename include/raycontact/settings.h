@@ -46,7 +46,7 @@ struct Settings {
     Method method = Method::certified;
     Caster caster = Caster::bvh;
     Direction direction = Direction::reprojected;
-    Features features = Features::vertices;
+    Features features = Features::edges;
 
     /// Metres a pair may move before it is looked at in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and

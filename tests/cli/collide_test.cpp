@@ -23,6 +23,12 @@ protected:
         return run_program(options, folder_.path());
     }
 
+    /// By the paper's rule, whose contacts are known by hand.
+    ProgramResult run_vertices(const json& pairs, std::vector<std::string> options = {"--json"}) const {
+        options.insert(options.end(), {"--features", "vertices"});
+        return run(pairs, options);
+    }
+
     /// A cube at the origin and one at (0.8, 0.7, 0.6): one corner each is inside the other.
     static json corner_pair() { return {{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.8, 0.7, 0.6)}}; }
 
@@ -48,7 +54,7 @@ void expect_vector(const json& vector, double x, double y, double z) {
 }
 
 TEST_F(Collide, TwoCorners) {
-    const auto result = run(json::array({corner_pair()}));
+    const auto result = run_vertices(json::array({corner_pair()}));
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.err.find("cube.obj: coarse for --features vertices"), std::string::npos) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
@@ -84,7 +90,7 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
     json stacked{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 0.99)}};
     json touching{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 1)}};
     const json pairs = json::array({inside, stacked, touching});
-    const auto result = run(pairs, {"--json", "--features", "edges"});
+    const auto result = run(pairs);
     EXPECT_EQ(result.err, "");
     const auto lines = json_lines(result.out);
     ASSERT_EQ(lines.size(), 3u);
@@ -99,12 +105,12 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
         expect_vector(contact["normal"], 0, 0, 1);
     }
     EXPECT_EQ(lines[2]["colliding"], false);
-    EXPECT_EQ(json_lines(run(pairs).out)[1]["colliding"], false);
+    EXPECT_EQ(json_lines(run_vertices(pairs).out)[1]["colliding"], false);
 }
 
 TEST_F(Collide, SwappedPairTurnsTheNormals) {
     const json swapped{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_a", translation(0.8, 0.7, 0.6)}};
-    const auto lines = json_lines(run(json::array({corner_pair(), swapped})).out);
+    const auto lines = json_lines(run_vertices(json::array({corner_pair(), swapped})).out);
     ASSERT_EQ(lines.size(), 2u);
     EXPECT_EQ(lines[1]["pair"], 1);
     ASSERT_EQ(lines[1]["contacts"].size(), 2u);
@@ -132,7 +138,7 @@ TEST_F(Collide, ApartIsNotColliding) {
 TEST_F(Collide, ScaleIsOfTheFileNotOfThePose) {
     // Half a cube at (0.6, 0.55, 0.5): spans 0.35 .. 0.85 in x, so its corner is 0.15 deep.
     const json pair{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.6, 0.55, 0.5)}, {"scale_b", 0.5}};
-    const auto lines = json_lines(run(json::array({pair})).out);
+    const auto lines = json_lines(run_vertices(json::array({pair})).out);
     ASSERT_EQ(lines.size(), 1u);
     ASSERT_EQ(lines[0]["contacts"].size(), 2u) << lines[0];
     EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "a");
@@ -188,7 +194,7 @@ TEST_F(Collide, EveryMethodAndThresholdGivesTheSameBits) {
 }
 
 TEST_F(Collide, DirectionRayIsTheRayItself) {
-    const auto lines = json_lines(run(json::array({corner_pair()}), {"--json", "--direction", "ray"}).out);
+    const auto lines = json_lines(run_vertices(json::array({corner_pair()}), {"--json", "--direction", "ray"}).out);
     ASSERT_EQ(lines.size(), 1u);
     ASSERT_EQ(lines[0]["contacts"].size(), 2u);
     for (const json& contact : lines[0]["contacts"]) {
@@ -205,8 +211,8 @@ TEST_F(Collide, DirectionWeightedIsTheRayAndTheAreaOfItsVertex) {
     scaled["pose_b"] = translation(0.6, 0.55, 0.5);
     scaled["scale_b"] = 0.5;
     const json pairs = json::array({corner_pair(), scaled});
-    const auto lines = json_lines(run(pairs, {"--json", "--direction", "weighted"}).out);
-    auto rays = json_lines(run(pairs, {"--json", "--direction", "ray"}).out);
+    const auto lines = json_lines(run_vertices(pairs, {"--json", "--direction", "weighted"}).out);
+    auto rays = json_lines(run_vertices(pairs, {"--json", "--direction", "ray"}).out);
     ASSERT_EQ(lines.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
         ASSERT_EQ(lines[i]["contacts"].size(), 2u);
@@ -220,10 +226,10 @@ TEST_F(Collide, DirectionWeightedIsTheRayAndTheAreaOfItsVertex) {
         }
         EXPECT_EQ(lines[i], rays[i]) << "all but the weight";
     }
-    const auto table = run(pairs, {"--direction", "weighted"}).out;
+    const auto table = run_vertices(pairs, {"--direction", "weighted"}).out;
     EXPECT_NE(table.find("weight (m^2)"), std::string::npos) << table;
     EXPECT_NE(table.find(" 0.833333 "), std::string::npos) << table;
-    EXPECT_EQ(run(pairs, {}).out.find("weight"), std::string::npos);
+    EXPECT_EQ(run_vertices(pairs, {}).out.find("weight"), std::string::npos);
 }
 
 TEST_F(Collide, TenKilometresAwayIsTheSame) {
@@ -231,7 +237,7 @@ TEST_F(Collide, TenKilometresAwayIsTheSame) {
                    {"b", "cube.obj"},
                    {"pose_a", translation(10000, -10000, 10000)},
                    {"pose_b", translation(10000.8, -9999.3, 10000.6)}};
-    const auto lines = json_lines(run(json::array({corner_pair(), far})).out);
+    const auto lines = json_lines(run_vertices(json::array({corner_pair(), far})).out);
     ASSERT_EQ(lines.size(), 2u);
     ASSERT_EQ(lines[1]["contacts"].size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -255,7 +261,8 @@ TEST_F(Collide, TwoFilesAndTheTable) {
     // A tetrahedron with its right-angled corner in the cube, 0.2 below the top; the cube's corner is as far inside it.
     folder_.write("moved.obj", "v 0.1 0.2 0.3\nv 4.1 0.2 0.3\nv 0.1 4.2 0.3\nv 0.1 0.2 4.3\n"
                                "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-    const auto lines = json_lines(run_program({"collide", "cube.obj", "moved.obj", "--json"}, folder_.path()).out);
+    const auto lines = json_lines(
+        run_program({"collide", "cube.obj", "moved.obj", "--features", "vertices", "--json"}, folder_.path()).out);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0]["pair"], 0);
     ASSERT_EQ(lines[0]["contacts"].size(), 2u) << lines[0];
@@ -264,10 +271,10 @@ TEST_F(Collide, TwoFilesAndTheTable) {
     EXPECT_EQ(lines[0]["contacts"][1]["vertex_body"], "b");
     EXPECT_EQ(lines[0]["contacts"][1]["vertex"], 0);
     EXPECT_NEAR(lines[0]["contacts"][1]["depth"].get<double>(), 0.2, 1e-6);
-    const auto table = run_program({"collide", "cube.obj", "moved.obj"}, folder_.path());
+    const auto table = run_program({"collide", "cube.obj", "moved.obj", "--features", "vertices"}, folder_.path());
     EXPECT_EQ(table.status, 0);
     EXPECT_NE(table.out.find("2 contacts, deepest 0.2 m"), std::string::npos) << table.out;
-    EXPECT_NE(run(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.2 m"), std::string::npos);
+    EXPECT_NE(run_vertices(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.2 m"), std::string::npos);
 }
 
 TEST_F(Collide, NoPairsIsNoOutput) {

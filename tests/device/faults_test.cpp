@@ -81,7 +81,9 @@ private:
     std::vector<Contact> contacts_of(Part& part, const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
         part.begin(crowd.bodies, pairs, settings_);
         std::vector<Contact> contacts;
-        Placer().run(part.executor(), settings_.direction, crowd.bodies, pairs, part.end(), contacts);
+        const auto local = part.end();
+        Placer().run(part.executor(), settings_.direction, crowd.bodies, pairs, local, contacts);
+        EdgeStage().run(part.executor(), settings_.direction, crowd.bodies, pairs, local, nullptr, contacts);
         return contacts;
     }
 

@@ -46,11 +46,13 @@ Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spr
 }
 
 void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t steps, const char* golden,
-                   std::uint64_t contacts, Direction direction = Direction::reprojected) {
+                   std::uint64_t contacts, Direction direction = Direction::reprojected,
+                   Features features = Features::vertices) {
     for (const Method method : {Method::standard, Method::certified})
         for (const Caster caster : {Caster::bvh, Caster::basic})
             for (const std::uint32_t threads : {1u, 2u, 3u}) {
                 Settings settings;
+                settings.features = features;
                 settings.method = method;
                 settings.direction = direction;
                 settings.caster = caster;
@@ -78,6 +80,12 @@ TEST(golden, directions_of_plain_meshes) {
                                    bowl_mesh(8)};
     expect_golden(meshes, 1.5, 6, "06b09c883d9d859b", 7737, Direction::ray);
     expect_golden(meshes, 1.5, 6, "5033be61d7b69a6f", 7737, Direction::weighted);
+}
+
+// The same meshes, with edges.
+TEST(golden, edges_of_plain_meshes) {
+    expect_golden({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8)}, 1.5, 6,
+                  "34b0032e82fc16fd", 9466, Direction::reprojected, Features::edges);
 }
 
 // The procedural meshes of the scenes: changes with them too.

@@ -15,9 +15,10 @@ namespace {
 
 constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
 
-Settings settings_of(Method method) {
+Settings settings_of(Method method, Features features = Features::edges) {
     Settings settings;
     settings.method = method;
+    settings.features = features;
     settings.threads = 1;
     return settings;
 }
@@ -161,16 +162,17 @@ TEST(body_ids, pairs_are_sorted_by_slots) {
 // small one that stood still: turned about, a plate reaches its far end.
 TEST(body_ids, motion_is_not_inherited_through_another_method) {
     const auto small = box({0.1, 0.1, 0.1}), rod = box({2.5, 0.05, 0.1});
-    Scene scene(settings_of(Method::certified)), standard(settings_of(Method::standard));
+    Scene scene(settings_of(Method::certified, Features::vertices)),
+        standard(settings_of(Method::standard, Features::vertices));
     const auto plate = box({0.1, 3, 0.5});
     for (Scene* s : {&scene, &standard}) s->add(plate);
     const BodyId before = scene.add(small, at(0, 0, 0.55));
     scene.step(std::vector<Pair>{{0, before}});
     scene.step(std::vector<Pair>{{0, before}});
     scene.remove(before);
-    scene.set_settings(settings_of(Method::standard));
+    scene.set_settings(settings_of(Method::standard, Features::vertices));
     scene.step();
-    scene.set_settings(settings_of(Method::certified));
+    scene.set_settings(settings_of(Method::certified, Features::vertices));
     const std::vector<Pair> pair{{0, scene.add(rod, at(0, 0, 0.55))}}, plain{{0, standard.add(rod, at(0, 0, 0.55))}};
     ASSERT_EQ(pair[0].second, body_id(1, 1));
     std::uint64_t contacts = 0, without = 0;

@@ -25,6 +25,7 @@ double distance(const Vec3& a, const Vec3& b) {
 // Steps a crowd; returns all predictions, step by step.
 std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, Method method, std::uint64_t& counted) {
     Settings settings;
+    settings.features = Features::vertices;
     settings.method = method;
     settings.devices = devices;
     Scene scene(settings);
@@ -68,6 +69,7 @@ TEST(EveryRay, IsCastIfNoneIsKnownToBeOutside) {
     for (const Method method : {Method::iterative, Method::predictive})
         for (const Caster caster : {Caster::basic, Caster::bvh}) {
             Settings settings;
+            settings.features = Features::vertices;
             settings.method = method;
             settings.caster = caster;
             settings.displacement_threshold = 0;

@@ -168,7 +168,7 @@ TEST(Replay, WhatMustAgree) {
         EXPECT_TRUE(agrees(&Settings::threads, 3u));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
-        EXPECT_FALSE(agrees(&Settings::features, Features::edges));
+        EXPECT_FALSE(agrees(&Settings::features, Features::vertices));
         EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
         EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
         EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);
