@@ -2,6 +2,7 @@
 #include "edges/near_edges.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tuple>
 
@@ -70,7 +71,20 @@ void add(const SourceMesh& placed, std::span<const TrianglePair> near, bool sour
 
 } // namespace
 
+double mismatch(const std::array<SourceMesh, 2>& placed) {
+    const Pose &there = placed[0].pose, &back = placed[1].pose;
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            double product = i == j ? -1 : 0;
+            for (std::size_t k = 0; k < 3; ++k) product += back.rotation[3 * i + k] * there.rotation[3 * k + j];
+            sum += product * product;
+        }
+    return std::sqrt(sum) * placed[0].source.reach + length(placed[1].placed(there.translation));
+}
+
 std::size_t NearSearch::find(const std::array<SourceMesh, 2>& placed, double margin, std::vector<NearEdge>& found) {
+    margin += 2 * mismatch(placed); // b near a is asked by its own direction
     triangles_.clear();
     find_near_triangles(placed[0], margin, triangles_);
     // More than what double rounds.

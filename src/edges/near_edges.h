@@ -19,6 +19,10 @@ struct NearEdge {
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.
 using NearEdges = std::array<std::span<const NearEdge>, 2>;
 
+/// How far apart a point of a is for its two directions, at most, metres: rotations may be orthonormal to 1e-4 alone,
+/// and then what a in b shows is not what b in a shows.
+double mismatch(const std::array<SourceMesh, 2>& placed);
+
 /// Finds the near edges of pairs. Keeps nothing but memory.
 class NearSearch {
 public:

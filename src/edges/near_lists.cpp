@@ -70,7 +70,7 @@ NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const P
     const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
     if (serves) {
         // Written so that a NaN, for bodies beyond the range of squares, needs a new list.
-        const double left = list.margin - moved_since(list.reference, now, a, b);
+        const double left = list.margin - moved_since(list.reference, now, a, b) - 2 * mismatch(placed);
         if (left > 0) {
             slack.metres = left;
             return kept();

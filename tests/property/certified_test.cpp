@@ -29,7 +29,7 @@ struct Episode {
     double tightness = 0.3; ///< how far bodies stand from each other's surfaces, in their sizes
     int steps = 200;
     std::uint64_t seed = 0;
-    Features features = Features::vertices;
+    Features features = Features::edges;
 
     std::string name() const {
         char text[200];
@@ -99,6 +99,7 @@ void all_courses(Kind kind, double share) {
         episode.bodies = kind == Kind::slab ? 24 : 12;
         episode.tightness = random.uniform(0, kind == Kind::slab ? 0.5 : 0.4);
         episode.steps = 120;
+        if (random.below(2) == 0) episode.features = Features::vertices;
         play(episode, counts);
     }
     report(name_of(kind), counts, wanted);
@@ -188,6 +189,7 @@ TEST(certified, dense_crowds) {
         Random random(first_seed() + 200000 + i);
         Settings settings = some_settings(random);
         settings.skip_outside = true;
+        settings.features = i % 2 ? Features::vertices : Features::edges;
         Triplet triplet(settings, thresholds[random.below(std::size(thresholds))], "dense crowd " + std::to_string(i));
         std::vector<Mover> movers;
         constexpr std::uint32_t bodies = 40;

@@ -50,6 +50,7 @@ Settings some_settings(Random& random) {
     settings.threads = 1;
     settings.skip_outside = random.below(4) != 0; // now and then every ray is cast
     settings.direction = directions[random.below(3)];
+    settings.features = random.below(4) == 0 ? Features::edges : Features::vertices;
     return settings;
 }
 

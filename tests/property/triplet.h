@@ -36,7 +36,7 @@ void report(const char* what, const Counts& counts, double wanted);
 /// A `displacement_threshold` to be told.
 inline constexpr double thresholds[] = {0, 1e-6, 1e-4, 1e-2, 0.3, 100, 1e300};
 
-/// One thread; direction and whether rays are skipped by chance.
+/// One thread; direction, features and whether rays are skipped by chance: edges now and then, since they take longer.
 Settings some_settings(Random& random);
 
 /// One scene by the standard method and two by the certified one, fed alike: one chooses what it keeps itself, the
