@@ -210,6 +210,7 @@ double drift(const std::vector<Round>& rounds, double Round::*what) {
         return median(values);
     };
     const double before = of(rounds.begin() + quarter, rounds.begin() + 2 * quarter + 1);
+    if (!(before > 0)) return 0; // a sanitizer's allocator is not asked
     return 100 * (of(rounds.end() - quarter - 1, rounds.end()) / before - 1);
 }
 
