@@ -16,6 +16,10 @@ namespace raycontact {
 
 namespace {
 
+/// Metres. No mesh reaches as far (Mesh: 1e9 m), so nothing is lost; and a ray that ended beyond 1e30 m would meet the
+/// inverted boxes of a tree's empty lanes.
+constexpr double farthest_ahead = 1e12;
+
 template <class T>
 void put_bytes(std::vector<std::byte>& bytes, const T& value) {
     const auto* const from = reinterpret_cast<const std::byte*>(&value);
@@ -75,7 +79,9 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
             : next_threshold(a, b, motion.pair_speed(pair), state.threshold, state.look_cost, follows, predictive);
     state.safe = state.culling = 0;
     if (predictive)
-        state.culling = settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold;
+        state.culling =
+            std::min(settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold,
+                     farthest_ahead);
 }
 
 void CoherentRays::wake_up(const Update& update) {
@@ -115,7 +121,8 @@ void CoherentRays::wake_up(const Update& update) {
             const float ahead = std::max(cullings_[i], 0.0F);
             const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
             wide_pairs_[i] = host_pairs_[i];
-            widen(wide_pairs_[i], extended ? static_cast<float>(*settings.distance_extension) : ahead);
+            const double extension = std::min(settings.distance_extension.value_or(0), farthest_ahead);
+            widen(wide_pairs_[i], extended ? static_cast<float>(extension) : ahead);
             margins_[i] = static_cast<float>(rounding_margin(source, target));
             reaches_[i] = ahead + margins_[i];
             // As in the paper: no vertex inside the bounds is known to be outside the mesh or far from it.

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/input.h"
+
+#include <raycontact/error.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace raycontact::fuzz {
+
+namespace {
+std::uint64_t taken_so_far = 0;
+}
+
+void fail(std::string_view what) {
+    std::fprintf(stderr, "finding: %.*s\n", static_cast<int>(what.size()), what.data());
+    std::abort();
+}
+
+bool taken(const std::function<void()>& read) {
+    try {
+        read();
+        ++taken_so_far;
+        return true;
+    } catch (const InputError& error) {
+        const std::string_view text = error.what();
+        if (text.empty()) fail("an error without words");
+        if (text.find_first_of("\r\n") != std::string_view::npos) fail("an error of several lines");
+        if (text.size() > 2000) fail("an error too long to read");
+    } catch (const std::exception& other) {
+        fail(std::string("no InputError: ") + other.what());
+    }
+    return false;
+}
+
+std::uint64_t times_taken() {
+    return taken_so_far;
+}
+
+ScratchFolder::ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "raycontact-fuzz-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) fail("no folder for files: " + name);
+    path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::filesystem::path ScratchFolder::write(const std::string& name, std::string_view text) const {
+    const std::filesystem::path file = path_ / name;
+    std::ofstream out(file, std::ios::binary | std::ios::trunc);
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!out.flush()) fail("cannot write " + file.string());
+    return file;
+}
+
+std::filesystem::path ScratchFolder::write(const std::string& name, Bytes bytes) const {
+    return write(name, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+} // namespace raycontact::fuzz

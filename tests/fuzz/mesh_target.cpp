@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh file in memory: read, checked and prepared as load_mesh and Shape::make do it. RAYCONTACT_FUZZ_READER is the
+// reader, RAYCONTACT_FUZZ_FILE the file's name.
+#include "fuzz/input.h"
+#include "tests/unit/mesh/formats.h"
+#include "tests/unit/mesh/solids.h"
+
+#include "mesh/check.h"
+#include "mesh/input_file.h"
+
+#include <raycontact/mesh.h>
+#include <raycontact/shape.h>
+
+using namespace raycontact;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const fuzz::ScratchFolder folder;
+    // A glTF file may name it.
+    static const auto buffer = folder.write("m.bin", test::gltf_buffer(test::torus(6, 4, 1, 0.3)));
+    fuzz::taken([&] {
+        const InputFile file{folder.path() / RAYCONTACT_FUZZ_FILE, RAYCONTACT_FUZZ_FILE,
+                             std::string(reinterpret_cast<const char*>(data), size)};
+        if (size == 0) return; // InputFile::read refuses it
+        const Mesh mesh = RAYCONTACT_FUZZ_READER(file);
+        check_mesh(mesh, file.shown);
+        if (mesh.triangles.size() > 4000) return; // the fuzzer is to try many files, not large ones
+        const PreparedMesh prepared = prepare_mesh(mesh);
+        to_json(prepared.report);
+        to_text(prepared.report);
+        for (const auto& triangle : prepared.triangles)
+            for (const std::uint32_t vertex : triangle)
+                if (vertex >= prepared.vertices.size()) fuzz::fail("a vertex that is none");
+        if (prepared.triangles.size() <= 64) Shape::make(prepared);
+    });
+    return 0;
+}
