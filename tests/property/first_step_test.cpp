@@ -42,13 +42,13 @@ std::vector<double> least_ms(const std::shared_ptr<const Shape>& shape, Method m
             least[static_cast<std::size_t>(step)] =
                 std::min(least[static_cast<std::size_t>(step)], processor_ms() - start);
         }
-        EXPECT_GT(scene.contacts().size(), 500u);
+        EXPECT_GT(scene.contacts().size(), 100u);
     }
     return least;
 }
 
 TEST(FirstStep, OfCertifiedIsNoCliff) {
-    for (const std::uint32_t triangles : {10'000u, 100'000u}) {
+    for (const std::uint32_t triangles : {1'000u, 10'000u, 100'000u}) {
         const auto shape = Shape::make(scenes::scene_model("sphere", triangles).mesh);
         for (const double pace : {0.0, 0.001}) {
             const auto certified = least_ms(shape, Method::certified, pace);
@@ -56,8 +56,7 @@ TEST(FirstStep, OfCertifiedIsNoCliff) {
             std::printf("[ ratio    ] %u triangles, pace %g: %.2f in the first step\n", triangles, pace,
                         certified[0] / standard[0]);
             for (std::size_t step = 0; step < steps; ++step)
-                EXPECT_LT(certified[step], 3 * standard[step])
-                    << triangles << " triangles, step " << step;
+                EXPECT_LT(certified[step], 3 * standard[step]) << triangles << " triangles, step " << step;
         }
     }
 }
