@@ -5,6 +5,7 @@
 #include "broadphase/sweep_and_prune.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
+#include "give_back.h"
 #include "pose_fault.h"
 #include "shape/shape_data.h"
 #include "step.h"
@@ -58,13 +59,16 @@ struct Scene::State {
         if (pair_count > 256) narrow.parts().wake();
     }
 
+    void pack_shapes() {
+        if (!narrow.parts().pack_shapes()) return;
+        for (PlacedBody& body : bodies)
+            if (body.shape != nullptr) body.shape_index = narrow.parts().index_of(body.shape);
+    }
+
     void place_bodies() {
-        const bool packed = narrow.parts().pack_shapes();
-        for (PlacedBody& body : bodies) {
-            if (body.shape == nullptr) continue;
-            if (packed) body.shape_index = narrow.parts().index_of(body.shape);
-            body.centred = centred_pose(*body.shape, body.pose);
-        }
+        pack_shapes();
+        for (PlacedBody& body : bodies)
+            if (body.shape != nullptr) body.centred = centred_pose(*body.shape, body.pose);
     }
 
     void find_pairs() {
@@ -116,6 +120,9 @@ struct Scene::State {
         stats.broad_ms = broad_ms;
         slots.step_done();
         cut_to_slots();
+        give_back(boxes);
+        give_back(pairs);
+        give_back(slot_pairs);
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -151,6 +158,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
+    s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose};
     return s.slots.give();
@@ -164,6 +172,11 @@ void Scene::remove(BodyId body) {
     s.pairs_stand = false;
     s.slots.take_back(slot_of(body));
     s.cut_to_slots();
+    try {
+        s.pack_shapes();
+    } catch (const std::exception&) {
+        // The body is removed all the same; the next add or step packs again, and throws if it must.
+    }
 }
 
 void Scene::set_pose(BodyId body, const Pose& pose) {

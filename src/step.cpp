@@ -2,11 +2,15 @@
 #include "step.h"
 
 #include "device/device_list.h"
+#include "give_back.h"
 #include "schedule/moving_pairs.h"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace raycontact {
 
@@ -79,7 +83,25 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         stats.ray_length += double(contact.ray_length);
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     }
+    give_back(contacts);
+    trim(stats.pair_bytes);
     stats.narrow_ms = milliseconds_since(start);
+}
+
+// The allocator keeps what was freed in small pieces. Once much of it is free it goes back to the system, and again
+// after the next step, which frees the lists of what was lost.
+void NarrowPhase::trim(std::uint64_t pair_bytes) {
+    constexpr std::uint64_t much = 16 << 20;
+    most_bytes_ = std::max(most_bytes_, pair_bytes);
+    if (most_bytes_ > 2 * pair_bytes + much) {
+        most_bytes_ = pair_bytes;
+        trims_ = 2;
+    }
+    if (trims_ == 0) return;
+    --trims_;
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }
 
 void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts) {
@@ -185,6 +207,9 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
         work = parts_[i].take_work();
         work.load = load_of(stats) - before;
         work.ms = found_[i].ms;
+        parts_[i].give_back();
+        found_[i].placer.give_back();
+        give_back(found_[i].contacts);
         balance_.record(i, work.load, work.ms);
     }
     balance_.end_step(pair_count);

@@ -47,6 +47,7 @@ private:
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
     void count(std::size_t pair_count, StepStats& stats);
+    void trim(std::uint64_t pair_bytes);
 
     Settings settings_;
     Parts parts_;
@@ -55,6 +56,8 @@ private:
     std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
     std::vector<std::span<const Contact>> rest_; ///< still to be merged
     Changes changes_;
+    std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
+    unsigned trims_ = 0;           ///< still to be done, one a step
 };
 
 } // namespace raycontact

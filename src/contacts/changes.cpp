@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/changes.h"
 
+#include "give_back.h"
+
 #include <cstdint>
 #include <tuple>
 
@@ -35,6 +37,8 @@ void Changes::mark(std::span<Contact> contacts) {
     }
     lost_.insert(lost_.end(), previous_.begin() + static_cast<std::ptrdiff_t>(old), previous_.end());
     previous_.resize(contacts.size());
+    give_back(previous_);
+    give_back(lost_);
     for (std::size_t i = 0; i < contacts.size(); ++i)
         previous_[i] = {contacts[i].body_a,  contacts[i].body_b,   contacts[i].vertex_body,
                         contacts[i].feature, contacts[i].crossing, contacts[i].vertex};

@@ -2,6 +2,7 @@
 #include "contacts/gather.h"
 
 #include "device/launch.h"
+#include "give_back.h"
 
 #include <algorithm>
 
@@ -41,6 +42,13 @@ bool Gather::read(Device& device, RayBatch& batch) {
     count_ = count;
     expected_ = count + count / 4;
     return true;
+}
+
+void Gather::give_back() {
+    contacts_.give_back(expected_);
+    if (found_.size() > 4 * expected_) found_.resize(expected_);
+    count_ = std::min(count_, found_.size());
+    raycontact::give_back(found_);
 }
 
 } // namespace raycontact

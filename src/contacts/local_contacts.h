@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/host_kernels.h"
+#include "give_back.h"
 
 #include <cstdint>
 #include <span>
@@ -18,6 +19,11 @@ public:
     void set(std::span<const kernels::LocalContact> found, std::span<const std::uint32_t> directed,
              std::size_t pair_count);
     std::span<const kernels::LocalContact> contacts() const { return contacts_; }
+    /// After a step: frees memory that it hardly used.
+    void give_back() {
+        raycontact::give_back(contacts_);
+        raycontact::give_back(places_);
+    }
 
 private:
     std::vector<kernels::LocalContact> contacts_;

@@ -135,6 +135,8 @@ DEVICE bool add_if_kept(const Holding* hold, HeldGroup* group, uint at, const Ra
     const uint place = find_held(own, held_range->count, ray.vertex_lane, at - held_range->now_first);
     const bool capped = held_range->tests_caps != 0u;
     Held known = nothing_held(ray.vertex_lane);
+    // The first rays of a pair seek their tubes in the course of four steps.
+    if (held_range->count == 0u) known.limit = 1.0f + (float)(ray.vertex_lane & 3u);
     if (place < held_range->count && own[place].vertex_lane == ray.vertex_lane) known = own[place];
     hold->after[at] = known;
     if (capped && known.safe <= 0.0f && known.triangle == NONE)

@@ -110,6 +110,29 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlo
     }
 }
 
+// Child boxes that may reach into the tube. A long tube's own box holds much of a fine mesh; seen along the axis, few
+// boxes are near it.
+DEVICE uint children_in_tube(const Tube* tube, READS(Node) node) {
+    const float ux = tube->u[0], uy = tube->u[1], uz = tube->u[2];
+    const float vx = tube->v[0], vy = tube->v[1], vz = tube->v[2];
+    const float aux = magnitude_of(ux), auy = magnitude_of(uy), auz = magnitude_of(uz);
+    const float avx = magnitude_of(vx), avy = magnitude_of(vy), avz = magnitude_of(vz);
+    const float ox = 2.0f * tube->origin[0], oy = 2.0f * tube->origin[1], oz = 2.0f * tube->origin[2];
+    const float twice = 2.0f * tube->radius;
+    int within[NODE_LANES];
+    FOR_LANES(k, NODE_LANES) {
+        // Everything doubled: twice the middle, and the sides.
+        const float cx = (node->bounds[0][k] + node->bounds[3][k]) - ox, sx = node->bounds[3][k] - node->bounds[0][k];
+        const float cy = (node->bounds[1][k] + node->bounds[4][k]) - oy, sy = node->bounds[4][k] - node->bounds[1][k];
+        const float cz = (node->bounds[2][k] + node->bounds[5][k]) - oz, sz = node->bounds[5][k] - node->bounds[2][k];
+        const float u = magnitude_of((ux * cx + uy * cy) + uz * cz), v = magnitude_of((vx * cx + vy * cy) + vz * cz);
+        const float most_u = ((aux * sx + auy * sy) + auz * sz) + twice;
+        const float most_v = ((avx * sx + avy * sy) + avz * sz) + twice;
+        within[k] = -(int)((u <= most_u) & (v <= most_v));
+    }
+    return pack_sixteen(within) & children_in(tube->box, node);
+}
+
 // Searches all triangles in the tube.
 DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(Node) nodes,
                                    READS(TriangleBlock) blocks) {
@@ -117,7 +140,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, R
     found.least = found.second = tube->radius;
     found.triangle_lane = NONE;
     READS(Node) tree = nodes + shape->node_first;
-    Descent way = {0u, 0u, children_in(tube->box, tree)};
+    Descent way = {0u, 0u, children_in_tube(tube, tree)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
@@ -125,7 +148,7 @@ DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, R
                 const uint index = child & ~LEAF;
                 nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index);
             } else {
-                go_down(&way, child, children_in(tube->box, tree + child));
+                go_down(&way, child, children_in_tube(tube, tree + child));
             }
         }
         if (way.at == 0u) return found;

@@ -2,6 +2,7 @@
 #include "pairs/device_pairs.h"
 
 #include "device/launch.h"
+#include "give_back.h"
 
 #include <algorithm>
 #include <array>
@@ -62,6 +63,7 @@ void DevicePairs::list_changes(const Update& update) {
 
 void DevicePairs::place(const Update& update) {
     if (update.pairs.size() >= NONE / 2) throw std::length_error("more than 2^31 pairs in one step; give fewer");
+    if (is_mostly_empty(slots_.end(), update.pairs.size())) clear();
     list_changes(update);
     placed_.resize(update.device, 2 * pairs_.size());
     if (!update.device.traits().has_double) return place_on_host(update);

@@ -12,6 +12,11 @@ class DevicePairs {
 public:
     void place(const Update& update);
     void clear() { *this = {}; }
+    std::uint64_t bytes() const {
+        return slots_.pairs().size()
+               * (sizeof(SlotPair) + 4 * sizeof(std::uint32_t) + 2 * sizeof(kernels::PairBodies)
+                  + 2 * sizeof(kernels::DirectedPair));
+    }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
     const Array<kernels::DirectedPair>& placed() const { return placed_; }

@@ -56,6 +56,20 @@ public:
     /// All slots are below this.
     std::uint32_t end() const { return end_; }
 
+    /// Gives the open pairs the lowest slots, and memory back. Calls moved(slot, i) for the i-th pair, which has slot i
+    /// from then on.
+    template <class Moved>
+    void compact(Moved&& moved) {
+        for (std::size_t i = 0; i < slots_.size(); ++i) {
+            moved(slots_[i], i);
+            slots_[i] = static_cast<std::uint32_t>(i);
+        }
+        end_ = static_cast<std::uint32_t>(slots_.size());
+        next_ = free_ = {};
+        open_.shrink_to_fit();
+        slots_.shrink_to_fit();
+    }
+
     void clear() { *this = {}; }
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "give_back.h"
 #include "pairs/pair_slots.h"
 
 #include <algorithm>
@@ -34,6 +35,7 @@ public:
         const bool changed = slots_.match(pairs, keep, open, [&](std::uint32_t slot) { closed(states_[slot]); });
         if (changed) hot_.swap(next_hot_);
         incoming_.clear();
+        if (is_mostly_empty(slots_.end(), pairs.size())) compact();
     }
 
     /// The place of a pair in the last match; empty if it was not open.
@@ -76,11 +78,22 @@ public:
     /// Forgets every pair.
     void clear() { *this = {}; }
 
+    /// All pairs have had slots below this.
+    std::uint32_t slots() const { return slots_.end(); }
     std::uint64_t bytes() const {
-        return slots_.pairs().size() * (sizeof(SlotPair) + sizeof(std::uint32_t) + sizeof(Hot) + sizeof(State));
+        return slots_.pairs().size() * (sizeof(SlotPair) + 2 * sizeof(std::uint32_t) + 2 * sizeof(Hot) + sizeof(State));
     }
 
 private:
+    void compact() {
+        std::vector<State> states(slots_.pairs().size());
+        slots_.compact([&](std::uint32_t slot, std::size_t i) { states[i] = states_[slot]; });
+        states_.swap(states);
+        hot_.shrink_to_fit();
+        next_hot_ = {};
+        incoming_ = {};
+    }
+
     void prefetch_state(std::size_t i) const {
         constexpr std::size_t line = 64;
         const char* bytes = reinterpret_cast<const char*>(&states_[slots_.slot(i)]);

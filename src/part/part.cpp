@@ -19,6 +19,10 @@ void Part::forget() {
     pipeline_.forget();
 }
 
+void Part::give_back() {
+    pipeline_.give_back(update(bodies_, pairs_));
+}
+
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
     return {*device_, *executor_, shapes_, bodies, pairs, motion_, *settings_};
 }

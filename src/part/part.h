@@ -44,6 +44,8 @@ public:
     /// The device's work since the last call.
     DeviceWork take_work();
 
+    /// After all of a step: frees memory that it hardly used. What end() and adopt() returned is gone.
+    void give_back();
     /// Forgets what the methods kept.
     void forget();
 

@@ -31,6 +31,25 @@ void Pipeline::forget() {
     coherent_.clear();
 }
 
+void Pipeline::give_back(const Update& last) {
+    std::size_t rays = batch_.count.most;
+    switch (finds(last)) {
+    case Finds::standard:
+        standard_.give_back(batch_);
+        rays = batch_.sums[RayBatch::ray_sum].sums[0];
+        break;
+    case Finds::certified:
+        certified_.give_back();
+        break;
+    case Finds::coherent:
+        coherent_.give_back();
+        break;
+    }
+    batch_.give_back(rays);
+    gather_.give_back();
+    local_.give_back();
+}
+
 void Pipeline::begin(const Update& update) {
     switch (finds(update)) {
     case Finds::standard:
@@ -79,7 +98,7 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     switch (finds(last)) {
     case Finds::standard:
-        return StandardRays::count(batch_, last.pairs.size(), stats);
+        return standard_.count(batch_, last.pairs.size(), stats);
     case Finds::certified:
         return certified_.count(batch_, stats);
     case Finds::coherent:

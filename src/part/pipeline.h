@@ -29,6 +29,8 @@ public:
 
     /// Adds what the last step did.
     void count(const Update& last, StepStats& stats) const;
+    /// After all of a step, with its update: frees memory that it hardly used. What end() returned is gone.
+    void give_back(const Update& last);
     /// Forgets what the methods kept.
     void forget();
 

@@ -2,6 +2,7 @@
 #include "rays/block_search.h"
 
 #include "device/launch.h"
+#include "give_back.h"
 
 #include <algorithm>
 
@@ -23,6 +24,7 @@ void BlockSearch::count(const Update& update, const Array<kernels::DirectedPair>
                         const Array<float>& horizons, const Array<kernels::Totals>& totals, std::size_t at,
                         std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
+    pair_count_ = pair_count;
     counts_.resize(update.device, 1, pair_count);
     block_masks_.resize(update.device, pair_count);
     safe_distances_.resize(update.device, horizons.size());
@@ -53,6 +55,7 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPa
     host_counts_.resize(pair_count);
     host_safe_distances_.resize(horizons.size());
     kernels::Totals sum{};
+    pair_count_ = pair_count;
     if (pair_count > 0) {
         count(update, pairs, pair_count, horizons, totals, at, NONE - 1);
         const Piece pieces[] = {totals.piece({&sum, 1}, at), counts_.values().piece(host_counts_),
@@ -63,6 +66,16 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPa
     make_room(update.device, sum.results);
     found_ = Count(sum.results);
     write(update, pairs, sum.items, horizons);
+}
+
+void BlockSearch::give_back(std::size_t used) {
+    counts_.give_back(pair_count_);
+    block_masks_.give_back(pair_count_);
+    safe_distances_.give_back();
+    ray_counts_.give_back(used);
+    blocks_.give_back(used);
+    raycontact::give_back(host_counts_);
+    raycontact::give_back(host_safe_distances_);
 }
 
 bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {

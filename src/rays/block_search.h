@@ -30,6 +30,14 @@ public:
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;
 
+    /// After a step that found so many blocks: frees memory that it hardly used.
+    void give_back(std::size_t used);
+    /// Of the last find.
+    std::uint64_t bytes() const {
+        return std::uint64_t{blocks_.size()} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
+               + pair_count_ * (2 * sizeof(kernels::uint) + sizeof(kernels::ulong));
+    }
+
     /// As many as find_now() found; of find(): the room.
     const Array<kernels::PairBlock>& blocks() const { return blocks_; }
     /// By pair: where its blocks begin.
@@ -55,6 +63,7 @@ private:
     Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
     Array<kernels::PairBlock> blocks_;
     Count found_{0}; ///< of blocks_
+    std::size_t pair_count_ = 0;
     std::vector<kernels::uint> host_counts_;
     std::vector<float> host_safe_distances_;
 };

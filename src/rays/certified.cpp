@@ -2,6 +2,7 @@
 #include "rays/certified.h"
 
 #include "device/launch.h"
+#include "give_back.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -11,6 +12,9 @@
 namespace raycontact {
 
 namespace {
+
+// Lists made at once: for all pairs of a first step they would take as much memory as all that is kept.
+constexpr std::size_t lists_at_once = 1 << 15;
 
 static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::LookResult::casting), "a bit for each watch of a segment");
 
@@ -32,6 +36,9 @@ bool is_idle(const kernels::HeldRange& held_range) {
 void CertifiedRays::clear() {
     table_.clear();
     pool_.clear();
+    watches_ = {};
+    held_ = {};
+    last_held_ = {};
 }
 
 void CertifiedRays::close(WatchedPair& state) {
@@ -56,26 +63,26 @@ void CertifiedRays::list_slices() {
     fast_count_ = directed_.size();
 }
 
-// Makes the new list of each stale pair: the blocks that reach into the bounds, widened by the distance for which the
-// list lasts, and that could be in contact before it expires.
-void CertifiedRays::make_lists(const Update& update, RayBatch& batch) {
+// Makes new lists for some of the stale pairs: the blocks that reach into the bounds, widened by the distance for which
+// the list lasts, and that could be in contact before it expires.
+void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale) {
     Device& device = update.device;
-    wide_pairs_.resize(device, stale_.size());
-    margins_.resize(device, stale_.size());
-    horizons_.resize(device, stale_.size());
-    places_.resize(device, stale_.size());
-    for (std::size_t i = 0; i < stale_.size(); ++i) {
-        const Due& due = stale_[i].due();
+    wide_pairs_.resize(device, stale.size());
+    margins_.resize(device, stale.size());
+    horizons_.resize(device, stale.size());
+    places_.resize(device, stale.size());
+    for (std::size_t i = 0; i < stale.size(); ++i) {
+        const Due& due = stale[i].due();
         const float horizon = static_cast<float>(due.own->expiry) + due.margin;
         margins_.in_place()[i] = due.margin;
         horizons_.in_place()[i] = horizon;
         kernels::DirectedPair& wide = wide_pairs_.in_place()[i];
-        wide = stale_[i].slice->places[stale_[i].at];
+        wide = stale[i].slice->places[stale[i].at];
         widen(wide, horizon);
     }
-    near_.find_now(update, wide_pairs_, stale_.size(), horizons_, batch.totals, RayBatch::block_sum);
-    for (std::size_t i = 0; i < stale_.size(); ++i) {
-        const Due& due = stale_[i].due();
+    near_.find_now(update, wide_pairs_, stale.size(), horizons_, batch.totals, RayBatch::block_sum);
+    for (std::size_t i = 0; i < stale.size(); ++i) {
+        const Due& due = stale[i].due();
         Watched& own = *due.own;
         pool_.release({own.first, own.capacity});
         own.capacity = 0; // in case the next line throws
@@ -215,10 +222,13 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     packed_ = update.shapes.packed();
     open_pairs_ = update.pairs.size();
     batch.resize(update.device, 0);
+    // What the few that are left know is worth less than the memory: they are looked at anew.
+    if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
     table_.match(update.pairs, [this](WatchedPair& state) { close(state); });
     wake_up_.run(update, table_);
     list_slices();
-    make_lists(update, batch);
+    for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
+        make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);
     find_fast_rays(update, batch);
     look_at_blocks(update, batch);
@@ -237,7 +247,30 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     stats.pairs_full += stale_.size() + fast_count_;
     stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
-                        + batch.count.value * sizeof(kernels::Ray) + held_.size() * sizeof(kernels::Held);
+                        + 2 * held_.size() * sizeof(kernels::Held) + batch.count.value * RayBatch::bytes_of_ray
+                        + (directed_.size() - fast_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
+                        + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
+                        + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult)) + fast_.bytes();
+}
+
+// Not the rays held: the next step needs them.
+void CertifiedRays::give_back() {
+    wake_up_.give_back();
+    raycontact::give_back(stale_);
+    raycontact::give_back(directed_);
+    const std::size_t segments = segments_.size();
+    pairs_.give_back();
+    segments_.give_back();
+    looks_.give_back();
+    held_ranges_.give_back();
+    look_rays_.give_back(segments);
+    wide_pairs_.give_back();
+    margins_.give_back();
+    horizons_.give_back();
+    places_.give_back();
+    near_.give_back(near_.blocks().size());
+    fast_.give_back(fast_.blocks().size());
+    last_held_.give_back();
 }
 
 } // namespace raycontact

@@ -22,6 +22,8 @@ public:
 
     /// Adds what the last step did.
     void count(const RayBatch& batch, StepStats& stats) const;
+    /// After a step: frees memory that it hardly used.
+    void give_back();
 
 private:
     struct Stale {
@@ -32,7 +34,7 @@ private:
 
     void close(WatchedPair& state);
     void list_slices();
-    void make_lists(const Update& update, RayBatch& batch);
+    void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);
     void place(const Update& update);
     void find_fast_rays(const Update& update, RayBatch& batch);
     void look_at_blocks(const Update& update, RayBatch& batch);
@@ -55,7 +57,7 @@ private:
     Array<kernels::LookResult> looks_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
     Columns look_rays_;
-    Array<kernels::DirectedPair> wide_pairs_; ///< by index of stale_, like the next three
+    Array<kernels::DirectedPair> wide_pairs_; ///< by index of some stale pairs, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
     BlockSearch near_, fast_;

@@ -2,6 +2,7 @@
 #include "rays/coherent.h"
 
 #include "device/launch.h"
+#include "give_back.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
 #include "rays/look_threshold.h"
@@ -353,7 +354,33 @@ void CoherentRays::count(StepStats& stats) const {
     stats.walks_lost += sums_.walks_lost;
     stats.walk_casts += sums_.walk_casts;
     stats.predictions += sums_.predictions;
-    stats.pair_bytes += table_.bytes() + candidates_kept_ * sizeof(kernels::Candidate);
+    stats.pair_bytes += table_.bytes() + turns_.size() + candidates_kept_ * sizeof(kernels::Candidate)
+                        + (2 * directed_.size() + 2 * full_count_) * sizeof(kernels::DirectedPair)
+                        + directed_.size() * (2 * sizeof(float) + 2 * sizeof(kernels::Followed))
+                        + (sums_.walks + full_rays_) * (RayBatch::bytes_of_ray + 3 * sizeof(kernels::uint))
+                        + near_.bytes();
+}
+
+// Not the candidates: the next step needs them.
+void CoherentRays::give_back() {
+    const std::size_t directed = directed_.size();
+    raycontact::give_back(turns_);
+    raycontact::give_back(directed_);
+    raycontact::give_back(host_pairs_);
+    raycontact::give_back(wide_pairs_);
+    for (std::vector<float>* list : {&cullings_, &reaches_, &margins_}) raycontact::give_back(*list);
+    raycontact::give_back(host_segments_);
+    raycontact::give_back(host_firsts_);
+    raycontact::give_back(host_ranges_);
+    raycontact::give_back(host_followed_);
+    device_pairs_.give_back();
+    device_wide_.give_back();
+    for (Array<float>* list : {&device_cullings_, &device_reaches_, &device_margins_}) list->give_back();
+    kept_counts_.give_back(directed);
+    for (Array<kernels::uint>* list : {&segment_firsts_, &ranges_, &starts_, &nexts_, &hows_}) list->give_back();
+    near_.give_back(near_.blocks().size());
+    segments_.give_back();
+    followed_.give_back();
 }
 
 } // namespace raycontact

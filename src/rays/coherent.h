@@ -38,6 +38,8 @@ public:
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
+    /// After a step: frees memory that it hardly used.
+    void give_back();
 
 private:
     enum class Turn : std::uint8_t { follow, look };

@@ -36,10 +36,13 @@ bool StandardRays::had_room(Device& device, RayBatch& batch) {
     return blocks_had && rays <= room;
 }
 
-void StandardRays::count(const RayBatch& batch, std::size_t pairs, StepStats& stats) {
-    stats.vertices += std::uint64_t{VERTEX_LANES} * batch.sums[RayBatch::block_sum].sums[0];
+void StandardRays::count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const {
+    const std::uint64_t found = batch.sums[RayBatch::block_sum].sums[0];
+    stats.vertices += VERTEX_LANES * found;
     stats.rays += batch.sums[RayBatch::ray_sum].sums[1];
     stats.pairs_full += 2 * pairs;
+    stats.pair_bytes += pairs_.bytes() + found * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
+                        + std::uint64_t{batch.sums[RayBatch::ray_sum].sums[0]} * RayBatch::bytes_of_ray;
 }
 
 } // namespace raycontact

@@ -23,7 +23,9 @@ public:
     void clear() { pairs_.clear(); }
 
     /// Adds what the last step did.
-    static void count(const RayBatch& batch, std::size_t pairs, StepStats& stats);
+    void count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const;
+    /// After a step: frees memory that it hardly used.
+    void give_back(const RayBatch& batch) { search_.give_back(batch.sums[RayBatch::block_sum].sums[0]); }
 
 private:
     DevicePairs pairs_;

@@ -11,8 +11,6 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint32_t slice_size = 128; // pairs
-
 // Shares of the smaller body's size:
 constexpr double fastest = 0.006;    // a step: a list would not last long enough to pay for itself
 constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to triangle
@@ -77,10 +75,10 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         if (stale[d]) {
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
-            slice.stale.push_back(static_cast<std::uint32_t>(slice.due.size()));
+            slice.stale.add() = slice.due.size();
         }
         if (!wakes[d] && own.rays.count == 0) continue;
-        Due& due = slice.due.emplace_back();
+        Due& due = slice.due.add();
         due.own = &own;
         due.directed = 2 * i + d;
         due.now = static_cast<float>(stale[d] ? 0 : clock);
@@ -89,7 +87,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
         due.tests_caps = speed < unhurried * size ? target.shape->data().header.caps_pay : 0;
         due.longest = longest_clock(target);
-        place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.emplace_back());
+        place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.add());
     }
 }
 
@@ -105,7 +103,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double speed = update.motion.pair_speed(pair);
         if (!update.settings.displacement_threshold
             && speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]))
-            slice.fast.push_back(i);
+            slice.fast.add() = i;
         else
             wake_pair(update, table, i, speed, slice);
     };
@@ -116,23 +114,34 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
 void WakeUp::run(const Update& update, WatchedPairs& table) {
     const auto count = static_cast<std::uint32_t>(update.pairs.size());
     slice_count_ = (count + slice_size - 1) / slice_size;
-    while (slices_.size() < slice_count_) {
-        Slice& slice = slices_.emplace_back();
-        slice.due.reserve(std::size_t{2} * slice_size);
-        slice.places.reserve(std::size_t{2} * slice_size);
-        slice.stale.reserve(std::size_t{2} * slice_size);
-        slice.fast.reserve(slice_size);
+    if (slices_.size() < slice_count_) {
+        const std::size_t room = slice_count_ + slice_count_ / 2;
+        rooms_ = std::make_unique_for_overwrite<Room[]>(room);
+        slices_.resize(room);
+        most_due_ = 0;
     }
     update.executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t s = begin; s < end; ++s) {
             Slice& slice = slices_[s];
-            slice.due.clear();
-            slice.places.clear();
-            slice.stale.clear();
-            slice.fast.clear();
+            Room& room = rooms_[s];
+            slice.due = List(room.due);
+            slice.places = List(room.places);
+            slice.stale = List(room.stale);
+            slice.fast = List(room.fast);
             wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
         }
     });
+}
+
+void WakeUp::give_back() {
+    std::size_t due = 0;
+    for (const Slice& slice : slices()) due += slice.due.size();
+    most_due_ = std::max(most_due_, due);
+    if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
+    rooms_.reset();
+    slices_ = {};
+    slice_count_ = 0;
+    most_due_ = 0;
 }
 
 } // namespace raycontact

@@ -39,12 +39,12 @@ struct Slack {
 
 /// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.
 struct Due {
-    Watched* own = nullptr;
-    std::uint32_t directed = 0;   ///< directed index of the pair
-    float now = 0;                ///< the clock
-    float margin = 0, radius = 0; ///< metres: of rounding; of tubes to seek, 0: none
-    kernels::uint tests_caps = 0; ///< 1: its rays test caps
-    double longest = 0;           ///< metres that a new list may last
+    Watched* own;
+    std::uint32_t directed;   ///< directed index of the pair
+    float now;                ///< the clock
+    float margin, radius;     ///< metres: of rounding; of tubes to seek, 0: none
+    kernels::uint tests_caps; ///< 1: its rays test caps
+    double longest;           ///< metres that a new list may last
 };
 
 } // namespace raycontact

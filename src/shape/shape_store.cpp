@@ -45,12 +45,14 @@ void ShapeStore::remove(const Shape* shape) {
 }
 
 bool ShapeStore::pack() {
-    if (2 * bytes_dropped_ <= bytes_used_) return false;
+    if (whole_ && 2 * bytes_dropped_ <= bytes_used_) return false;
     ++packed_;
     arrays_ = {};
     headers_.clear();
     bytes_used_ = bytes_dropped_ = 0;
+    whole_ = false; // if an upload throws, the next call begins anew
     for (const Shape* shape : order_) upload(entries_.at(shape));
+    whole_ = true;
     return true;
 }
 

@@ -32,7 +32,8 @@ public:
     void remove(const Shape* shape);
     /// Index of a shape in the arrays. Valid until the next add or pack.
     kernels::uint index_of(const Shape* shape) const { return entries_.at(shape).index; }
-    /// Frees the memory of dropped shapes once they outweigh the rest. Indices change when it returns true.
+    /// Frees the memory of dropped shapes once they outweigh the rest. Indices change when it returns true, or throws:
+    /// then another call must follow before any shape is used.
     bool pack();
     /// Counts the times that indices changed.
     std::uint64_t packed() const { return packed_; }
@@ -55,6 +56,7 @@ private:
     std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
     std::uint64_t packed_ = 0;
+    bool whole_ = true; ///< all shapes of order_ are in the arrays
 };
 
 } // namespace raycontact

@@ -152,5 +152,25 @@ TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
     EXPECT_EQ(pool.in_use(), 1ull << 31) << "a refusal changes nothing";
 }
 
+// Once few of many are left, slots are given anew, and what is kept stays with its pair.
+TEST(PairTable, KeepsWhatIsLeftOfMany) {
+    PairTable<State, Hot> table;
+    std::vector<SlotPair> many, few;
+    for (BodySlot i = 0; i < 5000; ++i) many.emplace_back(i, i + 1);
+    for (BodySlot i = 100; i < 5000; i += 50) few.emplace_back(i, i + 1);
+    const auto ignore = [](State&) {};
+    table.match(many, ignore);
+    for (std::size_t i = 0; i < many.size(); ++i) table.state(i).mark = table.hot(i).left = double(many[i].first);
+    EXPECT_EQ(table.slots(), many.size());
+    table.match(few, ignore);
+    EXPECT_EQ(table.slots(), few.size());
+    table.match(many, ignore);
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        const bool stayed = i >= 100 && i % 50 == 0;
+        ASSERT_EQ(table.state(i).mark, stayed ? double(i) : 0.0);
+        ASSERT_EQ(table.hot(i).left, stayed ? double(i) : -1.0);
+    }
+}
+
 } // namespace
 } // namespace raycontact
