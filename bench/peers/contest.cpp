@@ -7,6 +7,7 @@
 #include <raycontact/contact.h>
 
 #include <algorithm>
+#include <map>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -147,7 +148,7 @@ std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entran
                             const std::function<void(const std::string&)>& progress) {
     if (work.steps.empty()) return {};
     progress(work.name + ": what standard finds");
-    Reference reference(work);
+    std::map<Features, Reference> references; // by what is asked, made when somebody needs it
     std::vector<Runner> runners;
     for (const Entrant& entrant : entrants) {
         if (!entrant.make) continue;
@@ -167,7 +168,10 @@ std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entran
         }
         const std::uint64_t after = heap_in_use();
         runner.memory = after > before ? after - before : 0;
-        runner.check(work, reference);
+        if (const Scene* scene = runner.peer->scene()) {
+            const Features asked = scene->settings().features;
+            runner.check(work, references.try_emplace(asked, work, asked).first->second);
+        }
     }
     for (std::uint32_t run = 0; run < runs; ++run) {
         for (Runner& runner : runners) {

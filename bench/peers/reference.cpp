@@ -3,8 +3,8 @@
 
 namespace raycontact::bench {
 
-Reference::Reference(const Work& work) {
-    Settings settings = one_thread(Method::standard);
+Reference::Reference(const Work& work, Features features) {
+    Settings settings = one_thread(Method::standard, Caster::bvh, features);
     settings.skip_outside = false;
     const auto scene = make_scene(work, settings);
     for (const WorkStep& step : work.steps) {

@@ -14,7 +14,7 @@ namespace raycontact::bench {
 /// name alone, since a work has up to a million.
 class Reference {
 public:
-    explicit Reference(const Work& work);
+    explicit Reference(const Work& work, Features features = Features::vertices);
 
     /// Adds what one step of the work got wrong, and what it is a part of.
     void compare(std::size_t step, std::span<const Contact> found, recording::WrongRays& wrong);

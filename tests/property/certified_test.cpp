@@ -99,7 +99,8 @@ void all_courses(Kind kind, double share) {
         episode.bodies = kind == Kind::slab ? 24 : 12;
         episode.tightness = random.uniform(0, kind == Kind::slab ? 0.5 : 0.4);
         episode.steps = 120;
-        if (random.below(2) == 0) episode.features = Features::vertices;
+        if (random.below(8) != 0)
+            episode.features = Features::vertices; // edges of coarse meshes take ten times as long
         play(episode, counts);
     }
     report(name_of(kind), counts, wanted);
@@ -189,7 +190,7 @@ TEST(certified, dense_crowds) {
         Random random(first_seed() + 200000 + i);
         Settings settings = some_settings(random);
         settings.skip_outside = true;
-        settings.features = i % 2 ? Features::vertices : Features::edges;
+        settings.features = i % 4 ? Features::vertices : Features::edges;
         Triplet triplet(settings, thresholds[random.below(std::size(thresholds))], "dense crowd " + std::to_string(i));
         std::vector<Mover> movers;
         constexpr std::uint32_t bodies = 40;
