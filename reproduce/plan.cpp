@@ -57,6 +57,7 @@ Settings as_in_the_paper(Method method, double displacement_threshold) {
     return settings;
 }
 
+// But for edges, which the paper has not.
 Settings by_default(Method method) {
     Settings settings;
     settings.features = Features::vertices;
