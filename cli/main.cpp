@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/bench.h"
-#include "cli/collide.h"
-#include "cli/devices.h"
-#include "cli/mesh.h"
-#include "cli/replay.h"
-#include "cli/reproduce.h"
-#include "cli/run.h"
+#include "cli/commands.h"
 #include "cli/stop.h"
-#include "cli/view.h"
 
 #include <raycontact/error.h>
 
@@ -38,14 +31,7 @@ int run_program(int argc, char** argv) {
     app.set_version_flag("--version", "raycontact " RAYCONTACT_VERSION);
     app.require_subcommand(0, 1); // none is refused below: CLI11 would not name a misspelt one
     app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 130 ended by Ctrl-C.");
-    add_devices(app);
-    add_mesh(app);
-    add_collide(app);
-    add_run(app);
-    add_replay(app);
-    add_view(app);
-    add_reproduce(app);
-    add_bench(app);
+    add_commands(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

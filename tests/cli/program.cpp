@@ -87,23 +87,6 @@ ProgramResult run_limited(const std::string& limit, const std::vector<std::strin
     return StartedProgram(arguments, folder, {}, {"/bin/sh", "-c", "ulimit " + limit + "; exec \"$0\" \"$@\""}).wait();
 }
 
-TemporaryFolder::TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "raycontact-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder for the test: " + name);
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-void TemporaryFolder::write(const std::string& name, std::string_view text) const {
-    std::ofstream stream(path_ / name, std::ios::binary);
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.flush()) throw std::runtime_error("cannot write " + name);
-}
-
 std::string cube_obj() {
     return "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5\n"
            "v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5\n"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "../temporary_folder.h"
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -14,20 +16,6 @@
 struct ProgramResult {
     int status = -1; ///< exit status; 128 + signal when it was killed
     std::string out, err;
-};
-
-/// A folder of its own, gone with the test.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-    void write(const std::string& name, std::string_view text) const;
-
-private:
-    std::filesystem::path path_;
 };
 
 /// The built program (no shell), running in `folder` from the start; killed where nobody waits for it.

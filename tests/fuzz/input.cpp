@@ -5,10 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <stdexcept>
-
-#include <unistd.h>
 
 namespace raycontact::fuzz {
 
@@ -39,29 +36,6 @@ bool taken(const std::function<void()>& read) {
 
 std::uint64_t times_taken() {
     return taken_so_far;
-}
-
-ScratchFolder::ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "raycontact-fuzz-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) fail("no folder for files: " + name);
-    path_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::filesystem::path ScratchFolder::write(const std::string& name, std::string_view text) const {
-    const std::filesystem::path file = path_ / name;
-    std::ofstream out(file, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!out.flush()) fail("cannot write " + file.string());
-    return file;
-}
-
-std::filesystem::path ScratchFolder::write(const std::string& name, Bytes bytes) const {
-    return write(name, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 } // namespace raycontact::fuzz

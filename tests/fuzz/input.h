@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -23,21 +22,10 @@ bool taken(const std::function<void()>& read);
 /// How often taken() was true, in this process.
 std::uint64_t times_taken();
 
-/// A folder of this process, gone at its end.
-class ScratchFolder {
-public:
-    ScratchFolder();
-    ~ScratchFolder();
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    /// The file's path.
-    std::filesystem::path write(const std::string& name, Bytes bytes) const;
-    std::filesystem::path write(const std::string& name, std::string_view text) const;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
+/// The bytes as a text, for files.
+inline std::string_view text_of(Bytes bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// Takes numbers off the front of an input; zeros once it has ended.
 class Source {

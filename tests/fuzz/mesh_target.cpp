@@ -2,6 +2,7 @@
 // A mesh file in memory: read, checked and prepared as load_mesh and Shape::make do it. RAYCONTACT_FUZZ_READER is the
 // reader, RAYCONTACT_FUZZ_FILE the file's name.
 #include "fuzz/input.h"
+#include "temporary_folder.h"
 #include "tests/unit/mesh/formats.h"
 #include "tests/unit/mesh/solids.h"
 
@@ -14,7 +15,7 @@
 using namespace raycontact;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const fuzz::ScratchFolder folder;
+    static const TemporaryFolder folder;
     // A glTF file may name it.
     static const auto buffer = folder.write("m.bin", test::gltf_buffer(test::torus(6, 4, 1, 0.3)));
     fuzz::taken([&] {

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A command line, a word a line: every option of every subcommand is read as the program reads it, but nothing is run.
-#include "cli/bench.h"
-#include "cli/collide.h"
+#include "cli/commands.h"
 #include "cli/common_options.h"
-#include "cli/devices.h"
-#include "cli/mesh.h"
-#include "cli/replay.h"
-#include "cli/reproduce.h"
-#include "cli/run.h"
 #include "cli/run_scene.h"
-#include "cli/view.h"
 #include "fuzz/input.h"
 
 #include <raycontact/scene.h>
@@ -61,14 +54,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         Reader app("", "raycontact");
         app.set_version_flag("--version", "0");
         app.require_subcommand(0, 1);
-        add_devices(app);
-        add_mesh(app);
-        add_collide(app);
-        add_run(app);
-        add_replay(app);
-        add_view(app);
-        add_reproduce(app);
-        add_bench(app);
+        add_commands(app);
         read(app, words);
     });
     // And what follows: settings that fit together make a scene.

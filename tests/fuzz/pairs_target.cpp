@@ -2,6 +2,7 @@
 // A pairs file, as `raycontact collide --pairs` reads it.
 #include "cli/pairs_file.h"
 #include "fuzz/input.h"
+#include "temporary_folder.h"
 
 #include <raycontact/scene.h>
 
@@ -10,8 +11,8 @@
 using namespace raycontact;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const fuzz::ScratchFolder folder;
-    const auto file = folder.write("pairs.json", fuzz::Bytes(data, size));
+    static const TemporaryFolder folder;
+    const auto file = folder.write("pairs.json", fuzz::text_of({data, size}));
     fuzz::taken([&] {
         for (const QueryPair& pair : read_pairs_file(file)) {
             for (const PairBody& body : pair) {

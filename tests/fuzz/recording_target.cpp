@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording, with its checksums made right: opened, read step by step, and replayed where it is small.
 #include "fuzz/recording_input.h"
+#include "temporary_folder.h"
 
 #include <recording/reader.h>
 #include <recording/replay.h>
@@ -8,9 +9,9 @@
 using namespace raycontact;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const fuzz::ScratchFolder folder;
+    static const TemporaryFolder folder;
     const recording::Bytes bytes = fuzz::recording_file({data, size});
-    const auto file = folder.write("recording.glb", fuzz::Bytes(bytes));
+    const auto file = folder.write("recording.glb", fuzz::text_of(bytes));
     fuzz::taken([&] {
         recording::Reader reader(file);
         std::vector<Pose> poses;

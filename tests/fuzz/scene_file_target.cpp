@@ -2,6 +2,7 @@
 // A scene file, as `raycontact run FILE.json` reads it; where it is small its first steps are run, too.
 #include "cli/scene_file.h"
 #include "fuzz/input.h"
+#include "temporary_folder.h"
 #include "tests/unit/mesh/formats.h"
 #include "tests/unit/mesh/solids.h"
 
@@ -28,7 +29,7 @@ bool is_large(const nlohmann::json& value, const std::string& key = {}) {
 } // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const fuzz::ScratchFolder folder;
+    static const TemporaryFolder folder;
     static const auto mesh = folder.write("m.obj", test::as_obj(test::torus(6, 4, 1, 0.3)));
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     // A parser that knows no depth would end in the stack's overflow, and none of ours.

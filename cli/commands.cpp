@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands.h"
+
+#include "cli/bench.h"
+#include "cli/collide.h"
+#include "cli/devices.h"
+#include "cli/mesh.h"
+#include "cli/replay.h"
+#include "cli/reproduce.h"
+#include "cli/run.h"
+#include "cli/view.h"
+
+void add_commands(CLI::App& app) {
+    add_devices(app);
+    add_mesh(app);
+    add_collide(app);
+    add_run(app);
+    add_replay(app);
+    add_view(app);
+    add_reproduce(app);
+    add_bench(app);
+}
