@@ -29,6 +29,8 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
     if (status.type() != std::filesystem::file_type::regular) fail("is not an ordinary file; copy it to one");
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) fail("cannot be read: " + error.message());
+    constexpr std::uintmax_t most = 1 << 30;
+    if (size > most) fail(fmt::format("has {} bytes; at most {} are read: split it", size, most));
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
     if (!stream) fail(std::string("cannot be opened: ") + std::strerror(errno));
     std::string text(size, '\0');

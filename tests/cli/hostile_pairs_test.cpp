@@ -118,4 +118,13 @@ TEST(HostilePairsFile, ManyPairsAreReadInLinearTime) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)); // some minutes where it is not
 }
 
+TEST(HostilePairsFile, BeyondAGigabyteIsRefusedUnread) {
+    const TemporaryFolder folder;
+    std::filesystem::resize_file(folder.write("large.json", "["), (std::uintmax_t{1} << 30) + 1); // takes no room
+    const auto start = std::chrono::steady_clock::now();
+    expect_refused(run_program({"collide", "--pairs", "large.json"}, folder.path()),
+                   "large.json: has 1073741825 bytes");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+}
+
 } // namespace
