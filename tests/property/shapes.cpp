@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 
 namespace raycontact::reference {
 
@@ -79,6 +80,19 @@ std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts,
         parts.push_back(contacts.subspan(first, at - first));
     }
     return parts;
+}
+
+std::vector<Contact> contacts_of_fresh_scene(const Scene& scene, const Settings& settings) {
+    Scene fresh(settings);
+    const auto ids = scene.bodies();
+    std::map<BodyId, BodyId> renamed;
+    for (const BodyId id : ids) renamed[id] = fresh.add(scene.shape(id).shared_from_this(), scene.pose(id));
+    std::vector<Pair> pairs;
+    for (const auto& [a, b] : scene.pairs()) pairs.emplace_back(renamed[a], renamed[b]);
+    const auto found = fresh.step(pairs);
+    std::vector<Contact> contacts(found.begin(), found.end());
+    for (Contact& c : contacts) c.body_a = slot_of(ids[c.body_a]), c.body_b = slot_of(ids[c.body_b]);
+    return contacts;
 }
 
 bool same_bits(std::span<const Contact> x, std::span<const Contact> y) {

@@ -45,6 +45,9 @@ std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts,
 
 inline constexpr Direction directions[] = {Direction::ray, Direction::weighted, Direction::reprojected};
 
+/// What a scene with these settings that has seen nothing finds for the bodies, poses and pairs of the last step.
+std::vector<Contact> contacts_of_fresh_scene(const Scene& scene, const Settings& settings);
+
 /// The same contacts, bit for bit.
 bool same_bits(std::span<const Contact> x, std::span<const Contact> y);
 

@@ -17,7 +17,6 @@
 #include <cstdlib>
 #include <deque>
 #include <fstream>
-#include <map>
 #include <string>
 
 #include <malloc.h>
@@ -169,19 +168,7 @@ private:
         Settings settings = settings_;
         settings.method = Method::standard;
         settings.devices = "cpu";
-        Scene fresh(settings);
-        std::map<BodyId, BodyId> renamed;
-        std::vector<BodyId> ids;
-        for (const BodyId body : scene_.bodies()) {
-            renamed[body] = fresh.add(scene_.shape(body).shared_from_this(), scene_.pose(body));
-            ids.push_back(body);
-        }
-        std::vector<Pair> pairs;
-        for (const auto& [a, b] : scene_.pairs()) pairs.emplace_back(renamed[a], renamed[b]);
-        const auto found = fresh.step(pairs);
-        std::vector<Contact> expected(found.begin(), found.end());
-        for (Contact& c : expected) c.body_a = slot_of(ids[c.body_a]), c.body_b = slot_of(ids[c.body_b]);
-        return reference::same_bits(expected, scene_.contacts());
+        return reference::same_bits(reference::contacts_of_fresh_scene(scene_, settings), scene_.contacts());
     }
 
     Settings settings_;
