@@ -13,6 +13,12 @@ void give_back(std::vector<T>& list) {
     if (list.capacity() * sizeof(T) > kept_anyway && list.capacity() > 4 * list.size()) list.shrink_to_fit();
 }
 
+/// Frees a list's memory, which "list = {}" does not.
+template <class T>
+void free_all(std::vector<T>& list) {
+    std::vector<T>().swap(list);
+}
+
 /// Whether so many of `slots` are in use that those who number by them should begin anew.
 inline bool is_mostly_empty(std::size_t slots, std::size_t used) {
     return slots > 4 * used + 1024;

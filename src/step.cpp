@@ -209,6 +209,7 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
         work.ms = found_[i].ms;
         parts_[i].give_back();
         found_[i].placer.give_back();
+        found_[i].edges.give_back();
         give_back(found_[i].contacts);
         balance_.record(i, work.load, work.ms);
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/edge_stage.h"
 
+#include "give_back.h"
+
 #include <algorithm>
 #include <tuple>
 
@@ -72,10 +74,12 @@ void EdgeStage::run(Executor& executor, Direction direction, std::span<const Pla
         firsts_[directed] = at;
     }
     const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
+    block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     if (motion != nullptr) lists_.match(pairs);
     const Question question{direction, bodies, pairs, motion};
     executor.run(block_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        std::unique_ptr<Workspace> work = take_workspace();
         for (std::uint32_t b = begin; b < end; ++b) {
             Block& block = blocks_[b];
             block.lists.clear();
@@ -86,17 +90,31 @@ void EdgeStage::run(Executor& executor, Direction direction, std::span<const Pla
                 const auto vertices_of = [&](std::size_t directed) {
                     return local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
                 };
-                find(block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+                find(*work, block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
                 block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
             }
         }
+        return_workspace(std::move(work));
     });
     if (motion != nullptr)
         for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
     merge(pairs, contacts);
 }
 
-void EdgeStage::find(Block& block, const Question& question, std::size_t i,
+std::unique_ptr<EdgeStage::Workspace> EdgeStage::take_workspace() {
+    const std::lock_guard lock(idle_mutex_);
+    if (idle_.empty()) return std::make_unique<Workspace>();
+    std::unique_ptr<Workspace> work = std::move(idle_.back());
+    idle_.pop_back();
+    return work;
+}
+
+void EdgeStage::return_workspace(std::unique_ptr<Workspace> work) {
+    const std::lock_guard lock(idle_mutex_);
+    idle_.push_back(std::move(work));
+}
+
+void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
     const SlotPair& pair = question.pairs[i];
     const PlacedBody &a = question.bodies[pair.first], &b = question.bodies[pair.second];
@@ -110,20 +128,20 @@ void EdgeStage::find(Block& block, const Question& question, std::size_t i,
     const std::array<SourceMesh, 2> placed{SourceMesh(a, b, in_contact), SourceMesh(b, a, in_contact)};
     NearEdges near;
     if (motion != nullptr) {
-        near = lists_.near(i, pair, question.bodies, placed, *motion, block.lists);
+        near = lists_.near(i, pair, question.bodies, placed, *motion, work.search, block.lists);
     } else {
         block.lists.clear();
-        near = block.lists.find(placed);
+        near = block.lists.find(work.search, placed);
     }
-    block.found.clear();
+    work.found.clear();
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (!block.edges.find(placed, near, vertices, block.found) && !in_contact
+    if (!work.edges.find(placed, near, vertices, work.found) && !in_contact
         && !(motion != nullptr && lists_.is_apart(i))) {
-        const bool apart = !find_inside(placed, block.found);
+        const bool apart = !find_inside(placed, work.found);
         if (apart && motion != nullptr) lists_.found_apart(i);
     }
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
-    for (const FeatureContact& found : block.found) {
+    for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == VertexBody::a;
         block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, question.direction));
     }
@@ -131,11 +149,32 @@ void EdgeStage::find(Block& block, const Question& question, std::size_t i,
               [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });
 }
 
+std::uint64_t EdgeStage::bytes() const {
+    std::uint64_t bytes = lists_.bytes() + firsts_.size() * sizeof(std::uint32_t);
+    for (std::size_t b = 0; b < block_count_; ++b)
+        bytes += blocks_[b].contacts.capacity() * sizeof(Contact) + blocks_[b].lists.bytes();
+    return bytes;
+}
+
+void EdgeStage::give_back() {
+    // A block is as large as what its pairs found, so those of pairs that are gone go as a whole.
+    if (is_mostly_empty(pairs_in_block * blocks_.size(), pairs_in_block * block_count_)) {
+        blocks_.resize(block_count_);
+        blocks_.shrink_to_fit();
+    }
+    for (Block& block : blocks_) {
+        raycontact::give_back(block.contacts);
+        block.lists.give_back();
+    }
+    raycontact::give_back(firsts_);
+    raycontact::give_back(merged_);
+}
+
 void EdgeStage::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
     std::size_t added = 0;
     for (std::size_t i = 0; i < pairs.size(); i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
-    if (added == 0) return;
     merged_.clear();
+    if (added == 0) return;
     merged_.reserve(contacts.size() + added);
     const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
     for (std::size_t i = 0; i < pairs.size(); ++i) {

@@ -8,6 +8,8 @@
 
 #include <raycontact/settings.h>
 
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -25,15 +27,21 @@ public:
              std::vector<Contact>& contacts);
     /// Forgets what it kept for the next step.
     void forget() { lists_.clear(); }
-    /// Of what it keeps for the pairs.
-    std::uint64_t bytes() const { return lists_.bytes(); }
+    /// Of what it keeps for the pairs, and of what it found in the last step.
+    std::uint64_t bytes() const;
+    /// After a step: frees memory that it hardly used.
+    void give_back();
 
 private:
+    /// What a thread works in.
+    struct Workspace {
+        NearSearch search;
+        PairEdges edges;
+        std::vector<FeatureContact> found;
+    };
     /// Pairs that one thread takes at once, and what it finds.
     struct Block {
-        PairEdges edges;
         NearLists::Slice lists;
-        std::vector<FeatureContact> found;
         std::vector<Contact> contacts;   ///< sorted, pair by pair
         std::vector<std::uint32_t> ends; ///< of each pair's, in contacts
     };
@@ -44,14 +52,19 @@ private:
         std::span<const SlotPair> pairs;
         const Motion* motion;
     };
-    void find(Block& block, const Question& question, std::size_t i,
+    void find(Workspace& work, Block& block, const Question& question, std::size_t i,
               const std::array<std::span<const kernels::LocalContact>, 2>& vertices);
     void merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
+    std::unique_ptr<Workspace> take_workspace();
+    void return_workspace(std::unique_ptr<Workspace> work);
 
     NearLists lists_;
     std::vector<Block> blocks_;
+    std::size_t block_count_ = 0;       ///< of the last step
     std::vector<std::uint32_t> firsts_; ///< of each directed pair's contacts, in local
     std::vector<Contact> merged_;
+    std::mutex idle_mutex_;
+    std::vector<std::unique_ptr<Workspace>> idle_; ///< as many as threads have worked at once
 };
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/near_lists.h"
 
+#include "give_back.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -37,27 +38,35 @@ void NearLists::Slice::clear() {
     fresh_.clear();
 }
 
+void NearLists::Slice::give_back() {
+    raycontact::give_back(near_);
+    raycontact::give_back(fresh_);
+}
+
 void NearLists::clear() {
     table_.clear();
     pool_.clear();
-    lists_ = {};
+    free_all(lists_);
 }
 
 void NearLists::match(std::span<const SlotPair> pairs) {
+    // What the few that are left know is worth less than the memory.
+    if (is_mostly_empty(table_.slots(), pairs.size())) clear();
     table_.match(pairs, [this](List& list) {
         pool_.release({list.first, list.capacity});
         list = {};
     });
 }
 
-NearEdges NearLists::Slice::find(const std::array<SourceMesh, 2>& placed, double margin) {
-    const std::size_t begin = near_.size(), first = search_.find(placed, margin, near_);
+NearEdges NearLists::Slice::find(NearSearch& search, const std::array<SourceMesh, 2>& placed, double margin) {
+    const std::size_t begin = near_.size(), first = search.find(placed, margin, near_);
     const std::span<const NearEdge> all = std::span<const NearEdge>(near_).subspan(begin);
     return {all.first(first), all.subspan(first)};
 }
 
 NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const PlacedBody> bodies,
-                          const std::array<SourceMesh, 2>& placed, const Motion& motion, Slice& slice) {
+                          const std::array<SourceMesh, 2>& placed, const Motion& motion, NearSearch& search,
+                          Slice& slice) {
     List& list = table_.state(i);
     Slack& slack = table_.hot(i);
     const bool serves = list.known && list.span <= placed[0].span;
@@ -81,7 +90,7 @@ NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const P
     list.known = speed < fastest * size;
     list.margin = !list.known ? 0 : had_none ? far_margin(size, speed) : close_margin(size, speed);
     const std::size_t first = slice.near_.size();
-    const NearEdges near = slice.find(placed, list.margin);
+    const NearEdges near = slice.find(search, placed, list.margin);
     list.known = list.known && near[0].size() + near[1].size() <= longest_list;
     slack = {list.known ? list.margin : -1, false};
     if (list.known) {

@@ -28,15 +28,17 @@ public:
     class Slice {
     public:
         void clear();
+        std::uint64_t bytes() const { return near_.capacity() * sizeof(NearEdge) + fresh_.capacity() * sizeof(Fresh); }
+        /// After a step: frees memory that it hardly used.
+        void give_back();
         /// The near edges of a pair, without a list; valid until the next call.
-        NearEdges find(const std::array<SourceMesh, 2>& placed, double margin = 0);
+        NearEdges find(NearSearch& search, const std::array<SourceMesh, 2>& placed, double margin = 0);
 
     private:
         friend class NearLists;
         struct Fresh {
             std::size_t pair, first; ///< place of the pair in the step; of its list in near_
         };
-        NearSearch search_;
         std::vector<NearEdge> near_;
         std::vector<Fresh> fresh_;
     };
@@ -51,7 +53,7 @@ public:
     bool is_apart(std::size_t i) { return table_.hot(i).apart && table_.hot(i).metres > 0; }
     /// The near edges of the i-th pair; valid until the slice's next call.
     NearEdges near(std::size_t i, const SlotPair& pair, std::span<const PlacedBody> bodies,
-                   const std::array<SourceMesh, 2>& placed, const Motion& motion, Slice& slice);
+                   const std::array<SourceMesh, 2>& placed, const Motion& motion, NearSearch& search, Slice& slice);
     /// In this step, after near(): the i-th pair is apart. It stays so while its list is valid, if that is empty.
     void found_apart(std::size_t i);
     /// Last in a step: keeps what a slice found.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "give_back.h"
 #include "slot_pair.h"
 
 #include <algorithm>
@@ -65,7 +66,8 @@ public:
             slots_[i] = static_cast<std::uint32_t>(i);
         }
         end_ = static_cast<std::uint32_t>(slots_.size());
-        next_ = free_ = {};
+        free_all(next_);
+        free_all(free_);
         open_.shrink_to_fit();
         slots_.shrink_to_fit();
     }

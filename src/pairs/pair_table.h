@@ -90,8 +90,8 @@ private:
         slots_.compact([&](std::uint32_t slot, std::size_t i) { states[i] = states_[slot]; });
         states_.swap(states);
         hot_.shrink_to_fit();
-        next_hot_ = {};
-        incoming_ = {};
+        free_all(next_hot_);
+        free_all(incoming_);
     }
 
     void prefetch_state(std::size_t i) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/wake_up.h"
 
+#include "give_back.h"
+
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -139,7 +141,7 @@ void WakeUp::give_back() {
     most_due_ = std::max(most_due_, due);
     if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
     rooms_.reset();
-    slices_ = {};
+    free_all(slices_);
     slice_count_ = 0;
     most_due_ = 0;
 }
