@@ -31,6 +31,7 @@ constexpr Known known[] = {
     {"rays_cast", "Rays cast", "rays", "in full; of the others it is known how they end"},
     {"pairs_full", "Pairs in full", "", "directed pairs looked at in full, each step counted"},
     {"pairs_asleep", "Pairs asleep", "", "directed pairs of which nothing was looked at, each step counted"},
+    {"pairs_as_standard", "Pairs as standard", "", "directed pairs left to standard, each step counted"},
     {"walks", "Walks", "rays", "followed from the last step's triangle, in all steps together"},
     {"walks_lost", "Walks lost", "rays", "of these, how many ended nowhere"},
     {"walk_casts", "Walks cast", "rays", "of those, how many were cast in full instead"},

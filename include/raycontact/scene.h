@@ -33,13 +33,14 @@ struct StepStats {
         0; ///< traced through the mesh, along the ray or ahead of it; the rest were followed or known already
     std::uint64_t side_tests =
         0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
-    std::uint64_t pairs_full = 0;   ///< ordered pairs looked at in full: those new, fast, or moved far
-    std::uint64_t pairs_asleep = 0; ///< ordered pairs without rays, of which no vertex was tested
-    std::uint64_t walks = 0;        ///< rays followed from last step's triangle (iterative, predictive)
-    std::uint64_t walks_lost = 0;   ///< of these, how many ended nowhere
-    std::uint64_t walk_casts = 0;   ///< of those, how many were cast in full instead
-    std::uint64_t predictions = 0;  ///< vertices followed without contact (predictive)
-    std::uint64_t pair_bytes = 0;   ///< memory kept for the open pairs
+    std::uint64_t pairs_full = 0;        ///< ordered pairs looked at in full: those new, fast, or moved far
+    std::uint64_t pairs_asleep = 0;      ///< ordered pairs without rays, of which no vertex was tested
+    std::uint64_t pairs_as_standard = 0; ///< ordered pairs that `certified` left to `standard`, which costs less there
+    std::uint64_t walks = 0;             ///< rays followed from last step's triangle (iterative, predictive)
+    std::uint64_t walks_lost = 0;        ///< of these, how many ended nowhere
+    std::uint64_t walk_casts = 0;        ///< of those, how many were cast in full instead
+    std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
+    std::uint64_t pair_bytes = 0;        ///< memory kept for the open pairs
     std::uint64_t contacts = 0;
     std::uint64_t contacts_new = 0;    ///< whose key the last step did not have
     std::uint64_t contacts_lost = 0;   ///< of the last step, whose key this step does not have

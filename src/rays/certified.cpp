@@ -27,6 +27,15 @@ bool casts_all(const Update& update) {
 }
 
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
+// A pair whose watched vertices are in contact nearly all, and that moves too far for tubes, is left to `standard` for
+// some steps: each vertex is cast anyway.
+constexpr std::uint32_t steps_as_standard = 16, many_rays = 1024;
+
+bool spares_little(const Due& due) {
+    const Watched& own = *due.own;
+    return own.rays.count > many_rays && 2 * own.rays.count > VERTEX_LANES * own.count && due.radius == 0;
+}
+
 bool is_idle(const kernels::HeldRange& held_range) {
     return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
 }
@@ -102,7 +111,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<
                                     arrays.clearances, margins_, near_.blocks(), near_.firsts(), places_, watches_);
 }
 
-// Places the pairs of the batch: the fast ones, then those that are due, with the segments of their blocks.
+// Places the pairs of the batch: those left to `standard`, then those that are due, with the segments of their blocks.
 void CertifiedRays::place(const Update& update) {
     std::size_t due_count = fast_count_, segment_count = 0;
     for (WakeUp::Slice& slice : wake_up_.slices()) {
@@ -135,7 +144,7 @@ void CertifiedRays::place(const Update& update) {
     });
 }
 
-// The rays of fast pairs, as by `standard`.
+// The rays of pairs that are left to `standard`.
 void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
     fast_.find_now(update, pairs_, fast_count_, {}, batch.totals, RayBatch::block_sum);
     fast_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
@@ -196,6 +205,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             Slack& slack = table_.hot(due.directed / 2);
             slack.metres = std::min(slack.metres, own.wake - double(due.now));
             slack.casts = slack.casts || own.rays.count > 0;
+            if (spares_little(due)) table_.state(due.directed / 2).as_standard = steps_as_standard;
         }
     });
 }
@@ -224,7 +234,10 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     batch.resize(update.device, 0);
     // What the few that are left know is worth less than the memory: they are looked at anew.
     if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
-    table_.match(update.pairs, [this](WatchedPair& state) { close(state); });
+    table_.match(update.pairs, [this](WatchedPair& state) {
+        close(state);
+        state.as_standard = 0;
+    });
     wake_up_.run(update, table_);
     list_slices();
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
@@ -245,6 +258,7 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     stats.vertices += VERTEX_LANES * blocks;
     stats.rays += watched + fast_sums_.sums[1];
     stats.pairs_full += stale_.size() + fast_count_;
+    stats.pairs_as_standard += fast_count_;
     stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
                         + 2 * held_.size() * sizeof(kernels::Held) + batch.count.value * RayBatch::bytes_of_ray

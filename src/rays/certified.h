@@ -12,8 +12,8 @@ namespace raycontact {
 
 /// The rays of a step by the certified method: those of `standard` that could be contacts, and hardly any other
 /// (docs/certified.md). Each directed pair watches the vertex blocks within some distance of its target. A block, and a
-/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs too fast for this to pay
-/// off are cast as by `standard`. Needs memory that host and device share.
+/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs for which this does
+/// not pay off are left to `standard`. Needs memory that host and device share.
 class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
@@ -46,7 +46,7 @@ private:
     WakeUp wake_up_;
     RangePool pool_;
     std::vector<Stale> stale_;
-    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: the fast pairs, then what is due
+    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: pairs left to `standard`, then what is due
     std::size_t fast_count_ = 0;          ///< of directed_
     kernels::Totals fast_sums_{};         ///< of the fast pairs: rays cast, rays of the rule
     std::size_t open_pairs_ = 0;

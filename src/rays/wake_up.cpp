@@ -103,10 +103,12 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
         const double speed = update.motion.pair_speed(pair);
-        if (!update.settings.displacement_threshold
-            && speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]))
+        std::uint32_t& as_standard = table.state(i).as_standard;
+        const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
+        if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
             slice.fast.add() = i;
-        else
+            as_standard -= as_standard > 0 ? 1 : 0;
+        } else
             wake_pair(update, table, i, speed, slice);
     };
     table.sift(

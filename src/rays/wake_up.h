@@ -35,7 +35,7 @@ public:
         List<Due> due;
         List<kernels::DirectedPair> places; ///< of due
         List<std::uint32_t> stale;          ///< indices of due: those that need a new list
-        List<std::uint32_t> fast;           ///< places of pairs that are too fast to be watched
+        List<std::uint32_t> fast;           ///< places of pairs that are left to `standard`
         std::size_t first = 0;              ///< place of its first due among all
         std::size_t segment_first = 0;      ///< place of its first segment among all
         std::uint64_t blocks = 0;           ///< vertex blocks tested

@@ -28,6 +28,7 @@ struct WatchedPair {
     Watched directions[2];
     double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
     PairPlace reference;
+    std::uint32_t as_standard = 0; ///< steps for which it is still left to `standard`
 };
 
 /// What is read for every pair in every step.

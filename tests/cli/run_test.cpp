@@ -48,6 +48,7 @@ TEST_F(Run, HasItsKeys) {
                             "predictions",
                             "pairs_full",
                             "pairs_asleep",
+                            "pairs_as_standard",
                             "pair_bytes_max",
                             "contacts_new",
                             "contacts_lost",
@@ -132,7 +133,7 @@ TEST_F(Run, OutHoldsTheReport) {
          {"pairs", "rays", "contacts", "step_ms", "narrow_ms", "ray_length_m", "penetration_max_m", "median_speed_m_s"})
         EXPECT_TRUE(rows.front().contains(column)) << column;
     for (const char* column : {"rays", "rays_cast", "contacts", "walks", "walks_lost", "walk_casts", "predictions",
-                               "pairs_full", "pairs_asleep", "contacts_new", "contacts_lost"})
+                               "pairs_full", "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost"})
         EXPECT_EQ(sum_of(rows, column), log[column].get<double>()) << column;
     EXPECT_EQ(largest_of(rows, "pair_bytes"), log["pair_bytes_max"].get<double>());
 }

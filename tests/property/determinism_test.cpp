@@ -186,9 +186,10 @@ TEST(determinism, every_method_asks_edges_in_full) {
 
 // All that was counted of a step, beside the times.
 std::vector<double> counters(const StepStats& s) {
-    const std::uint64_t counted[] = {s.pairs,       s.vertices,     s.rays,     s.rays_cast,    s.side_tests,
-                                     s.pairs_full,  s.pairs_asleep, s.walks,    s.walks_lost,   s.walk_casts,
-                                     s.predictions, s.pair_bytes,   s.contacts, s.contacts_new, s.contacts_lost};
+    const std::uint64_t counted[] = {s.pairs,      s.vertices,   s.rays,         s.rays_cast,
+                                     s.side_tests, s.pairs_full, s.pairs_asleep, s.pairs_as_standard,
+                                     s.walks,      s.walks_lost, s.walk_casts,   s.predictions,
+                                     s.pair_bytes, s.contacts,   s.contacts_new, s.contacts_lost};
     std::vector<double> all(std::begin(counted), std::end(counted));
     all.insert(all.end(), {s.ray_length, s.depth_max});
     return all;

@@ -46,9 +46,9 @@ const std::vector<std::string> settings_keys{
     "method",         "caster",           "direction",          "displacement_threshold",
     "confidence",     "culling_distance", "distance_extension", "max_iterations",
     "cast_lost_walks"};
-const std::vector<std::string> summed{"rays",         "rays_cast",    "contacts",     "walks",
-                                      "walks_lost",   "walk_casts",   "predictions",  "pairs_full",
-                                      "pairs_asleep", "contacts_new", "contacts_lost"};
+const std::vector<std::string> summed{"rays",         "rays_cast",         "contacts",     "walks",
+                                      "walks_lost",   "walk_casts",        "predictions",  "pairs_full",
+                                      "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost"};
 
 } // namespace
 
