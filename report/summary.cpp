@@ -60,6 +60,8 @@ constexpr Known known[] = {
     {"method", "Method", "", "how rays are kept from step to step"},
     {"caster", "Caster", "", "how a ray meets a mesh"},
     {"direction", "Direction", "", "what normal and depth are made of"},
+    {"features", "Features", "", "of a mesh that can be in contact"},
+    {"continuous", "Continuous", "", "bodies that come near in the next step are stopped"},
     {"displacement_threshold", "Displacement threshold", "mm", "a pair may move so far before a full look", 1000},
     {"confidence", "Confidence", "", "how far ahead predictive rays look, in displacement thresholds"},
     {"culling_distance", "Culling distance", "mm", "how far ahead predictive rays look", 1000},
@@ -171,11 +173,12 @@ void describe(const scenes::RunLog& log, Page& page) {
         "between "
         "meshes were found by RayContact by casting rays from the vertices of one mesh into the other (method {}, "
         "caster {}, "
-        "direction {}); the response is Bullet's sequential impulse solver. Times are wall clock on {} core{} ({}), "
+        "direction {}, features {}); the response is Bullet's sequential impulse solver. Times are wall clock on {} "
+        "core{} ({}), "
         "devices: {}.",
         moving, log.rows.size(), seconds, 1 / log.dt, log.mesh_source.empty() ? "of unknown origin" : log.mesh_source,
         word(summary, "method", "standard"), word(summary, "caster", "bvh"), word(summary, "direction", "reprojected"),
-        cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
+        word(summary, "features", "edges"), cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
 
     std::vector<std::pair<std::string, Json>> figures;
     flatten(summary, "", figures);
@@ -219,7 +222,8 @@ void describe(const scenes::RunLog& log, Page& page) {
     page.command = "raycontact run " + (log.arguments.empty() ? "SCENE" : log.arguments)
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
                    + option(summary, "method", "--method") + option(summary, "caster", "--caster")
-                   + option(summary, "direction", "--direction") + thresholds(summary)
+                   + option(summary, "direction", "--direction") + option(summary, "features", "--features")
+                   + (summary.value("continuous", Json(false)) == true ? " --continuous" : "") + thresholds(summary)
                    + option(summary, "devices", "--devices") + " --out DIR";
     page.footer =
         "Pictures: Embree, sun and sky, one ground square is 1 m; colours tell bodies apart and mean nothing else. "
