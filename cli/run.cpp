@@ -72,6 +72,7 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
         {"features", to_string(options.settings.features)},
+        {"continuous", options.settings.continuous},
         {"devices", chosen_devices(options.settings)},
         {"schedule", to_string(options.settings.schedule)},
         {"work", work_of_devices(log.rows)},
@@ -225,6 +226,8 @@ void add_run(CLI::App& app) {
             "write report.html, pictures and steps.csv there; drawing takes some seconds")
         ->type_name("DIR");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
+    command->add_flag("--continuous", options->settings.continuous,
+                      "stop bodies before they pass through something in one step (docs/continuous.md)");
     add_common_options(*command, options->settings);
     command->footer(stop_footer);
     command->callback([command, options] {

@@ -3,6 +3,8 @@
 
 #include "body_slots.h"
 #include "broadphase/sweep_and_prune.h"
+#include "coming/coming_contacts.h"
+#include "coming/next_poses.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "give_back.h"
@@ -81,7 +83,14 @@ struct Scene::State {
             if (bodies[i].shape == nullptr) continue;
             const Shape& shape = *bodies[i].shape;
             const bool open = shape.data().header.closed == 0;
-            boxes.push_back(world_box(i, shape.box_min(), shape.box_max(), bodies[i].pose, open ? double(reach) : 0));
+            const auto box_at = [&](const Pose& pose) {
+                return world_box(i, shape.box_min(), shape.box_max(), pose, open ? double(reach) : 0);
+            };
+            boxes.push_back(box_at(bodies[i].pose));
+            if (next.empty()) continue;
+            const WorldBox then = box_at(next[i]);
+            boxes.back().low = least(boxes.back().low, then.low);
+            boxes.back().high = most(boxes.back().high, then.high);
         }
         pairs_stand = false;
         sweep_and_prune(boxes, slot_pairs);
@@ -114,15 +123,30 @@ struct Scene::State {
         pairs_stand = true;
     }
 
+    /// Before the broad phase.
+    void look_ahead() {
+        coming.clear();
+        next = narrow.settings().continuous ? next_poses.update(bodies) : std::span<const Pose>();
+    }
+
     void find_contacts(double broad_ms) {
         place_bodies();
         narrow.step(bodies, slot_pairs, contacts, stats);
         stats.broad_ms = broad_ms;
+        if (narrow.settings().continuous) find_coming();
         slots.step_done();
         cut_to_slots();
         give_back(boxes);
         give_back(pairs);
         give_back(slot_pairs);
+    }
+
+    void find_coming() {
+        const auto start = std::chrono::steady_clock::now();
+        coming.run(narrow.parts()[0].executor(), narrow.settings().direction, bodies, next, slot_pairs);
+        next_poses.step_done(bodies);
+        stats.contacts_coming = coming.contacts().size();
+        stats.narrow_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -135,6 +159,9 @@ struct Scene::State {
     NarrowPhase narrow;
     BodySlots slots;
     std::vector<PlacedBody> bodies; ///< by slot; without a shape once removed
+    NextPoses next_poses;
+    std::span<const Pose> next; ///< of this step; empty unless it is continuous
+    ComingContacts coming;
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
@@ -188,12 +215,19 @@ void Scene::set_pose(BodyId body, const Pose& pose) {
 const Pose& Scene::pose(BodyId body) const {
     return state_->existing(body, "Scene::pose").pose;
 }
+void Scene::set_next_pose(BodyId body, const Pose& pose) {
+    const PlacedBody& moving = state_->existing(body, "Scene::set_next_pose");
+    refuse_faulty(pose, body);
+    if (state_->narrow.settings().continuous) state_->next_poses.set(slot_of(body), moving.generation, pose);
+}
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
     const Settings& old = state_->narrow.settings();
     if (settings.devices != old.devices || settings.schedule != old.schedule || settings.threads != old.threads)
         throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
+    if (!settings.continuous) state_->next_poses.forget();
+    state_->coming.clear();
 }
 const Settings& Scene::settings() const {
     return state_->narrow.settings();
@@ -223,6 +257,7 @@ std::vector<BodyId> Scene::bodies() const {
 std::span<const Contact> Scene::step() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
+    state_->look_ahead();
     state_->find_pairs();
     const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     state_->call_threads(state_->pairs.size());
@@ -233,6 +268,7 @@ std::span<const Contact> Scene::step() {
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
+    state_->look_ahead();
     state_->set_pairs(pairs);
     state_->find_contacts(0);
     return state_->contacts;
@@ -243,6 +279,9 @@ std::span<const Contact> Scene::contacts() const {
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();
+}
+std::span<const Contact> Scene::coming_contacts() const {
+    return state_->coming.contacts();
 }
 const StepStats& Scene::stats() const {
     return state_->stats;

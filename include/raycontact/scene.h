@@ -44,6 +44,7 @@ struct StepStats {
     std::uint64_t contacts = 0;
     std::uint64_t contacts_new = 0;    ///< whose key the last step did not have
     std::uint64_t contacts_lost = 0;   ///< of the last step, whose key this step does not have
+    std::uint64_t contacts_coming = 0; ///< Scene::coming_contacts()
     double ray_length = 0;             ///< sum of the contacts' ray lengths, metres (paper section 5.2)
     double depth_max = 0;              ///< metres
     double broad_ms = 0;               ///< our broad phase; 0 when pairs were given
@@ -73,6 +74,9 @@ public:
     /// Throws InputError naming the body when the pose is not finite and rigid; the old pose then stays.
     void set_pose(BodyId body, const Pose& pose);
     const Pose& pose(BodyId body) const;
+    /// Where the body is expected at the next step; for coming_contacts() of one step. Without it, the body is expected
+    /// to go on as it did since the last step. Throws InputError as set_pose().
+    void set_next_pose(BodyId body, const Pose& pose);
     const Shape& shape(BodyId body) const;
     /// The body that a contact names by its slot. Throws InputError if the slot has none, as after remove().
     BodyId body_in(std::uint32_t slot) const;
@@ -95,6 +99,11 @@ public:
     std::span<const Contact> contacts() const;
     /// Contacts that the last step had and this one does not, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const;
+    /// With Settings::continuous: of the last step, the vertices that will enter the other body on a straight way to
+    /// where they are expected at the next step, sorted as contacts. depth: <= 0, minus the vertex's distance from the
+    /// plane of the triangle that it will meet, metres; normal: of that triangle, from A to B; ray_length: of the way
+    /// up to it, metres. They are in no count but stats().contacts_coming, and not in a hash.
+    std::span<const Contact> coming_contacts() const;
     const StepStats& stats() const;
     /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;

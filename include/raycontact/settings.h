@@ -70,6 +70,9 @@ struct Settings {
     /// cast every ray of the paper's rule, with `iterative` and `predictive` whenever a pair has moved by its
     /// threshold, on which their contacts depend; those of `standard` do not. `certified` does not look at it.
     bool skip_outside = true;
+    /// Also finds Scene::coming_contacts(): vertices that enter the other body on their way to the next step, so that a
+    /// fast body can be stopped before a thin wall (docs/continuous.md). No contact depends on it.
+    bool continuous = false;
     /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
     /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
     /// where the driver divides the device, is its k-th core alone.

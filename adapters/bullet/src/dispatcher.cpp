@@ -74,7 +74,7 @@ struct CollisionDispatcher::State {
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
-    void hand_out();
+    void hand_out(std::span<const Contact> contacts);
 
     CollisionDispatcher& dispatcher;
     ManifoldSettings manifolds;
@@ -119,6 +119,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.work.clear();
     s.batch.clear();
     s.objects.shapes().sweep();
+    s.objects.look_ahead(s.scene.settings().continuous ? info.m_timeStep : 0);
 
     struct Visit final : btOverlapCallback {
         State& state;
@@ -144,7 +145,8 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
     if (s.recorder) s.recorder->step();
-    s.hand_out();
+    s.hand_out(s.scene.contacts());
+    s.hand_out(s.scene.coming_contacts());
     for (std::size_t i = 0; i < s.work.size(); ++i) {
         if (i + 8 < s.work.size()) __builtin_prefetch(s.work[i + 8]);
         if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();
@@ -282,9 +284,9 @@ void CollisionDispatcher::State::sort_batch() {
     for (const auto& [slots, index] : order) pairs.push_back(batch[index].pair);
 }
 
-void CollisionDispatcher::State::hand_out() {
+void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
     std::size_t at = 0;
-    for (const Contact& c : scene.contacts()) {
+    for (const Contact& c : contacts) {
         const Slots slots{c.body_a, c.body_b};
         while (at < order.size() && order[at].first < slots) ++at;
         if (at == order.size() || order[at].first != slots) continue;

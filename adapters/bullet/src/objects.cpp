@@ -2,6 +2,8 @@
 #include <objects.h>
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btTransformUtil.h>
 
 namespace raycontact::bullet {
 
@@ -68,8 +70,22 @@ Object& Objects::refresh(const btCollisionObject& object, Object& record, std::u
     for (const Leaf& leaf : record.leaves) {
         if (leaf.body != Leaf::no_body) scene_.set_pose(leaf.body, to_pose(object.getWorldTransform() * leaf.local));
     }
+    if (ahead_ > 0) expect(object, record);
     record.seen = dispatch;
     return record;
+}
+
+// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object.
+void Objects::expect(const btCollisionObject& object, const Object& record) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    if (body == nullptr || body->isStaticOrKinematicObject()) return;
+    const btVector3 velocity =
+        body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+    btTransform then;
+    btTransformUtil::integrateTransform(object.getWorldTransform(), velocity, body->getAngularVelocity(), ahead_, then);
+    for (const Leaf& leaf : record.leaves) {
+        if (leaf.body != Leaf::no_body) scene_.set_next_pose(leaf.body, to_pose(then * leaf.local));
+    }
 }
 
 void Objects::make_leaves(const btCollisionObject& object, Object& record) {

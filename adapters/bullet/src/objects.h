@@ -58,6 +58,9 @@ public:
     /// Also those that no pair needs now: the scene has their poses, and so has a recording.
     void refresh_pinned(std::uint64_t dispatch);
 
+    /// From now on refresh() also tells the scene where objects will be after so many seconds; 0: not.
+    void look_ahead(btScalar seconds) { ahead_ = seconds; }
+
     ShapeCache& shapes() { return shapes_; }
 
     /// Whether the object contains a mesh, directly or in a compound.
@@ -66,12 +69,14 @@ public:
 private:
     void make_leaves(const btCollisionObject& object, Object& record);
     void drop_bodies(Object& record);
+    void expect(const btCollisionObject& object, const Object& record);
 
     Scene& scene_;
     ShapeCache shapes_;
     std::unordered_map<const btCollisionObject*, Object> records_;
     std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
     std::uint64_t versions_ = 0;
+    btScalar ahead_ = 0;
 };
 
 Pose to_pose(const btTransform& transform);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coming/next_poses.h"
+
+#include "mesh/vector.h"
+
+namespace raycontact {
+
+namespace {
+
+// The motion from `last` to `now`, once more: the turn about the body's own origin.
+Pose go_on(const Pose& last, const Pose& now) {
+    const auto &p = last.rotation, &q = now.rotation;
+    Pose next;
+    std::array<double, 9> turn{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            turn[3 * i + j] = (q[3 * i] * p[3 * j] + q[3 * i + 1] * p[3 * j + 1]) + q[3 * i + 2] * p[3 * j + 2];
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            next.rotation[3 * i + j] = (turn[3 * i] * q[j] + turn[3 * i + 1] * q[3 + j]) + turn[3 * i + 2] * q[6 + j];
+    next.translation = now.translation + (now.translation - last.translation);
+    return next;
+}
+
+} // namespace
+
+void NextPoses::set(BodySlot body, std::uint32_t generation, const Pose& pose) {
+    if (given_.size() <= body) given_.resize(body + std::size_t{1});
+    given_[body] = {pose, generation, true};
+}
+
+std::span<const Pose> NextPoses::update(std::span<const PlacedBody> bodies) {
+    given_.resize(bodies.size());
+    last_.resize(bodies.size());
+    next_.resize(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const PlacedBody& body = bodies[i];
+        if (body.shape == nullptr) continue;
+        if (given_[i].is_of(body))
+            next_[i] = given_[i].pose;
+        else
+            next_[i] = last_[i].is_of(body) ? go_on(last_[i].pose, body.pose) : body.pose;
+    }
+    return next_;
+}
+
+void NextPoses::step_done(std::span<const PlacedBody> bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        given_[i].there = false;
+        last_[i] = {bodies[i].pose, bodies[i].generation, bodies[i].shape != nullptr};
+    }
+}
+
+void NextPoses::forget() {
+    given_.clear();
+    last_.clear();
+    next_.clear();
+}
+
+} // namespace raycontact

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pairs/directed_pairs.h"
+
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// Where each body is expected at the next step: where the caller said, else as far from its pose as that is from the
+/// one of the last step.
+class NextPoses {
+public:
+    /// Holds for one step.
+    void set(BodySlot body, std::uint32_t generation, const Pose& pose);
+    /// First in a step. Of the body frames, by slot; those of slots without a body mean nothing.
+    std::span<const Pose> update(std::span<const PlacedBody> bodies);
+    /// Last in a step.
+    void step_done(std::span<const PlacedBody> bodies);
+    void forget();
+
+private:
+    struct Known {
+        Pose pose;
+        std::uint32_t generation = 0; ///< of the body that it is of
+        bool there = false;
+        bool is_of(const PlacedBody& body) const { return there && generation == body.generation; }
+    };
+    std::vector<Known> given_, last_;
+    std::vector<Pose> next_;
+};
+
+} // namespace raycontact

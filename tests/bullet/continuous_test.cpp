@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings::continuous in a Bullet world: what is fast stays on its side of a thin wall.
+#include "test_world.h"
+
+#include <convert.h>
+
+#include <gtest/gtest.h>
+
+namespace raycontact::test {
+namespace {
+
+struct Flight {
+    std::shared_ptr<const Shape> shape;
+    double speed; ///< down, m/s
+    btVector3 spin;
+    double start = 3; ///< metres above a slab of 5 cm
+    bool slab_gives_way = false;
+};
+
+// Whether the body is still above the slab after a second.
+bool is_stopped(const Flight& flight, bool continuous) {
+    Settings settings;
+    settings.devices = "cpu";
+    settings.continuous = continuous;
+    TestWorld w(settings);
+    w.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+    btRigidBody& slab = w.add_mesh(Shape::make(box_mesh(8, 8, 0.05)), flight.slab_gives_way ? 2000 : 0, at(0, 0, 0));
+    if (flight.slab_gives_way) slab.setGravity(btVector3(0, 0, 0));
+    btRigidBody& body = w.add_mesh(flight.shape, 1, at(0.1, 0.2, flight.start));
+    body.setLinearVelocity(btVector3(0, 0, btScalar(-flight.speed)));
+    body.setAngularVelocity(flight.spin);
+    w.steps(60);
+    return body.getWorldTransform().getOrigin().z() > slab.getWorldTransform().getOrigin().z();
+}
+
+std::shared_ptr<const Shape> small_torus() {
+    return bullet::scale_shape(*torus(), btVector3(btScalar(0.3), btScalar(0.3), btScalar(0.3)));
+}
+
+TEST(Continuous, AFastTorusDoesNotPassAThinSlab) {
+    for (const double speed : {20.0, 45.0, 100.0}) {
+        int stopped = 0, stopped_without = 0;
+        constexpr int flights = 8;
+        for (int i = 0; i < flights; ++i) {
+            const Flight flight{small_torus(), speed, btVector3(3, 1, 2), 3 + speed / 60 * i / flights};
+            stopped += is_stopped(flight, true);
+            stopped_without += is_stopped(flight, false);
+        }
+        EXPECT_EQ(stopped, flights) << speed << " m/s";
+        EXPECT_LT(stopped_without, flights) << "else nothing is shown, at " << speed << " m/s";
+    }
+}
+
+TEST(Continuous, NorDoesACoarseTableOrASlabThatGivesWay) {
+    EXPECT_TRUE(is_stopped({table(), 30, btVector3(0, 0, 0)}, true));
+    EXPECT_TRUE(is_stopped({table(), 30, btVector3(1, 5, 0)}, true));
+    EXPECT_TRUE(is_stopped({small_torus(), 30, btVector3(1, 5, 0), 3, true}, true));
+}
+
+// Points to come are no contacts: a body that hovers above the ground has none, and nothing lifts it.
+TEST(Continuous, NothingIsTouchedEarly) {
+    Settings settings;
+    settings.devices = "cpu";
+    settings.continuous = true;
+    TestWorld w(settings);
+    w.world.setGravity(btVector3(0, 0, 0));
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(torus(), 1, at(0, 0, 1.5));
+    body.setLinearVelocity(btVector3(0, 0, -12)); // 20 cm a step
+    std::uint64_t coming = 0;
+    for (int i = 0; i < 8; ++i) {
+        const double before = double(body.getWorldTransform().getOrigin().z());
+        w.steps(1);
+        const double now = double(body.getWorldTransform().getOrigin().z());
+        btVector3 low, high;
+        body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
+        EXPECT_GT(double(low.z()), -0.01) << "step " << i;
+        EXPECT_LT(w.dispatcher.scene().stats().depth_max, 0.01);
+        coming += w.dispatcher.scene().stats().contacts_coming;
+        EXPECT_LE(now, before + 1e-4);
+        if (double(low.z()) > 0.25) {
+            EXPECT_NEAR(before - now, 0.2, 1e-3) << "step " << i;
+        }
+    }
+    EXPECT_GT(coming, 0u);
+}
+
+} // namespace
+} // namespace raycontact::test
