@@ -10,7 +10,7 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint32_t pairs_in_block = 32;
+constexpr std::uint32_t pairs_in_block = 32, most_work = 64;
 
 auto order_of(const Contact& c) {
     return std::tuple(c.vertex_body, c.feature, c.vertex, c.crossing);
@@ -77,41 +77,32 @@ void EdgeStage::run(Executor& executor, Direction direction, std::span<const Pla
     block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     if (motion != nullptr) lists_.match(pairs);
-    const Question question{direction, bodies, pairs, motion};
-    executor.run(block_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        std::unique_ptr<Workspace> work = take_workspace();
-        for (std::uint32_t b = begin; b < end; ++b) {
-            Block& block = blocks_[b];
-            block.lists.clear();
-            block.contacts.clear();
-            block.ends.clear();
-            const std::size_t last = std::min<std::size_t>(pairs.size(), (b + 1) * std::size_t{pairs_in_block});
-            for (std::size_t i = b * std::size_t{pairs_in_block}; i < last; ++i) {
-                const auto vertices_of = [&](std::size_t directed) {
-                    return local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
-                };
-                find(*work, block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
-                block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
-            }
-        }
-        return_workspace(std::move(work));
+    const Question question{direction, bodies, pairs, local, motion};
+    // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
+    const std::uint32_t work_count = std::min(block_count, most_work);
+    if (work_.size() < work_count) work_.resize(work_count);
+    executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t w = begin; w < end; ++w)
+            for (std::uint32_t b = w; b < block_count; b += most_work) find(work_[w], question, b);
     });
     if (motion != nullptr)
         for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
     merge(pairs, contacts);
 }
 
-std::unique_ptr<EdgeStage::Workspace> EdgeStage::take_workspace() {
-    const std::lock_guard lock(idle_mutex_);
-    if (idle_.empty()) return std::make_unique<Workspace>();
-    std::unique_ptr<Workspace> work = std::move(idle_.back());
-    idle_.pop_back();
-    return work;
-}
-
-void EdgeStage::return_workspace(std::unique_ptr<Workspace> work) {
-    const std::lock_guard lock(idle_mutex_);
-    idle_.push_back(std::move(work));
+void EdgeStage::find(Workspace& work, const Question& question, std::size_t number) {
+    Block& block = blocks_[number];
+    block.lists.clear();
+    block.contacts.clear();
+    block.ends.clear();
+    const std::size_t first = number * pairs_in_block, last = std::min(question.pairs.size(), first + pairs_in_block);
+    for (std::size_t i = first; i < last; ++i) {
+        const auto vertices_of = [&](std::size_t directed) {
+            return question.local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
+        };
+        find(work, block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+        block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
+    }
 }
 
 void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i,

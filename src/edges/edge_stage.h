@@ -8,8 +8,6 @@
 
 #include <raycontact/settings.h>
 
-#include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -33,7 +31,7 @@ public:
     void give_back();
 
 private:
-    /// What a thread works in.
+    /// What some of the blocks are worked on in, one after the other.
     struct Workspace {
         NearSearch search;
         PairEdges edges;
@@ -50,21 +48,20 @@ private:
         Direction direction;
         std::span<const PlacedBody> bodies;
         std::span<const SlotPair> pairs;
+        std::span<const kernels::LocalContact> local;
         const Motion* motion;
     };
+    void find(Workspace& work, const Question& question, std::size_t number);
     void find(Workspace& work, Block& block, const Question& question, std::size_t i,
               const std::array<std::span<const kernels::LocalContact>, 2>& vertices);
     void merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
-    std::unique_ptr<Workspace> take_workspace();
-    void return_workspace(std::unique_ptr<Workspace> work);
 
     NearLists lists_;
     std::vector<Block> blocks_;
     std::size_t block_count_ = 0;       ///< of the last step
     std::vector<std::uint32_t> firsts_; ///< of each directed pair's contacts, in local
     std::vector<Contact> merged_;
-    std::mutex idle_mutex_;
-    std::vector<std::unique_ptr<Workspace>> idle_; ///< as many as threads have worked at once
+    std::vector<Workspace> work_;
 };
 
 } // namespace raycontact
