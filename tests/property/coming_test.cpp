@@ -65,6 +65,12 @@ std::vector<Flight> random_flights(std::size_t count, std::uint64_t seed) {
     return flights;
 }
 
+std::vector<Placement> beginnings(const std::vector<Flight>& flights) {
+    std::vector<Placement> placements(flights.size());
+    std::ranges::transform(flights, placements.begin(), &Flight::now);
+    return placements;
+}
+
 // Of one direction: by file vertex, what the way meets.
 struct Coming {
     std::uint32_t triangle;
@@ -133,8 +139,7 @@ void compare(const Expected& expected, std::span<const Contact> found, VertexBod
 
 TEST(Coming, AsTheReferenceFindsThem) {
     const auto flights = random_flights(300, 1);
-    std::vector<Placement> placements;
-    for (const Flight& flight : flights) placements.push_back(flight.now);
+    const std::vector<Placement> placements = beginnings(flights);
     Counts counts;
     for (const bool swapped : {false, true}) {
         Scene scene(continuous_settings());
@@ -165,8 +170,7 @@ TEST(Coming, AsTheReferenceFindsThem) {
 
 TEST(Coming, ChangesNoContactAndNoThreadChangesIt) {
     const auto flights = random_flights(60, 2);
-    std::vector<Placement> placements;
-    for (const Flight& flight : flights) placements.push_back(flight.now);
+    const std::vector<Placement> placements = beginnings(flights);
     std::vector<Contact> contacts, coming;
     for (const std::uint32_t threads : {1u, 4u, 0u}) {
         Settings settings = continuous_settings();

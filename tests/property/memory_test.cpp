@@ -47,7 +47,8 @@ std::shared_ptr<const Shape> tetrahedron() {
 void place(Scene& scene, bool together) {
     for (std::uint32_t i = 0; i < scene.body_count(); ++i) {
         const double place = together ? 0.001 : 10;
-        scene.set_pose(i, {.translation = {place * (i % 10), place * (i / 10 % 10), place * (i / 100)}});
+        const std::uint32_t column = i % 10, row = i / 10 % 10, layer = i / 100;
+        scene.set_pose(i, {.translation = {place * column, place * row, place * layer}});
     }
 }
 
