@@ -29,7 +29,7 @@ STRUCT(HeldGroup) {
 // Each of the triangle's words lies in a cache line of its own.
 DEVICE void prefetch_triangle(READS(TriangleBlock) block, uint lane) {
     PREFETCH(block->triangle, lane);
-    for (int k = 0; k < 9; ++k) PREFETCH(block->corner[0], TRIANGLE_LANES * k + lane);
+    for (int k = 0; k < 9; ++k) PREFETCH((GLOBAL const float*)block->corner, TRIANGLE_LANES * k + lane);
 }
 
 DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const SourceRay* ray, const Held* held,

@@ -118,7 +118,7 @@ KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(Shape
             }
             // Prefetches the whole block: its rays will read what this test does not.
             READS(VertexBlock) block = vertices + watches[i].vertex_block;
-            for (uint line = 0u; line < 8u; ++line) PREFETCH(block->position[0], VERTEX_LANES * line);
+            for (uint line = 0u; line < 8u; ++line) PREFETCH((GLOBAL const float*)block, VERTEX_LANES * line);
             waiting[waits].segment = s;
             waiting[waits].watch = i;
             ++waits;

@@ -289,6 +289,7 @@ void CoherentRays::list_kept_rays(Device& device, const ShapeStore& shapes, std:
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
             const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const auto& blocks = source.shape->data().vertex_blocks;
+            if (own.count == 0) continue; // `first` is then of a list that may be gone
             for (const auto& candidate : std::span(candidates).subspan(own.first, own.count)) {
                 const kernels::uint lane = candidate.vertex_lane - first;
                 rays.push_back(
@@ -312,6 +313,7 @@ std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& 
         for (std::uint32_t d = 0; d < 2; ++d) {
             const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const Kept& own = moving.hot.kept[d];
+            if (own.count == 0) continue;
             for (kernels::Candidate candidate : std::span(candidates).subspan(own.first, own.count)) {
                 candidate.vertex_lane -= first;
                 put_bytes(bytes, candidate);
