@@ -26,9 +26,8 @@ bool casts_all(const Update& update) {
     return update.settings.caster == Caster::basic;
 }
 
-// The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
-// A pair whose watched vertices are in contact nearly all, and that moves too far for tubes, is left to `standard` for
-// some steps: each vertex is cast anyway.
+// A pair most of whose watched vertices have rays, many of them, and that moves too far for tubes, is left to
+// `standard` for some steps: each vertex is cast anyway.
 constexpr std::uint32_t steps_as_standard = 16, many_rays = 1024;
 
 bool spares_little(const Due& due) {
@@ -36,6 +35,7 @@ bool spares_little(const Due& due) {
     return own.rays.count > many_rays && 2 * own.rays.count > VERTEX_LANES * own.count && due.radius == 0;
 }
 
+// The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
     return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
 }
@@ -63,13 +63,13 @@ void CertifiedRays::list_slices() {
     directed_.clear();
     for (WakeUp::Slice& slice : wake_up_.slices()) {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
-        for (const std::uint32_t i : slice.fast) {
+        for (const std::uint32_t i : slice.as_standard) {
             if (table_.hot(i).open) close(table_.state(i));
             table_.hot(i) = {};
             directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
         }
     }
-    fast_count_ = directed_.size();
+    standard_count_ = directed_.size();
 }
 
 // Makes new lists for some of the stale pairs: the blocks that reach into the bounds, widened by the distance for which
@@ -113,7 +113,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<
 
 // Places the pairs of the batch: those left to `standard`, then those that are due, with the segments of their blocks.
 void CertifiedRays::place(const Update& update) {
-    std::size_t due_count = fast_count_, segment_count = 0;
+    std::size_t due_count = standard_count_, segment_count = 0;
     for (WakeUp::Slice& slice : wake_up_.slices()) {
         slice.first = due_count;
         slice.segment_first = segment_count;
@@ -124,7 +124,7 @@ void CertifiedRays::place(const Update& update) {
     pairs_.resize(update.device, due_count);
     held_ranges_.resize(update.device, due_count);
     segments_.resize(update.device, segment_count);
-    update.executor.run(static_cast<std::uint32_t>(fast_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
+    update.executor.run(static_cast<std::uint32_t>(standard_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
             const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
             place_source(source, target, pairs_.in_place()[i]);
@@ -145,9 +145,9 @@ void CertifiedRays::place(const Update& update) {
 }
 
 // The rays of pairs that are left to `standard`.
-void CertifiedRays::find_fast_rays(const Update& update, RayBatch& batch) {
-    fast_.find_now(update, pairs_, fast_count_, {}, batch.totals, RayBatch::block_sum);
-    fast_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
+void CertifiedRays::find_standard_rays(const Update& update, RayBatch& batch) {
+    standard_.find_now(update, pairs_, standard_count_, {}, batch.totals, RayBatch::block_sum);
+    standard_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 
 void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
@@ -160,20 +160,20 @@ void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
     look_rays_.scan(update.device, count, batch.totals, RayBatch::method_sum, NONE - 1);
 }
 
-// The rays of fast pairs, then those of blocks.
+// The rays of pairs left to `standard`, then those of blocks.
 void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     device.queue().finish();
     const auto sums = batch.totals.in_place();
     check_sums(sums);
-    fast_sums_ = fast_count_ > 0 ? sums[RayBatch::ray_sum] : kernels::Totals{};
-    const kernels::uint fast = fast_sums_.results;
-    batch.count = Count(std::size_t{fast} + sums[RayBatch::method_sum].results);
+    standard_sums_ = standard_count_ > 0 ? sums[RayBatch::ray_sum] : kernels::Totals{};
+    const kernels::uint first = standard_sums_.results;
+    batch.count = Count(std::size_t{first} + sums[RayBatch::method_sum].results);
     batch.resize(device, batch.count.value);
-    fast_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
-    launch<KernelId::write_watch_rays>(device, segments_.size(), fast, segments_, watches_, looks_, look_rays_.firsts(),
-                                       batch.rays);
-    settle(update, fast);
+    standard_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
+    launch<KernelId::write_watch_rays>(device, segments_.size(), first, segments_, watches_, looks_,
+                                       look_rays_.firsts(), batch.rays);
+    settle(update, first);
 }
 
 // Stores what the pairs keep of this step, and tells the rays of each pair where those of the last step are and how
@@ -243,7 +243,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);
-    find_fast_rays(update, batch);
+    find_standard_rays(update, batch);
     look_at_blocks(update, batch);
     write_rays(update, batch);
     batch.pairs = &pairs_;
@@ -252,19 +252,20 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
 }
 
 void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
-    std::uint64_t blocks = fast_.blocks().size();
+    std::uint64_t blocks = standard_.blocks().size();
     for (const WakeUp::Slice& slice : wake_up_.slices()) blocks += slice.blocks;
-    const std::uint64_t watched = batch.count.value - fast_sums_.results;
+    const std::uint64_t watched = batch.count.value - standard_sums_.results;
     stats.vertices += VERTEX_LANES * blocks;
-    stats.rays += watched + fast_sums_.sums[1];
-    stats.pairs_full += stale_.size() + fast_count_;
-    stats.pairs_as_standard += fast_count_;
+    stats.rays += watched + standard_sums_.sums[1];
+    stats.pairs_full += stale_.size() + standard_count_;
+    stats.pairs_as_standard += standard_count_;
     stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
                         + 2 * held_.size() * sizeof(kernels::Held) + batch.count.value * RayBatch::bytes_of_ray
-                        + (directed_.size() - fast_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
+                        + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
                         + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
-                        + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult)) + fast_.bytes();
+                        + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult))
+                        + standard_.bytes();
 }
 
 // Not the rays held: the next step needs them.
@@ -283,7 +284,7 @@ void CertifiedRays::give_back() {
     horizons_.give_back();
     places_.give_back();
     near_.give_back(near_.blocks().size());
-    fast_.give_back(fast_.blocks().size());
+    standard_.give_back(standard_.blocks().size());
     last_held_.give_back();
 }
 

@@ -36,7 +36,7 @@ private:
     void list_slices();
     void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);
     void place(const Update& update);
-    void find_fast_rays(const Update& update, RayBatch& batch);
+    void find_standard_rays(const Update& update, RayBatch& batch);
     void look_at_blocks(const Update& update, RayBatch& batch);
     void write_rays(const Update& update, RayBatch& batch);
     void settle(const Update& update, std::uint32_t first_ray);
@@ -47,8 +47,8 @@ private:
     RangePool pool_;
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: pairs left to `standard`, then what is due
-    std::size_t fast_count_ = 0;          ///< of directed_
-    kernels::Totals fast_sums_{};         ///< of the fast pairs: rays cast, rays of the rule
+    std::size_t standard_count_ = 0;      ///< of directed_
+    kernels::Totals standard_sums_{};     ///< of pairs left to `standard`: rays cast, rays of the rule
     std::size_t open_pairs_ = 0;
     std::uint64_t packed_ = 0;
 
@@ -60,7 +60,7 @@ private:
     Array<kernels::DirectedPair> wide_pairs_; ///< by index of some stale pairs, like the next three
     Array<float> margins_, horizons_;
     Array<kernels::uint> places_;
-    BlockSearch near_, fast_;
+    BlockSearch near_, standard_;
     Array<kernels::Watch> watches_;
     Array<kernels::Held> held_, last_held_;
 };

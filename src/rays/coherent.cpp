@@ -279,6 +279,12 @@ std::vector<kernels::Candidate> CoherentRays::read_candidates(Device& device) {
     return candidates;
 }
 
+// Of one direction of a pair. Without any, `first` may be of a list that is gone.
+std::span<const kernels::Candidate> CoherentRays::candidates_of(const Kept& own,
+                                                                std::span<const kernels::Candidate> all) {
+    return own.count > 0 ? all.subspan(own.first, own.count) : all.first(0);
+}
+
 void CoherentRays::list_kept_rays(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
                                   std::span<const SlotPair> pairs, std::vector<KeptRay>& rays) {
     const std::vector<kernels::Candidate> candidates = read_candidates(device);
@@ -289,8 +295,7 @@ void CoherentRays::list_kept_rays(Device& device, const ShapeStore& shapes, std:
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
             const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const auto& blocks = source.shape->data().vertex_blocks;
-            if (own.count == 0) continue; // `first` is then of a list that may be gone
-            for (const auto& candidate : std::span(candidates).subspan(own.first, own.count)) {
+            for (const auto& candidate : candidates_of(own, candidates)) {
                 const kernels::uint lane = candidate.vertex_lane - first;
                 rays.push_back(
                     {pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], candidate.triangle});
@@ -313,8 +318,7 @@ std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& 
         for (std::uint32_t d = 0; d < 2; ++d) {
             const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const Kept& own = moving.hot.kept[d];
-            if (own.count == 0) continue;
-            for (kernels::Candidate candidate : std::span(candidates).subspan(own.first, own.count)) {
+            for (kernels::Candidate candidate : candidates_of(own, candidates)) {
                 candidate.vertex_lane -= first;
                 put_bytes(bytes, candidate);
             }

@@ -71,6 +71,7 @@ private:
         Hot hot;
     };
     std::vector<kernels::Candidate> read_candidates(Device& device);
+    static std::span<const kernels::Candidate> candidates_of(const Kept& own, std::span<const kernels::Candidate> all);
     Kept& kept(std::uint32_t directed) { return table_.hot(directed / 2).kept[directed % 2]; }
 
     PairTable<PairState, Hot> table_;

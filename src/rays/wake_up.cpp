@@ -2,7 +2,6 @@
 #include "rays/wake_up.h"
 
 #include "give_back.h"
-
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -106,10 +105,11 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         std::uint32_t& as_standard = table.state(i).as_standard;
         const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
-            slice.fast.add() = i;
-            as_standard -= as_standard > 0 ? 1 : 0;
-        } else
+            slice.as_standard.add() = i;
+            if (as_standard > 0) --as_standard;
+        } else {
             wake_pair(update, table, i, speed, slice);
+        }
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);
@@ -131,7 +131,7 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
             slice.due = List(room.due);
             slice.places = List(room.places);
             slice.stale = List(room.stale);
-            slice.fast = List(room.fast);
+            slice.as_standard = List(room.as_standard);
             wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
         }
     });

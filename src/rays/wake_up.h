@@ -35,7 +35,7 @@ public:
         List<Due> due;
         List<kernels::DirectedPair> places; ///< of due
         List<std::uint32_t> stale;          ///< indices of due: those that need a new list
-        List<std::uint32_t> fast;           ///< places of pairs that are left to `standard`
+        List<std::uint32_t> as_standard;    ///< places of pairs that are left to `standard`
         std::size_t first = 0;              ///< place of its first due among all
         std::size_t segment_first = 0;      ///< place of its first segment among all
         std::uint64_t blocks = 0;           ///< vertex blocks tested
@@ -61,7 +61,7 @@ private:
     struct Room {
         Due due[2 * slice_size];
         kernels::DirectedPair places[2 * slice_size];
-        std::uint32_t stale[2 * slice_size], fast[slice_size];
+        std::uint32_t stale[2 * slice_size], as_standard[slice_size];
     };
     static void wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                            Slice& slice);
