@@ -123,6 +123,18 @@ struct Scene::State {
         pairs_stand = true;
     }
 
+    /// A step that throws, but for bad input, has no contacts.
+    template <typename Work>
+    void all_or_nothing(Work&& work) {
+        try {
+            work();
+        } catch (...) {
+            coming.clear();
+            contacts.clear();
+            throw;
+        }
+    }
+
     /// Before the broad phase.
     void look_ahead() {
         coming.clear();
@@ -257,20 +269,24 @@ std::vector<BodyId> Scene::bodies() const {
 std::span<const Contact> Scene::step() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
-    state_->look_ahead();
-    state_->find_pairs();
-    const double broad = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    state_->call_threads(state_->pairs.size());
-    state_->find_contacts(broad);
+    state_->all_or_nothing([&] {
+        state_->look_ahead();
+        state_->find_pairs();
+        const std::chrono::duration<double, std::milli> broad = std::chrono::steady_clock::now() - start;
+        state_->call_threads(state_->pairs.size());
+        state_->find_contacts(broad.count());
+    });
     return state_->contacts;
 }
 
 std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
-    state_->look_ahead();
     state_->set_pairs(pairs);
-    state_->find_contacts(0);
+    state_->all_or_nothing([&] {
+        state_->look_ahead();
+        state_->find_contacts(0);
+    });
     return state_->contacts;
 }
 

@@ -75,7 +75,7 @@ public:
     void set_pose(BodyId body, const Pose& pose);
     const Pose& pose(BodyId body) const;
     /// Where the body is expected at the next step; for coming_contacts() of one step. Without it, the body is expected
-    /// to go on as it did since the last step. Throws InputError as set_pose().
+    /// to go on as it did since the last step. Nothing without Settings::continuous. Throws InputError as set_pose().
     void set_next_pose(BodyId body, const Pose& pose);
     const Shape& shape(BodyId body) const;
     /// The body that a contact names by its slot. Throws InputError if the slot has none, as after remove().

@@ -179,7 +179,7 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
 }
 
 // Whichever allocation of a step fails: the step repeated, and repeated again, gives the contacts of a fresh scene.
-void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& shape) {
+void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& shape, bool continuous = false) {
     constexpr std::uint32_t bodies = 27;
     const auto pose_of = [](std::uint32_t body, double spacing) {
         const std::uint32_t column = body % 3, row = body / 3 % 3, layer = body / 9;
@@ -191,6 +191,7 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
         settings.method = method;
         settings.threads = 1;
         settings.features = features;
+        settings.continuous = continuous;
         std::uint64_t failures = 0;
         for (std::int64_t k = 0;; ++k) {
             Scene scene(settings);
@@ -208,6 +209,7 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
             if (!failed) break;
             ++failures;
             EXPECT_TRUE(scene.contacts().empty());
+            EXPECT_TRUE(scene.coming_contacts().empty());
             Scene fresh(settings);
             for (std::uint32_t body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
             const auto expected = fresh.step();
@@ -227,6 +229,10 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
 
 TEST(Allocations, AStepThatFailsLeavesNothing) {
     expect_nothing_left(Features::vertices, Shape::make(scenes::scene_model("knot", 902).mesh));
+}
+
+TEST(Allocations, AContinuousStepThatFailsLeavesNothing) {
+    expect_nothing_left(Features::vertices, Shape::make(scenes::scene_model("knot", 60).mesh), true);
 }
 
 TEST(Allocations, AStepWithEdgesThatFailsLeavesNothing) {
