@@ -30,7 +30,7 @@ struct DispatcherStats {
     std::uint64_t mesh_pairs = 0;     ///< pairs of meshes in its batch (a compound gives several)
     std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
-    std::uint64_t contacts = 0;       ///< mesh and plane contacts found
+    std::uint64_t contacts = 0;       ///< mesh and plane contacts found, and those to come
     std::uint64_t points = 0;         ///< kept as manifold points
     std::uint64_t points_matched = 0; ///< of those, points that were there in the step before (same key)
     std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
