@@ -44,6 +44,7 @@ Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
+std::vector<Mesh> read_gltf_parts(const InputFile& file); ///< by node; their names are set
 
 /// Appends the fan of a polygon. Its corners are vertex indices already checked.
 template <class Corners>
