@@ -12,7 +12,9 @@
 namespace raycontact {
 
 /// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
-/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order; polygons split as fans).
+/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order). A polygon of n corners is n - 2
+/// triangles: the fan of its first corner where that is right, as it is for convex ones; else ears are cut off it, seen
+/// along the axis closest to its normal. One that crosses itself or has no area stays a fan.
 struct Mesh {
     std::string name;                                    ///< for messages; the file name when loaded
     std::vector<Vec3> vertices;                          ///< metres, body frame

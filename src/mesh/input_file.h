@@ -45,12 +45,6 @@ Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
 
-/// Appends the fan of a polygon. Its corners are vertex indices already checked.
-template <class Corners>
-void append_fan(Mesh& mesh, const Corners& corners) {
-    for (std::size_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
-}
-
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>
 T read_bytes(const char* at, bool little_endian = true) {

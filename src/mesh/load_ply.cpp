@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements without an error.
+#include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
 
 #include <algorithm>
@@ -47,6 +48,7 @@ public:
         for (const Element& element : elements_) read_element(element);
         if (ascii_ ? !text_.at_end() : rest().find_first_not_of(" \t\r\n") != std::string_view::npos)
             file_.fail("more data than its header announces; it is damaged");
+        polygons_.finish(mesh_);
         return std::move(mesh_);
     }
 
@@ -166,7 +168,7 @@ private:
             if (index < 0 || index >= 0xffffffffll) fail("vertex index " + std::to_string(index) + " is out of range");
             corners_.push_back(static_cast<std::uint32_t>(index)); // faces may come before vertices
         }
-        append_fan(mesh_, corners_);
+        polygons_.append(mesh_, corners_);
     }
 
     void skip(const Property& property) {
@@ -220,6 +222,7 @@ private:
     std::vector<Element> elements_;
     std::vector<std::uint32_t> corners_;
     Mesh mesh_;
+    PolygonCutter polygons_;
 };
 
 } // namespace
