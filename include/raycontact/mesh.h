@@ -46,9 +46,10 @@ struct MeshReport {
 
 /// Whether prepare_mesh may change anything beyond welding for connectivity.
 enum class Repair {
-    allowed, ///< drop degenerate triangles, make windings agree, turn components whose winding contradicts their
-             ///< nesting
-    as_is,   ///< change nothing; connectivity is still found by exact position
+    allowed, ///< drop degenerate and duplicate triangles, never so that a closed edge opens (where a degenerate one
+             ///< joins a corner to the side of a triangle on which it lies, that triangle is split there); make
+             ///< windings agree; turn components whose winding contradicts their nesting
+    as_is, ///< change nothing; connectivity is still found by exact position
 };
 
 /// A mesh ready to become a shape: welded by exact position, checked, with the way back to the file's indices.
