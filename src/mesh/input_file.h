@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -29,6 +30,10 @@ struct InputFile {
     [[noreturn]] void fail(const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };
+
+/// The file itself; or `room`, filled with it in UTF-8, where it is UTF-16 with a byte order mark. No binary format
+/// that is read starts so. Throws InputError where half of a unit is missing.
+const InputFile& as_utf8(const InputFile& file, InputFile& room);
 
 /// Text from a file in quotes, cut to a length, without control characters.
 std::string in_quotes(std::string_view text);

@@ -100,7 +100,8 @@ private:
 } // namespace
 
 Mesh read_obj(const InputFile& file) {
-    return ObjReader(file).read();
+    InputFile room;
+    return ObjReader(as_utf8(file, room)).read();
 }
 
 } // namespace raycontact

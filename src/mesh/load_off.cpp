@@ -28,7 +28,9 @@ std::int64_t read_count(TextScanner& scanner, std::string_view word, const char*
 
 } // namespace
 
-Mesh read_off(const InputFile& file) {
+Mesh read_off(const InputFile& as_stored) {
+    InputFile room;
+    const InputFile& file = as_utf8(as_stored, room);
     TextScanner scanner(file);
     scanner.comment = '#';
     check_header(scanner);

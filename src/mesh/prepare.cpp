@@ -86,9 +86,8 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
-/// Makes the windings of each orientable patch agree with the majority, then turns closed patches whose winding
-/// contradicts their nesting.
-void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh) {
+/// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told.
+void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -96,7 +95,7 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
         const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
         if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
     }
-    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh);
+    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh, nesting);
     std::size_t mended = 0, turned_whole = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const std::uint32_t p = patches.of[i];
@@ -109,15 +108,15 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
     if (mended > 0)
         prepared.report.repairs.push_back("turned " + counted(mended, "triangle") + " to make windings agree");
     if (turned_whole > 0) {
-        prepared.report.repairs.push_back("turned " + counted(turned_whole, "component") + " of "
-                                          + std::to_string(patches.list.size())
-                                          + " whose winding contradicts its nesting");
+        prepared.report.repairs.push_back(
+            "turned " + counted(turned_whole, "component") + " of " + std::to_string(patches.list.size())
+            + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
     }
 }
 
 } // namespace
 
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
@@ -140,7 +139,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
-        mend_windings(prepared, patches, bvh);
+        mend_windings(prepared, patches, bvh, nesting);
         edges = sorted_half_edges(prepared.triangles);
     }
     prepared.report.file_vertices = mesh.vertices.size();

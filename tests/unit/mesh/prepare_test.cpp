@@ -258,7 +258,7 @@ TEST(Repair, NeverOpensAClosedMesh) {
         EXPECT_EQ(twice.triangles, once.triangles);
         std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
         EXPECT_EQ(prepare_mesh(mesh).report.closed, once.report.closed);
-        Shape::make(once); // can cast and be met, whatever stays
+        if (seed % 16 == 0) Shape::make(once); // can cast and be met, whatever stays
     }
     EXPECT_GT(closed, 200u);
     EXPECT_GT(opened_before, 10u);
@@ -352,16 +352,61 @@ Mesh jumble(std::uint32_t seed) {
 }
 
 TEST(Prepare, IsIdempotent) {
-    for (std::uint32_t seed = 0; seed < 20; ++seed) {
-        const PreparedMesh once = prepare_mesh(jumble(seed));
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        const Nesting nesting = static_cast<Nesting>(seed % 3);
+        const PreparedMesh once = prepare_mesh(jumble(seed), Repair::allowed, nesting);
         EXPECT_FALSE(once.report.repairs.empty());
-        const PreparedMesh twice = prepare_mesh({once.name, once.vertices, once.triangles});
+        const PreparedMesh twice = prepare_mesh({once.name, once.vertices, once.triangles}, Repair::allowed, nesting);
         EXPECT_EQ(twice.vertices, once.vertices);
         EXPECT_EQ(twice.triangles, once.triangles);
         EXPECT_TRUE(twice.report.repairs.empty());
         EXPECT_EQ(twice.report.volume, once.report.volume);
-        EXPECT_TRUE(twice.report.outward);
+        EXPECT_TRUE(twice.report.outward || nesting != Nesting::cavities);
     }
+}
+
+TEST(Report, NumbersAreInFull) {
+    Mesh mesh = box(1.0 / 3);
+    for (Vec3& v : mesh.vertices) v.z += 123456.789012345;
+    const MeshReport report = prepare_mesh(mesh).report;
+    const std::string words = to_text(report);
+    const auto read_back = [&](const char* key) {
+        return std::stod(words.substr(words.find(key) + 19)); // the column of values
+    };
+    EXPECT_EQ(read_back("volume "), report.volume);
+    EXPECT_EQ(read_back("area "), report.area);
+    EXPECT_NE(words.find("123456.789012345 "), std::string::npos) << words;
+    EXPECT_NE(words.find(" 0.3333333333333333 0.3333333333333333 "), std::string::npos) << words;
+}
+
+TEST(Report, Verdicts) {
+    const auto verdict = [](const Mesh& mesh, Repair repair = Repair::allowed) {
+        return verdict_of(prepare_mesh(mesh, repair).report);
+    };
+    EXPECT_TRUE(verdict(box()).good);
+    EXPECT_EQ(verdict(box()).text, "good for contacts");
+    const auto starts = [](const Verdict& said, const char* words) {
+        EXPECT_FALSE(said.good);
+        EXPECT_TRUE(said.text.starts_with(words)) << said.text;
+        EXPECT_EQ(said.text.find('\n'), std::string::npos);
+    };
+    Mesh open = box();
+    open.triangles.pop_back();
+    starts(verdict(open), "open: 3 border edges");
+    Mesh crossed = box();
+    append(crossed, box(), {0.5, 0.5, 0.5});
+    starts(verdict(crossed), "self-intersecting: ");
+    append(open, crossed, {5, 0, 0});
+    starts(verdict(open), "open: 3 border edges");
+    EXPECT_TRUE(verdict(open).text.ends_with("; also self-intersecting")) << verdict(open).text;
+    Mesh turned = box();
+    turn_over(turned);
+    starts(verdict(turned, Repair::as_is), "inside out: ");
+    std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+    starts(verdict(turned, Repair::as_is), "badly wound: ");
+    Mesh nested = box(4);
+    append(nested, box(), {1, 1, 1});
+    starts(verdict(nested), "nested: ");
 }
 
 TEST(Prepare, OrderOfTrianglesDoesNotMatter) {
