@@ -6,6 +6,7 @@
 #include "cli/nested_option.h"
 #include "cli/pairs_file.h"
 
+#include <raycontact/collide.h>
 #include <raycontact/error.h>
 #include <raycontact/scene.h>
 
@@ -17,6 +18,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +30,7 @@ using Json = nlohmann::ordered_json;
 
 struct CollideOptions {
     std::string a, b, pairs_file;
+    std::vector<double> at, turn; ///< of b
     bool json = false;
     Settings settings;
     std::optional<Nesting> nested;
@@ -66,13 +69,19 @@ private:
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
 
+Json to_json(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
 Json to_json(const Contact& contact) {
     constexpr const char* features[] = {"vertex", "edge", "inside"};
     return {{"feature", features[static_cast<std::size_t>(contact.feature)]},
             {"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
             {"vertex", contact.vertex},
             {"triangle", contact.triangle},
-            {"point", {contact.point.x, contact.point.y, contact.point.z}},
+            {"point", to_json(contact.point)},
+            {"point_a", to_json(point_on_a(contact))},
+            {"point_b", to_json(point_on_b(contact))},
             {"normal", contact.normal},
             {"depth", contact.depth},
             {"ray_length", contact.ray_length},
@@ -80,23 +89,28 @@ Json to_json(const Contact& contact) {
             {"key", contact_key(contact)}};
 }
 
-void print_json(std::size_t index, std::span<const Contact> contacts) {
+void print_json(std::size_t index, bool intersecting, std::span<const Contact> contacts) {
     Json list = Json::array();
     for (const Contact& contact : contacts) list.push_back(to_json(contact));
-    const Json line{{"pair", index}, {"colliding", !contacts.empty()}, {"contacts", std::move(list)}};
+    const Json line{{"pair", index},
+                    {"colliding", !contacts.empty()},
+                    {"intersecting", intersecting},
+                    {"contacts", std::move(list)}};
     std::cout << line.dump() << '\n';
 }
 
-void print_table(std::size_t index, const QueryPair& pair, std::span<const Contact> contacts, bool weighted) {
+void print_table(std::size_t index, const QueryPair& pair, bool intersecting, std::span<const Contact> contacts,
+                 bool weighted) {
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
     if (contacts.empty()) {
-        std::cout << "no contact\n";
+        std::cout << (intersecting ? "intersecting, 0 contacts (touching, or no rule of contact applies)\n"
+                                   : "apart\n");
         return;
     }
     const auto deepest = std::max_element(contacts.begin(), contacts.end(),
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
-    std::cout << fmt::format("{} contact{}, deepest {:.6g} m\n", contacts.size(), contacts.size() == 1 ? "" : "s",
-                             deepest->depth);
+    std::cout << fmt::format("intersecting, {} contact{}, deepest {:.6g} m\n", contacts.size(),
+                             contacts.size() == 1 ? "" : "s", deepest->depth);
     const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
     std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "vertex", "triangle",
                              "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)", "normal from a to b");
@@ -127,10 +141,35 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
         std::size_t end = begin;
         while (end < contacts.size() && contacts[end].body_a == slot_of(list[i].first)) ++end;
         const auto own = contacts.subspan(begin, end - begin);
-        json ? print_json(first + i, own)
-             : print_table(first + i, pairs[i], own, settings.direction == Direction::weighted);
+        const auto [a, b] = list[i];
+        const bool intersecting =
+            !own.empty() || intersects(scene.shape(a), scene.pose(a), scene.shape(b), scene.pose(b));
+        json ? print_json(first + i, intersecting, own)
+             : print_table(first + i, pairs[i], intersecting, own, settings.direction == Direction::weighted);
         begin = end;
     }
+}
+
+/// Turned about x, then y, then z, all through its origin, and then moved.
+Pose pose_of(const CollideOptions& options) {
+    Pose pose;
+    for (std::size_t k = 0; k < options.turn.size(); ++k) {
+        const double angle = options.turn[k] * std::numbers::pi / 180;
+        // A quarter turn exactly, so that faces stay aligned.
+        const double quarters = std::fmod(options.turn[k] / 90, 4);
+        const bool whole = quarters == std::floor(quarters);
+        const double c = whole ? std::round(std::cos(angle)) : std::cos(angle);
+        const double s = whole ? std::round(std::sin(angle)) : std::sin(angle);
+        const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+        for (std::size_t column = 0; column < 3; ++column) {
+            double &p = pose.rotation[3 * u + column], &q = pose.rotation[3 * v + column];
+            const double turned = c * p - s * q;
+            q = s * p + c * q;
+            p = turned;
+        }
+    }
+    if (!options.at.empty()) pose.translation = {options.at[0], options.at[1], options.at[2]};
+    return pose;
 }
 
 std::vector<QueryPair> query_of(const CollideOptions& options) {
@@ -141,6 +180,7 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
     QueryPair pair;
     pair[0].file = options.a;
     pair[1].file = options.b;
+    pair[1].pose = pose_of(options);
     return {pair};
 }
 
@@ -173,6 +213,11 @@ void add_collide(CLI::App& app) {
         ->type_name("FILE")
         ->excludes(a)
         ->excludes(b);
+    const auto three = [&](const char* name, std::vector<double>& numbers, const char* help) {
+        command->add_option(name, numbers, help)->delimiter(',')->expected(3)->type_name("X,Y,Z")->needs(b);
+    };
+    three("--at", options->at, "move B there, metres");
+    three("--turn", options->turn, "turn B first, degrees: about the axes x, then y, then z, through its origin");
     command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
     add_nested_option(*command, options->nested);
     add_common_options(*command, options->settings);

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 
 #include "cli/bench.h"
+#include "cli/clash.h"
 #include "cli/collide.h"
 #include "cli/devices.h"
 #include "cli/mesh.h"
@@ -14,6 +15,7 @@ void add_commands(CLI::App& app) {
     add_devices(app);
     add_mesh(app);
     add_collide(app);
+    add_clash(app);
     add_run(app);
     add_replay(app);
     add_view(app);

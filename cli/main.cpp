@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/exit_status.h"
 #include "cli/stop.h"
 
 #include <raycontact/error.h>
@@ -16,14 +17,13 @@
 
 namespace {
 
-enum Status : int { fine = 0, failed = 1, bad_input = 2 };
-
 int run_program(int argc, char** argv) {
     CLI::App app{"RayContact finds the contacts between moving, concave triangle meshes by casting rays.",
                  "raycontact"};
     app.set_version_flag("--version", "raycontact " RAYCONTACT_VERSION);
     app.require_subcommand(0, 1); // none is refused below: CLI11 would not name a misspelt one
-    app.footer("Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 130 ended by Ctrl-C.");
+    app.footer(
+        "Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 3 a check found something, 130 ended by Ctrl-C.");
     add_commands(app);
     try {
         app.parse(argc, argv);
@@ -33,8 +33,8 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (app.get_subcommands().empty()) {
-        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, run, replay, view, reproduce "
-                                     "or bench (see raycontact --help)");
+        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, clash, run, replay, view, "
+                                     "reproduce or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return stop_signal() == 0 ? fine : 128 + stop_signal(); // as a shell has it
@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is then an error like a full disk
     try {
         return run_program(argc, argv);
+    } catch (const EndWith& end) {
+        return std::cout.flush() ? end.status : failed;
     } catch (const raycontact::InputError& error) {
         complain(error.what());
         return bad_input;

@@ -17,6 +17,10 @@ auto ray_of(const Contact& c) {
 
 } // namespace
 
+Follower::Follower(const Reader& reader, const Settings& settings) : reader_(reader), scene_(settings) {
+    for (const auto& shape : reader.shapes()) shape->prepare(settings.threads);
+}
+
 void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
     const std::vector<BodyEvent>& events = reader_.events();
     for (; next_event_ < events.size() && events[next_event_].step <= i; ++next_event_)

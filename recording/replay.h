@@ -18,7 +18,8 @@ namespace raycontact::recording {
 /// A scene that follows a recording: the same bodies, poses and pairs, step by step.
 class Follower {
 public:
-    Follower(const Reader& reader, const Settings& settings) : reader_(reader), scene_(settings) {}
+    /// Prepares the shapes, so that a replay repeats: counts of work, and the contacts of methods that follow rays.
+    Follower(const Reader& reader, const Settings& settings);
 
     /// Sets up step i, ascending from 0: bodies come and go, poses, by slot, are set.
     void place(std::uint32_t i, std::span<const Pose> poses);
@@ -72,7 +73,8 @@ struct ReplayOptions {
 /// same, or both methods are among those that find what `standard` finds.
 bool must_agree(const Settings& recorded, const Settings& used);
 
-/// Detection only, over all recorded steps, or up to where it was stopped. Throws InputError for a damaged recording or unusable settings.
+/// Detection only, over all recorded steps, or up to where it was stopped. Throws InputError for a damaged recording or
+/// unusable settings.
 Replay replay(Reader& reader, const ReplayOptions& options);
 
 } // namespace raycontact::recording

@@ -116,8 +116,10 @@ void Simulation::State::configure() {
     // Nobody sleeps, so islands save nothing.
     world.getSimulationIslandManager()->setSplitIslands(false);
 
-    for (const SceneShape& shape : description.shapes)
+    for (const SceneShape& shape : description.shapes) {
+        shape.shape->prepare(description.settings.threads); // a run repeats, its counts of work, too
         shapes.push_back(std::make_unique<bullet::MeshShape>(shape.shape, shape.bounds));
+    }
     inertias.resize(shapes.size());
     if (description.plane) {
         plane_shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0));

@@ -9,6 +9,7 @@
 #include "executor/float_environment.h"
 #include "give_back.h"
 #include "pose_fault.h"
+#include "shape/preparer.h"
 #include "shape/shape_data.h"
 #include "step.h"
 
@@ -16,6 +17,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <unordered_map>
 
 namespace raycontact {
 
@@ -31,6 +34,21 @@ void refuse_faulty(const Pose& pose, BodyId body) {
     if (const char* fault = pose_fault(pose)) throw InputError(name_of(body) + ": " + fault);
 }
 
+// Their walks begin where a full look found something, and what a look finds depends on the grids.
+bool follows_rays(Method method) {
+    return method == Method::iterative || method == Method::predictive;
+}
+
+/// What users say of a body.
+struct BodyNotes {
+    std::uint64_t user_data = 0;
+    std::uint32_t groups = 1, mask = 0xffffffffu;
+};
+
+bool may_meet(const BodyNotes& a, const BodyNotes& b) {
+    return (a.groups & b.mask) != 0 && (b.groups & a.mask) != 0;
+}
+
 bool by_slots(const Pair& p, const Pair& q) {
     return SlotPair(slot_of(p.first), slot_of(p.second)) < SlotPair(slot_of(q.first), slot_of(q.second));
 }
@@ -38,7 +56,7 @@ bool by_slots(const Pair& p, const Pair& q) {
 } // namespace
 
 struct Scene::State {
-    explicit State(const Settings& settings) : narrow(settings) {}
+    explicit State(const Settings& settings) : narrow(settings), preparer(settings.threads) {}
 
     /// where: the function that was called, for the message.
     PlacedBody& existing(BodyId body, const char* where) {
@@ -69,8 +87,36 @@ struct Scene::State {
 
     void place_bodies() {
         pack_shapes();
+        accelerate_shapes();
         for (PlacedBody& body : bodies)
             if (body.shape != nullptr) body.centred = centred_pose(*body.shape, body.pose);
+    }
+
+    // All shapes must be the same each time a run repeats, where contacts depend on what follows rays.
+    void accelerate_shapes() {
+        if (narrow.parts().plain_shapes() == 0) return;
+        if (follows_rays(narrow.settings().method)) prepare_shapes();
+        narrow.parts().accelerate_shapes();
+    }
+
+    void prepare_shapes() {
+        for (const PlacedBody& body : bodies)
+            if (body.shape != nullptr) body.shape->prepare(narrow.settings().threads);
+    }
+
+    // Once a shape meets others in a second step, more steps are likely to come.
+    void want_shapes() {
+        if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
+        ++steps_met;
+        for (const SlotPair& pair : slot_pairs)
+            for (const BodySlot slot : {pair.first, pair.second}) {
+                const Shape* shape = bodies[slot].shape;
+                if (shape->is_prepared()) continue;
+                std::uint64_t& first = met_shapes.try_emplace(shape, steps_met).first->second;
+                if (first >= steps_met) continue; // met for the first time, or wanted already
+                first = wanted;
+                preparer.want(shape->shared_from_this());
+            }
     }
 
     void find_pairs() {
@@ -94,6 +140,8 @@ struct Scene::State {
         }
         pairs_stand = false;
         sweep_and_prune(boxes, slot_pairs);
+        std::erase_if(slot_pairs,
+                      [&](const SlotPair& pair) { return !may_meet(notes[pair.first], notes[pair.second]); });
         pairs.clear();
         for (const auto& [a, b] : slot_pairs) pairs.emplace_back(slots.id_in(a), slots.id_in(b));
         pairs_stand = true;
@@ -146,6 +194,7 @@ struct Scene::State {
         narrow.step(bodies, slot_pairs, contacts, stats);
         stats.broad_ms = broad_ms;
         if (narrow.settings().continuous) find_coming();
+        want_shapes();
         slots.step_done();
         cut_to_slots();
         give_back(boxes);
@@ -165,12 +214,14 @@ struct Scene::State {
     void cut_to_slots() {
         if (slots.end() >= bodies.size()) return;
         bodies.resize(slots.end());
+        notes.resize(slots.end());
         if (bodies.capacity() > 4 * bodies.size() + 1024) bodies.shrink_to_fit();
     }
 
     NarrowPhase narrow;
     BodySlots slots;
     std::vector<PlacedBody> bodies; ///< by slot; without a shape once removed
+    std::vector<BodyNotes> notes;   ///< by slot
     NextPoses next_poses;
     std::span<const Pose> next; ///< of this step; empty unless it is continuous
     ComingContacts coming;
@@ -179,7 +230,11 @@ struct Scene::State {
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
     std::vector<Contact> contacts;
     StepStats stats;
+    static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
+    std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
+    std::uint64_t steps_met = 0;
     bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
+    Preparer preparer;        ///< last: it ends first
 };
 
 Scene::Scene(const Settings& settings) {
@@ -196,9 +251,13 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     if (!shape) throw InputError(name_of(id) + ": the shape is null");
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
-    if (slot >= s.bodies.size()) s.bodies.resize(slot + std::size_t{1});
+    if (slot >= s.bodies.size()) {
+        s.bodies.resize(slot + std::size_t{1});
+        s.notes.resize(slot + std::size_t{1});
+    }
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
+    s.notes[slot] = {};
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose};
     return s.slots.give();
 }
@@ -207,6 +266,7 @@ void Scene::remove(BodyId body) {
     State& s = *state_;
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.narrow.parts().remove_shape(gone.shape);
+    s.met_shapes.erase(gone.shape); // its address may be another's soon
     gone.shape = nullptr;
     s.pairs_stand = false;
     s.slots.take_back(slot_of(body));
@@ -248,6 +308,20 @@ const Shape& Scene::shape(BodyId body) const {
     return *state_->existing(body, "Scene::shape").shape;
 }
 
+void Scene::set_user_data(BodyId body, std::uint64_t data) {
+    state_->existing(body, "Scene::set_user_data");
+    state_->notes[slot_of(body)].user_data = data;
+}
+std::uint64_t Scene::user_data(BodyId body) const {
+    state_->existing(body, "Scene::user_data");
+    return state_->notes[slot_of(body)].user_data;
+}
+void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
+    state_->existing(body, "Scene::set_filter");
+    state_->notes[slot_of(body)].groups = groups;
+    state_->notes[slot_of(body)].mask = mask;
+}
+
 BodyId Scene::body_in(std::uint32_t slot) const {
     if (!state_->slots.is_taken(slot))
         throw InputError("Scene::body_in: slot " + std::to_string(slot)
@@ -264,6 +338,12 @@ std::vector<BodyId> Scene::bodies() const {
     for (BodySlot slot = 0; slot < state_->slots.end(); ++slot)
         if (state_->slots.is_taken(slot)) ids.push_back(state_->slots.id_in(slot));
     return ids;
+}
+
+void Scene::prepare() {
+    state_->prepare_shapes();
+    state_->pack_shapes();
+    state_->narrow.parts().accelerate_shapes();
 }
 
 std::span<const Contact> Scene::step() {
@@ -292,6 +372,14 @@ std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
 
 std::span<const Contact> Scene::contacts() const {
     return state_->contacts;
+}
+std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
+    state_->existing(a, "Scene::contacts");
+    state_->existing(b, "Scene::contacts");
+    const auto [first, second] = std::minmax({slot_of(a), slot_of(b)});
+    const auto bodies_of = [](const Contact& c) { return SlotPair(c.body_a, c.body_b); };
+    const auto found = std::ranges::equal_range(state_->contacts, SlotPair(first, second), {}, bodies_of);
+    return {found.begin(), found.end()};
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();

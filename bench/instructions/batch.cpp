@@ -28,6 +28,7 @@ Batch make_batch(std::uint32_t triangles, std::size_t pairs, std::size_t steps) 
     Batch batch;
     batch.mesh = scenes::scene_model("knot", triangles).mesh;
     batch.shape = Shape::make(batch.mesh);
+    batch.shape->prepare();
     const double diagonal = batch.shape->data().diagonal;
     scenes::Random random(7);
     std::vector<PlacedBody> bodies;

@@ -8,6 +8,7 @@
 #include "contacts/place.h"
 #include "device/cpu/device.h"
 #include "part/part.h"
+#include "shape/accelerators.h"
 
 #include <raycontact/error.h>
 
@@ -111,6 +112,10 @@ void count_all() {
         rc::sweep_and_prune(sorted, pairs);
     });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { rc::Shape::make(small.mesh); });
+    const auto made = rc::Shape::make(small.mesh);
+    rc::Executor one_thread(1);
+    count_host("prepare_shape,knot", small.mesh.triangles.size(),
+               [&] { rc::build_accelerators(made->data(), one_thread, {}); });
 }
 
 std::string compiler() {

@@ -42,6 +42,12 @@ struct Contact {
     float weight = 1;
 };
 
+/// The witness points, world frame, metres: the source's own point, and the point on the other body that lies `depth`
+/// along the normal from it (with direction `reprojected` in the plane of the face that was hit). point_on_a -
+/// point_on_b = depth x normal: A reaches that much too far.
+Vec3 point_on_a(const Contact& contact);
+Vec3 point_on_b(const Contact& contact);
+
 /// Contact::crossing of an edge: the number of the crossing at which the piece ends, counted from the edge's first
 /// corner; or, where it ends at a vertex, one of these.
 inline constexpr std::uint32_t edge_start = 0xfffffffeu, edge_end = 0xffffffffu;

@@ -4,6 +4,7 @@
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
 #include <raycontact/device.h>
+#include <raycontact/error.h>
 #include <raycontact/prediction.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
@@ -78,6 +79,12 @@ public:
     /// to go on as it did since the last step. Nothing without Settings::continuous. Throws InputError as set_pose().
     void set_next_pose(BodyId body, const Pose& pose);
     const Shape& shape(BodyId body) const;
+    /// A number of your own for each body, such as the address of your object; 0 at first.
+    void set_user_data(BodyId body, std::uint64_t data);
+    std::uint64_t user_data(BodyId body) const;
+    /// step() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At first a
+    /// body is in group 1, and its mask has all bits. step(pairs) tests every pair that it is given.
+    void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
     /// The body that a contact names by its slot. Throws InputError if the slot has none, as after remove().
     BodyId body_in(std::uint32_t slot) const;
     std::uint32_t body_count() const;
@@ -88,6 +95,10 @@ public:
     void set_settings(const Settings& settings);
     const Settings& settings() const;
 
+    /// Shape::prepare() for the shapes of all bodies, so that the next step is as fast as later ones and counts repeat.
+    /// Methods `iterative` and `predictive` do so before their steps: their contacts depend on it.
+    void prepare();
+
     /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts.
     std::span<const Contact> step();
     /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws
@@ -97,6 +108,8 @@ public:
     /// Of the last step; sorted by (body_a, body_b, vertex_body, feature, vertex, crossing). Valid until
     /// the next step.
     std::span<const Contact> contacts() const;
+    /// Those of one pair, in either order of its bodies; none for two that were not paired.
+    std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// Contacts that the last step had and this one does not, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const;
     /// With Settings::continuous: of the last step, the vertices that will enter the other body on a straight way to

@@ -6,13 +6,17 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 namespace raycontact {
 
 struct ShapeData;
+struct Accelerators;
+class AcceleratorSlot;
+class Executor;
 
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
-/// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to read from any thread.
+/// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
 class Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. Deterministic: equal input gives equal bits. Throws InputError for a mesh without area.
@@ -23,6 +27,13 @@ public:
     ~Shape();
     Shape(const Shape&) = delete;
     Shape& operator=(const Shape&) = delete;
+
+    /// Makes what only speeds up later steps (docs/performance.md): several times the work of make(). A Scene has it
+    /// made beside its steps for shapes that meet others in more than one step, so nobody needs to call this; call it
+    /// where the first steps must be as fast as the later ones, or where counts of work must repeat exactly. No contact
+    /// of `standard` or `certified` depends on it. threads 0: one per core. Does nothing the second time.
+    void prepare(std::uint32_t threads = 0) const;
+    bool is_prepared() const;
 
     const std::string& name() const;
     const MeshReport& report() const;
@@ -55,11 +66,16 @@ public:
     static constexpr std::uint32_t no_triangle = 0xffffffffu;
 
     std::uint64_t memory_bytes() const;
-    const ShapeData& data() const { return *data_; } ///< the kernels' arrays; for the library's own use
+
+    // For the library's own use.
+    const ShapeData& data() const { return *data_; }                     ///< the kernels' arrays
+    const Accelerators* accelerators() const;                            ///< null: not prepared
+    bool prepare(Executor& executor, const std::stop_token& stop) const; ///< false if it was asked to stop
 
 private:
     explicit Shape(std::unique_ptr<ShapeData> data);
     std::unique_ptr<ShapeData> data_;
+    std::unique_ptr<AcceleratorSlot> accelerators_;
 };
 
 } // namespace raycontact

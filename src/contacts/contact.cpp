@@ -12,6 +12,24 @@ namespace raycontact {
 // A step writes and reads some ten thousand of them: the small members fill what the alignment of `point` leaves free.
 static_assert(sizeof(Contact) <= 72);
 
+namespace {
+
+Vec3 moved(const Contact& contact, double sign) {
+    const double by = sign * double(contact.depth);
+    return {contact.point.x + by * double(contact.normal[0]), contact.point.y + by * double(contact.normal[1]),
+            contact.point.z + by * double(contact.normal[2])};
+}
+
+} // namespace
+
+Vec3 point_on_a(const Contact& contact) {
+    return contact.vertex_body == VertexBody::a ? contact.point : moved(contact, 1);
+}
+
+Vec3 point_on_b(const Contact& contact) {
+    return contact.vertex_body == VertexBody::b ? contact.point : moved(contact, -1);
+}
+
 std::string contact_key(const Contact& contact) {
     return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.feature,
                                    contact.crossing, contact.vertex});

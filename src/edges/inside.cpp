@@ -14,9 +14,9 @@ bool in_box(const ShapeData& mesh, const Vec3& p) {
 }
 
 // A cell of the outside grid that holds the point is outside as a whole.
-bool known_outside(const ShapeData& mesh, const Vec3& p) {
-    const kernels::ShapeHeader& h = mesh.header;
-    if (h.grid_size[0] == 0) return false;
+bool known_outside(const Accelerators* mesh, const Vec3& p) {
+    if (mesh == nullptr || mesh->header.grid_size[0] == 0) return false;
+    const kernels::ShapeHeader& h = mesh->header;
     std::size_t cell[3];
     for (std::size_t k = 0; k < 3; ++k) {
         const double at = (axis(p, k) - double(h.grid_low[k])) * double(h.grid_scale);
@@ -24,11 +24,12 @@ bool known_outside(const ShapeData& mesh, const Vec3& p) {
         cell[k] = static_cast<std::size_t>(at);
     }
     const std::size_t bit = (cell[2] * h.grid_size[1] + cell[1]) * h.grid_size[0] + cell[0];
-    return (mesh.outside_cells[bit >> 5] >> (bit & 31u) & 1u) != 0;
+    return (mesh->outside_cells[bit >> 5] >> (bit & 31u) & 1u) != 0;
 }
 
-bool is_inside(const ShapeData& mesh, const Vec3& p) {
-    if (!in_box(mesh, p) || known_outside(mesh, p)) return false;
+bool is_inside(const SourceMesh& placed, const Vec3& p) {
+    const ShapeData& mesh = placed.target;
+    if (!in_box(mesh, p) || known_outside(placed.target_accelerators, p)) return false;
     // Any direction serves; this one is related to no axis and no diagonal.
     const MeshHit hit = closest_hit(mesh, p, {0.5402, 0.3173, 0.7794}, 0, 1e300);
     return hit.face != NONE && hit.from_inside;
@@ -38,7 +39,7 @@ bool is_inside(const ShapeData& mesh, const Vec3& p) {
 
 bool has_part_inside(const SourceMesh& placed) {
     for (const std::uint32_t v : placed.source.component_vertices)
-        if (is_inside(placed.target, placed.vertex(v))) return true;
+        if (is_inside(placed, placed.vertex(v))) return true;
     return false;
 }
 
@@ -51,7 +52,7 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
         if (!in_box(target, p)) continue;
         const NearestFace nearest = nearest_face(target, p, deepest ? deepest->depth : 0);
         if (deepest && nearest.distance <= deepest->depth) continue;
-        if (!is_inside(target, p)) continue; // of another component
+        if (!is_inside(placed, p)) continue; // of another component
         const Vec3 out = nearest_point(p, target.corner(nearest.face, 0), target.corner(nearest.face, 1),
                                        target.corner(nearest.face, 2))
                          - p;

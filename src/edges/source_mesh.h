@@ -3,7 +3,7 @@
 
 #include "mesh/vector.h"
 #include "pairs/directed_pairs.h"
-#include "shape/shape_data.h"
+#include "shape/accelerators.h"
 
 namespace raycontact {
 
@@ -14,6 +14,7 @@ struct SourceMesh {
     static constexpr double small_face = 0.1; ///< longest edge of a small face, in diagonals of the smaller body
     const ShapeData& source;
     const ShapeData& target;
+    const Accelerators* target_accelerators; ///< null: it has none
     Pose pose;   ///< of the source's centred frame in the target's
     double size; ///< of the smaller body's box, its diagonal, metres
     double hair; ///< metres
@@ -21,7 +22,8 @@ struct SourceMesh {
 
     /// in_contact: a vertex of either body is. Then edges between small faces are not asked.
     SourceMesh(const PlacedBody& from, const PlacedBody& to, bool in_contact)
-        : source(from.shape->data()), target(to.shape->data()), pose(relative_pose(to.centred, from.centred)),
+        : source(from.shape->data()), target(to.shape->data()),
+          target_accelerators(to.shape->accelerators()), pose(relative_pose(to.centred, from.centred)),
           size(smaller_size(from, to)), hair(1e-7 * size),
           span(in_contact ? static_cast<float>(small_face * size) : 0) {}
 

@@ -32,9 +32,9 @@ void SliceReference::operator()(std::uint32_t begin, std::uint32_t end) const {
     call(function, begin, end);
 }
 
-Executor::Executor(std::uint32_t threads, int core)
+Executor::Executor(std::uint32_t threads, int core, Priority priority)
     : threads_(core >= 0 ? 1 : (threads > 0 ? threads : usable_cores())), core_(core),
-      pool_(threads_ > 1 ? make_thread_pool(threads_) : nullptr) {}
+      pool_(threads_ > 1 ? make_thread_pool(threads_, priority == Priority::low) : nullptr) {}
 
 void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;

@@ -23,7 +23,8 @@ public:
     virtual void wake() = 0;
     virtual void run(std::uint32_t count, std::uint32_t grain, SliceReference slice) = 0;
 };
-std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads);
+/// low: gets threads that no other pool has work for (oneTBB only).
+std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads, bool low_priority);
 
 /// Binds the calling thread to one core, if that is >= 0, for as long as it lives. A second one for the same core costs
 /// nothing.
@@ -43,9 +44,10 @@ private:
 /// Runs slices of an index range on a fixed number of threads. Which thread takes a slice never decides a result.
 class Executor {
 public:
+    enum class Priority { normal, low };
     /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core (the
-    /// system's number, see usable_core).
-    explicit Executor(std::uint32_t threads, int core = -1);
+    /// system's number, see usable_core). low: others' work comes first.
+    explicit Executor(std::uint32_t threads, int core = -1, Priority priority = Priority::normal);
 
     std::uint32_t threads() const { return threads_; }
     /// The one that all work is pinned to; -1: none.

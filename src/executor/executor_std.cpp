@@ -73,7 +73,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads) {
+std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads, bool /*low_priority*/) {
     return std::make_unique<StdPool>(threads);
 }
 

@@ -14,7 +14,9 @@ namespace {
 
 class TbbPool : public ThreadPool {
 public:
-    explicit TbbPool(std::uint32_t threads) : arena_(static_cast<int>(threads)) {
+    TbbPool(std::uint32_t threads, bool low_priority)
+        : arena_(static_cast<int>(threads), 1,
+                 low_priority ? tbb::task_arena::priority::low : tbb::task_arena::priority::normal) {
         if (threads > static_cast<std::uint32_t>(tbb::info::default_concurrency()))
             allowed_.emplace(tbb::global_control::max_allowed_parallelism, threads);
     }
@@ -38,8 +40,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads) {
-    return std::make_unique<TbbPool>(threads);
+std::unique_ptr<ThreadPool> make_thread_pool(std::uint32_t threads, bool low_priority) {
+    return std::make_unique<TbbPool>(threads, low_priority);
 }
 
 } // namespace raycontact

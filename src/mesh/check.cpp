@@ -103,12 +103,12 @@ void check_size(std::span<const Vec3> vertices, const std::string& name) {
 }
 
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
-                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh) {
+                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh, Executor& executor) {
     MeshReport& report = prepared.report;
     report.vertices = prepared.vertices.size();
     report.triangles = prepared.triangles.size();
     fill_topology(report, prepared.triangles, edges);
-    report.self_intersecting = bvh.any_pair([&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
+    report.self_intersecting = bvh.any_pair(executor, [&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
         return triangles_meet(snapped_vertices, prepared.triangles[i], prepared.triangles[k]);
     });
     if (report.closed && report.oriented && !report.self_intersecting)

@@ -20,7 +20,7 @@ void check_size(std::span<const Vec3> vertices, const std::string& name);
 
 /// Fills the report, except its repairs and the counts of the file. The hierarchy is over snapped vertices.
 void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
-                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh);
+                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh, Executor& executor);
 
 /// What the report of a mesh should say; the counts of its file and its repairs are taken over. Its coordinates must be
 /// those that prepare_mesh() takes. Throws InputError where no triangle has an area.

@@ -49,6 +49,7 @@ Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
+std::vector<Mesh> read_gltf_parts(const InputFile& file); ///< by node; their names are set
 
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>

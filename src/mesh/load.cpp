@@ -11,11 +11,20 @@
 
 namespace raycontact {
 
-Mesh load_mesh(const std::filesystem::path& path) {
+namespace {
+
+std::string ending_of(const std::filesystem::path& path) {
     std::string ending = path.extension().string();
     for (char& c : ending) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
+    return ending;
+}
+
+} // namespace
+
+Mesh load_mesh(const std::filesystem::path& path) {
+    const std::string ending = ending_of(path);
     using Format = std::pair<std::string_view, Mesh (*)(const InputFile&)>;
     constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
                                  Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
@@ -28,6 +37,16 @@ Mesh load_mesh(const std::filesystem::path& path) {
         return mesh;
     }
     file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
+}
+
+std::vector<Mesh> load_mesh_parts(const std::filesystem::path& path) {
+    const std::string ending = ending_of(path);
+    if (ending != ".gltf" && ending != ".glb") return {load_mesh(path)};
+    const InputFile file = InputFile::read(path);
+    std::vector<Mesh> parts = read_gltf_parts(file);
+    if (parts.empty()) check_mesh({}, file.shown);
+    for (const Mesh& part : parts) check_mesh(part, file.shown + ": " + part.name);
+    return parts;
 }
 
 } // namespace raycontact

@@ -137,6 +137,7 @@ public:
             const json& primitives = list(mesh, "primitives");
             placed += primitives.size();
             if (placed > most_primitives) file_.fail("places too many primitives; split or reduce it");
+            parts_.push_back({name_of(node), mesh_.vertices.size(), mesh_.triangles.size()});
             for (std::size_t i = 0; i < primitives.size(); ++i) {
                 const std::string name = mesh.name + ".primitives[" + std::to_string(i) + "]";
                 read_primitive({primitives[i], name}, node.name, nodes_[n].placement);
@@ -145,7 +146,32 @@ public:
         return std::move(mesh_);
     }
 
+    /// Each node that places a mesh by itself, but for those without triangles.
+    std::vector<Mesh> read_parts() {
+        const Mesh whole = read();
+        parts_.push_back({"", whole.vertices.size(), whole.triangles.size()});
+        std::vector<Mesh> parts;
+        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
+            const Part &from = parts_[i], &to = parts_[i + 1];
+            if (from.triangle == to.triangle) continue;
+            Mesh& mesh = parts.emplace_back();
+            mesh.name = from.name;
+            mesh.vertices.assign(whole.vertices.begin() + static_cast<std::ptrdiff_t>(from.vertex),
+                                 whole.vertices.begin() + static_cast<std::ptrdiff_t>(to.vertex));
+            for (std::size_t t = from.triangle; t < to.triangle; ++t) {
+                mesh.triangles.push_back(whole.triangles[t]);
+                for (std::uint32_t& corner : mesh.triangles.back()) corner -= static_cast<std::uint32_t>(from.vertex);
+            }
+        }
+        return parts;
+    }
+
 private:
+    /// Where the vertices and triangles of a node begin in the whole mesh.
+    struct Part {
+        std::string name;
+        std::size_t vertex, triangle;
+    };
     struct Node {
         std::vector<std::size_t> children;
         bool waits = false; ///< for its parent to be placed
@@ -207,6 +233,11 @@ private:
 
     void check_object(const Item& item) const {
         if (!item.value.is_object()) fail(item, "is no object");
+    }
+
+    std::string name_of(const Item& node) const {
+        const std::optional<Item> name = member(node, "name");
+        return name && name->value.is_string() ? printable(text_of(*name)) : node.name;
     }
 
     /// None where the key is missing. A null is a value, and of the wrong kind for every key.
@@ -545,14 +576,18 @@ private:
     std::map<std::filesystem::path, std::string_view> files_; ///< that were read
     std::vector<std::string_view> buffers_;
     std::vector<Node> nodes_;
+    std::vector<Part> parts_;
     Mesh mesh_;
 };
 
 } // namespace
 
-Mesh read_gltf(const InputFile& file) {
+namespace {
+
+template <class Read>
+auto told(const InputFile& file, Read&& read) {
     try {
-        return GltfReader(file).read();
+        return read();
     } catch (const json::parse_error& damage) {
         file.fail("is no sound glTF file: its JSON is damaged at byte " + std::to_string(damage.byte));
     } catch (const json::out_of_range&) {
@@ -560,6 +595,16 @@ Mesh read_gltf(const InputFile& file) {
     } catch (const json::exception& error) {
         file.fail("is no sound glTF file: " + printable(error.what()));
     }
+}
+
+} // namespace
+
+Mesh read_gltf(const InputFile& file) {
+    return told(file, [&] { return GltfReader(file).read(); });
+}
+
+std::vector<Mesh> read_gltf_parts(const InputFile& file) {
+    return told(file, [&] { return GltfReader(file).read_parts(); });
 }
 
 } // namespace raycontact

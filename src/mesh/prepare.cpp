@@ -114,6 +114,11 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
     }
 }
 
+/// Few triangles are done before other threads wake.
+Executor executor_for(std::size_t triangles) {
+    return Executor(triangles < 4096 ? 1 : 0);
+}
+
 } // namespace
 
 PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
@@ -131,11 +136,12 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
+    Executor executor = executor_for(prepared.triangles.size());
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     std::vector<std::uint32_t> with_area = triangles_with_area(prepared, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
-    const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area));
+    const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area), executor);
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
@@ -144,20 +150,21 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     }
     prepared.report.file_vertices = mesh.vertices.size();
     prepared.report.file_triangles = mesh.triangles.size();
-    fill_report(prepared, patches, edges, exact, bvh);
+    fill_report(prepared, patches, edges, exact, bvh, executor);
     return prepared;
 }
 
 MeshReport measured_report(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
+    Executor executor = executor_for(mesh.triangles.size());
     const std::vector<Vec3> exact = all_snapped(mesh.vertices);
     std::vector<std::uint32_t> with_area = triangles_with_area(mesh, exact);
     if (with_area.empty()) throw InputError("no triangle has an area");
-    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area));
+    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area), executor);
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
     PreparedMesh measured(mesh);
     measured.report.outward = false; // as for a mesh whose report is not filled yet
-    fill_report(measured, find_patches(mesh.triangles, edges), edges, exact, bvh);
+    fill_report(measured, find_patches(mesh.triangles, edges), edges, exact, bvh, executor);
     return measured.report;
 }
 

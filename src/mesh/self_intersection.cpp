@@ -125,4 +125,8 @@ bool triangles_meet(std::span<const Vec3> vertices, const Triangle& a, const Tri
     return shared == 3 || (!clearly_open(u, v) && folded_flat(u, v));
 }
 
+bool triangles_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
+    return edges_meet(a, b, 0);
+}
+
 } // namespace raycontact

@@ -9,4 +9,7 @@ namespace raycontact {
 /// predicates.h), which are equal exactly where their indices are. Neither may be degenerate.
 bool triangles_meet(std::span<const Vec3> vertices, const Triangle& a, const Triangle& b);
 
+/// Whether two triangles of different meshes have a point in common. As exact; neither may be degenerate.
+bool triangles_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
+
 } // namespace raycontact

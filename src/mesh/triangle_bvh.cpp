@@ -9,40 +9,121 @@
 
 namespace raycontact {
 
+namespace {
+
+constexpr std::uint32_t leaf = TriangleBvh::leaf_size;
+
+/// How many nodes cover n triangles, and n + 1.
+std::pair<std::uint32_t, std::uint32_t> node_counts(std::uint32_t n) {
+    if (n + 1 <= leaf) return {1, 1};
+    const auto [few, more] = node_counts(n / 2);
+    const auto both = [&](std::uint32_t m) {
+        return m <= leaf ? 1 : 1 + (m / 2 == n / 2 ? few : more) + (m - m / 2 == n / 2 ? few : more);
+    };
+    return {both(n), both(n + 1)};
+}
+
+} // namespace
+
+/// What the triangles are sorted by.
+struct TriangleBvh::Sorting {
+    std::vector<Box> boxes;
+    std::vector<Vec3> sums; ///< of the corners
+    std::vector<std::pair<double, std::uint32_t>> keys;
+};
+
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                         std::vector<std::uint32_t> chosen)
+                         std::vector<std::uint32_t> chosen, Executor& executor)
     : vertices_(vertices), triangles_(triangles), order_(std::move(chosen)) {
-    nodes_.reserve(order_.size());
-    build(0, static_cast<std::uint32_t>(order_.size()));
-    boxes_.reserve(order_.size());
-    for (const std::uint32_t triangle : order_) boxes_.push_back(triangle_box(triangle));
+    build(executor);
 }
 
-Box TriangleBvh::triangle_box(std::uint32_t triangle) const {
-    const auto [a, b, c] = triangles_[triangle];
-    return box_of(std::array{vertices_[a], vertices_[b], vertices_[c]});
+void TriangleBvh::build(Executor& executor) {
+    const auto count = static_cast<std::uint32_t>(order_.size());
+    nodes_.resize(node_counts(count).first);
+    boxes_.resize(count);
+    Sorting sorting;
+    sorting.boxes.resize(triangles_.size());
+    sorting.sums.resize(triangles_.size());
+    sorting.keys.resize(count);
+    executor.run(count, 4096, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const auto [a, b, c] = triangles_[order_[i]];
+            const Vec3 &p = vertices_[a], &q = vertices_[b], &r = vertices_[c];
+            sorting.boxes[order_[i]] = {least(least(p, q), r), most(most(p, q), r)};
+            sorting.sums[order_[i]] = p + q + r;
+        }
+    });
+    // Level by level while there are few parts, then each part by one thread.
+    std::vector<Part> parts{{0, 0, count}};
+    while (parts.size() < 256 && count / parts.size() > 4096) {
+        std::vector<Part> halves(2 * parts.size());
+        executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const auto both = split(parts[i], sorting);
+                std::copy(both.begin(), both.end(), halves.begin() + 2 * std::ptrdiff_t{i});
+            }
+        });
+        parts = std::move(halves);
+    }
+    executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) build_below(parts[i], sorting);
+    });
 }
 
-std::uint32_t TriangleBvh::build(std::uint32_t first, std::uint32_t last) {
-    Box box = triangle_box(order_[first]);
-    for (std::uint32_t i = first + 1; i < last; ++i) box.add(triangle_box(order_[i]));
-    const auto node = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({box, first, last, 0});
-    if (last - first <= leaf_size) return node;
+/// Fills the part's node, with the places of both children.
+std::array<TriangleBvh::Part, 2> TriangleBvh::split(const Part& part, Sorting& sorting) {
+    const auto [node, first, last] = part;
+    Box box = sorting.boxes[order_[first]];
+    for (std::uint32_t i = first + 1; i < last; ++i) box.add(sorting.boxes[order_[i]]);
+    const std::uint32_t middle = first + (last - first) / 2;
+    const std::uint32_t right = last - first <= leaf_size ? 0 : node + 1 + node_counts(middle - first).first;
+    nodes_[node] = {box, first, last, right};
+    if (right == 0) return {};
 
     const Vec3 size = box.high - box.low;
     const std::size_t k = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto key = [&](std::uint32_t triangle) {
-        const Triangle& t = triangles_[triangle];
-        return axis(vertices_[t[0]], k) + axis(vertices_[t[1]], k) + axis(vertices_[t[2]], k);
-    };
-    const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                     [&](std::uint32_t a, std::uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
-    build(first, middle);
-    const std::uint32_t right = build(middle, last);
-    nodes_[node].right = right;
-    return node;
+    const auto keys = sorting.keys.begin();
+    for (std::uint32_t i = first; i < last; ++i) keys[i] = {axis(sorting.sums[order_[i]], k), order_[i]};
+    std::nth_element(keys + first, keys + middle, keys + last);
+    for (std::uint32_t i = first; i < last; ++i) order_[i] = keys[i].second;
+    return {Part{node + 1, first, middle}, Part{right, middle, last}};
+}
+
+void TriangleBvh::build_below(const Part& part, Sorting& sorting) {
+    const auto [left, right] = split(part, sorting);
+    if (nodes_[part.node].right != 0) {
+        build_below(left, sorting);
+        return build_below(right, sorting);
+    }
+    for (std::uint32_t i = part.first; i < part.last; ++i) boxes_[i] = sorting.boxes[order_[i]];
+}
+
+/// Pairs of nodes that together cover all pairs of triangles whose boxes touch; about as many as wanted.
+std::vector<TriangleBvh::NodePair> TriangleBvh::node_pairs(std::size_t wanted) const {
+    std::vector<NodePair> open{{0, 0}};
+    for (bool opened = true; opened && open.size() < wanted;) {
+        opened = false;
+        std::vector<NodePair> next;
+        for (const auto& [a, b] : open) {
+            const Node &left = nodes_[a], &right = nodes_[b];
+            if (!left.box.touches(right.box)) continue;
+            if (left.right == 0 || right.right == 0) {
+                next.push_back({a, b});
+                continue;
+            }
+            opened = true;
+            if (a == b) {
+                next.insert(next.end(), {{a + 1, a + 1}, {left.right, left.right}, {a + 1, left.right}});
+            } else if (left.size() >= right.size()) {
+                next.insert(next.end(), {{a + 1, b}, {left.right, b}});
+            } else {
+                next.insert(next.end(), {{a, b + 1}, {a, right.right}});
+            }
+        }
+        open = std::move(next);
+    }
+    return open;
 }
 
 double TriangleBvh::squared_distance_of(const Box& box, const Vec3& p) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "executor/executor.h"
 #include "mesh/adjacency.h"
 #include "mesh/measure.h"
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,12 +18,20 @@ namespace raycontact {
 class TriangleBvh {
 public:
     /// Over the given triangles only; at least one.
-    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen);
+    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen,
+                Executor& executor);
 
-    /// Calls test(i, k) once for each two triangles whose boxes touch, until it returns true; returns whether it did.
+    /// Calls test(i, k), on several threads at once, for two triangles each whose boxes touch, until it returns true;
+    /// returns whether it did.
     template <class Test>
-    bool any_pair(Test&& test) const {
-        return any_pair_of(0, 0, test);
+    bool any_pair(Executor& executor, Test&& test) const {
+        const std::vector<NodePair> parts = node_pairs(executor.threads() > 1 ? 256 : 1);
+        std::atomic<bool> found = false;
+        executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end && !found; ++i)
+                if (any_pair_of(parts[i].a, parts[i].b, test)) found = true;
+        });
+        return found;
     }
 
     /// Calls visit(i) for every triangle whose box the ray may meet. No component of the direction may be 0.
@@ -39,8 +50,9 @@ public:
     /// Squared distance of a point from the nearest triangle, or `bound` if none is nearer than that.
     double nearest(const Vec3& point, double bound, std::uint32_t below = 0) const;
 
-private:
     static constexpr std::uint32_t leaf_size = 4;
+
+private:
     struct Node {
         Box box;
         std::uint32_t first, last; ///< into order_
@@ -48,8 +60,18 @@ private:
         std::uint32_t size() const { return last - first; }
     };
 
-    std::uint32_t build(std::uint32_t first, std::uint32_t last);
-    Box triangle_box(std::uint32_t triangle) const;
+    struct NodePair {
+        std::uint32_t a, b;
+    };
+    /// Some of the order that a node covers.
+    struct Part {
+        std::uint32_t node, first, last;
+    };
+    struct Sorting;
+    void build(Executor& executor);
+    std::array<Part, 2> split(const Part& part, Sorting& sorting);
+    void build_below(const Part& part, Sorting& sorting);
+    std::vector<NodePair> node_pairs(std::size_t wanted) const;
     static double squared_distance_of(const Box& box, const Vec3& point);
     static bool meets(const Box& box, const Vec3& origin, const Vec3& direction);
 

@@ -86,6 +86,17 @@ bool Parts::pack_shapes() {
     return packed;
 }
 
+void Parts::accelerate_shapes() {
+    if (plain_shapes() > 0) between_steps([&](std::size_t i) { parts_[i]->shapes().accelerate(); });
+}
+
+std::size_t Parts::plain_shapes() const {
+    std::size_t most = 0;
+    for (const auto& part : parts_)
+        if (part) most = std::max(most, part->shapes().plain());
+    return most;
+}
+
 void Parts::wake() {
     if (left() > 1) threads_->wake();
     for (const auto& part : parts_)

@@ -41,6 +41,9 @@ public:
     /// As ShapeStore.
     kernels::uint index_of(const Shape* shape) const;
     bool pack_shapes();
+    void accelerate_shapes();
+    /// How many shapes have no accelerators on some part.
+    std::size_t plain_shapes() const;
 
     /// Begins to wake the threads of all.
     void wake();

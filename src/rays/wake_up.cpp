@@ -86,7 +86,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         due.margin = static_cast<float>(rounding_margin(source, target));
         const double radius = tube_radius(size, target.shape->data());
         due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-        due.tests_caps = speed < unhurried * size ? target.shape->data().header.caps_pay : 0;
+        due.tests_caps = speed < unhurried * size ? update.shapes.headers()[target.shape_index].caps_pay : 0;
         due.longest = longest_clock(target);
         place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.add());
     }

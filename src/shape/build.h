@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shape/shape_data.h"
+#include "shape/accelerators.h"
 
 namespace raycontact {
 
-// The stages of Shape::make(), in their order. `normals` are the unit normals of the faces in double. Deterministic.
+// The stages of Shape::make(), in their order, and then those of Shape::prepare(). `normals` are the unit normals of
+// the faces in double. Deterministic.
 
 /// Outward unit normal of each triangle; zero for one without area.
 std::vector<Vec3> face_normals(const ShapeData& shape);
@@ -31,17 +32,13 @@ void find_hair_moves(ShapeData& shape);
 /// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
 /// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
 /// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.
-void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow);
-
-/// Fills the caps of triangle_blocks (kernels/cap.h) with lower bounds; 0 for needles, for triangles larger than their
-/// cap, and if the mesh is not closed and outward. Needs the tree and the header's flags and tolerance.
-void build_caps(ShapeData& shape, std::span<const Vec3> normals);
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor);
 
 /// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
 /// closest face met from inside, without the triangles around the vertex. +inf if there is none, 0 if the ray points
 /// out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. They never change, so the paper's
 /// second test ("before leaving the source object", section 2.1) costs nothing at run time.
-std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals);
+std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor);
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
 /// a block, and clusters with the boxes of an implicit sixteen-wide tree above them.
@@ -52,12 +49,19 @@ void build_clusters(ShapeData& shape);
 /// the first face that it meets is met from outside. Only for meshes whose winding number is 0 outside and 1 inside
 /// everywhere (report.outward); other meshes, and those whose long needles make a grid too slow to build, get none and
 /// lose only time. No distance is stored: only the number of rays that need not be cast depends on the resolution.
-void build_outside_grid(ShapeData& shape);
+void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::stop_token& stop);
 
 /// Fills `clearances` and its part of the header: for each cubic cell around the shape the largest useful ball that no
 /// surface enters, and whether it is certainly outside (closed, outward meshes only). One look-up tells how far a
 /// vertex can move before it could touch (docs/certified.md). No contact depends on it; a coarser grid only makes pairs
 /// wake up earlier.
-void build_clearance_grid(ShapeData& shape);
+void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
+
+/// The one of a single cell, which every shape has: that a point outside the box is outside, and how far.
+void set_box_clearance(kernels::ShapeHeader& header);
+
+/// Fills the caps of the triangle blocks (kernels/cap.h) with lower bounds; 0 for needles, for triangles larger than
+/// their cap, and if the mesh is not closed and outward. Needs the tree and the header's flags and tolerance.
+void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
 
 } // namespace raycontact

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace raycontact {
 
@@ -62,9 +63,167 @@ struct Branch {
     std::array<Way, NODE_LANES> ways{}; // with up to 1, 2, ... of them
 };
 
+std::size_t blocks_of(std::size_t items) {
+    return (items + block_size - 1) / block_size;
+}
+
+auto before(int axis) {
+    return [axis](const Item& a, const Item& b) {
+        return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.triangle < b.triangle;
+    };
+}
+
+// Splits at the middle of the longest axis, at a multiple of a block: good enough if a sweep would cost too much.
+std::size_t split_longest(std::span<Item> items) {
+    int longest = 0;
+    float size = -infinite;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
+        if (high->centre[axis] - low->centre[axis] <= size) continue;
+        size = high->centre[axis] - low->centre[axis];
+        longest = axis;
+    }
+    const std::size_t left = block_size * (blocks_of(items.size()) / 2);
+    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(left), items.end(), before(longest));
+    return left;
+}
+
+// The branches and blocks below one part of the items, numbered from 0. Parts are built side by side.
+class Subtree {
+public:
+    std::vector<Branch> branches;
+    std::vector<kernels::TriangleBlock> blocks;
+
+    void build(const ShapeData& shape, std::span<Item> items, bool balanced) {
+        shape_ = &shape;
+        if (balanced) {
+            split_balanced(items);
+            return;
+        }
+        items_ = items;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::vector<uint>& order = orders_[axis];
+            order.resize(items.size());
+            std::iota(order.begin(), order.end(), 0u);
+            std::sort(order.begin(), order.end(),
+                      [&, less = before(axis)](uint a, uint b) { return less(items[a], items[b]); });
+        }
+        is_left_.resize(items.size());
+        split_swept(0, items.size());
+    }
+
+private:
+    std::size_t split_balanced(std::span<Item> items) {
+        const std::size_t id = add_branch(items);
+        if (items.size() <= block_size) {
+            branches[id].block = write_block(items);
+            return id;
+        }
+        const std::size_t middle = split_longest(items);
+        const std::size_t left = split_balanced(items.first(middle)), right = split_balanced(items.subspan(middle));
+        branches[id].left = left;
+        branches[id].right = right;
+        return id;
+    }
+
+    // Of the items between two places of each order: the same ones in all three.
+    std::size_t split_swept(std::size_t first, std::size_t last) {
+        if (last - first <= block_size) {
+            leaf_.clear();
+            for (std::size_t i = first; i < last; ++i) leaf_.push_back(items_[orders_[0][i]]);
+            const std::size_t id = add_branch(leaf_);
+            branches[id].block = write_block(leaf_);
+            return id;
+        }
+        Cut best;
+        Box box;
+        for (int axis = 0; axis < 3; ++axis) box = sweep(first, last, axis, best);
+        const std::size_t id = branches.size();
+        branches.emplace_back().box = box;
+        const std::size_t middle = first + best.left;
+        for (std::size_t i = first; i < last; ++i) is_left_[orders_[best.axis][i]] = i < middle;
+        for (int axis = 0; axis < 3; ++axis)
+            if (axis != best.axis) keep_order(orders_[axis], first, last);
+        const std::size_t left = split_swept(first, middle), right = split_swept(middle, last);
+        branches[id].left = left;
+        branches[id].right = right;
+        return id;
+    }
+
+    // Moves the left ones to the front; both keep their order.
+    void keep_order(std::vector<uint>& order, std::size_t first, std::size_t last) {
+        rest_.clear();
+        std::size_t left = first;
+        for (std::size_t i = first; i < last; ++i) {
+            const uint item = order[i];
+            if (is_left_[item])
+                order[left++] = item;
+            else
+                rest_.push_back(item);
+        }
+        std::copy(rest_.begin(), rest_.end(), order.begin() + static_cast<std::ptrdiff_t>(left));
+    }
+
+    // Returns the box of all.
+    Box sweep(std::size_t first, std::size_t last, int axis, Cut& best) {
+        const std::vector<uint>& order = orders_[axis];
+        const std::size_t count = last - first, blocks_here = blocks_of(count);
+        right_area_.resize(blocks_here);
+        Box box;
+        for (std::size_t i = count; i-- > block_size;) {
+            box.add(items_[order[first + i]].box);
+            if (i % block_size == 0) right_area_[i / block_size] = box.area();
+        }
+        const Box after_first_block = box;
+        box = {};
+        for (std::size_t i = 0; i < block_size * (blocks_here - 1); ++i) {
+            box.add(items_[order[first + i]].box);
+            const std::size_t left = (i + 1) / block_size;
+            if ((i + 1) % block_size == 0)
+                best.improve({box.area() * double(left) + right_area_[left] * double(blocks_here - left), axis, i + 1});
+        }
+        box.add(after_first_block);
+        return box;
+    }
+
+    std::size_t add_branch(std::span<const Item> items) {
+        Branch& branch = branches.emplace_back();
+        for (const Item& item : items) branch.box.add(item.box);
+        return branches.size() - 1;
+    }
+
+    uint write_block(std::span<Item> items) {
+        std::ranges::sort(items, {}, &Item::triangle);
+        kernels::TriangleBlock& block = blocks.emplace_back();
+        for (std::size_t lane = 0; lane < block_size; ++lane) {
+            const bool empty = lane >= items.size();
+            block.triangle[lane] = empty ? NONE : items[lane].triangle;
+            block.cap[lane] = 0;
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+                const Point3f p = empty ? Point3f{nan, nan, nan}
+                                        : shape_->points[shape_->mesh.triangles[items[lane].triangle][corner]];
+                block.corner[3 * corner + 0][lane] = p.x;
+                block.corner[3 * corner + 1][lane] = p.y;
+                block.corner[3 * corner + 2][lane] = p.z;
+            }
+        }
+        return static_cast<uint>(blocks.size() - 1);
+    }
+
+    const ShapeData* shape_ = nullptr;
+    std::span<Item> items_;
+    std::array<std::vector<uint>, 3> orders_; ///< of the items, along each axis
+    std::vector<char> is_left_;               ///< by item
+    std::vector<uint> rest_;
+    std::vector<Item> leaf_;
+    std::vector<double> right_area_;
+};
+
 class Builder {
 public:
-    Builder(ShapeData& shape, double grow, bool balanced) : shape_(shape), grow_(grow), balanced_(balanced) {}
+    Builder(ShapeData& shape, double grow, bool balanced, Executor& executor)
+        : shape_(shape), grow_(grow), balanced_(balanced), executor_(executor) {}
 
     // False when the tree came out too deep for the traversal's trail.
     bool build(std::vector<Item>& items) {
@@ -78,82 +237,68 @@ public:
     }
 
 private:
-    std::size_t split(std::span<Item> items) {
-        const std::size_t id = branches_.size();
-        branches_.emplace_back();
-        for (const Item& item : items) branches_[id].box.add(item.box);
-        if (items.size() <= block_size) {
-            branches_[id].block = write_block(items);
-            return id;
-        }
-        const std::size_t middle = partition(items);
-        const std::size_t left = split(items.first(middle)), right = split(items.subspan(middle));
-        branches_[id].left = left;
-        branches_[id].right = right;
-        return id;
-    }
+    struct Part {
+        std::size_t branch; ///< that it hangs from
+        std::size_t first, last;
+    };
 
-    // Sorts the items so that the first n, a multiple of a block, make the left child; returns n.
-    std::size_t partition(std::span<Item> items) {
+    // Large parts are split level by level, all of a level side by side; then each part grows its own subtree.
+    void split(std::vector<Item>& items) {
         constexpr std::size_t sweep_at_most = 1 << 14;
-        const auto before = [](int axis) {
-            return [axis](const Item& a, const Item& b) {
-                return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.triangle < b.triangle;
-            };
-        };
-        Cut best;
-        for (int axis = 0; axis < 3; ++axis)
-            if (balanced_ || items.size() > sweep_at_most) {
-                // The longest axis, split in the middle: good enough if a sweep would cost too much.
-                const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
-                best.improve({low->centre[axis] - high->centre[axis], axis, block_size * (blocks_of(items) / 2)});
+        branches_.emplace_back();
+        std::vector<Part> open{{0, 0, items.size()}}, parts;
+        const auto items_of = [&](const Part& p) { return std::span(items).subspan(p.first, p.last - p.first); };
+        while (!open.empty()) {
+            std::vector<Part> large;
+            for (const Part& p : open) (p.last - p.first > sweep_at_most ? large : parts).push_back(p);
+            std::vector<std::size_t> middles(large.size());
+            executor_.run(static_cast<std::uint32_t>(large.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+                for (std::uint32_t i = begin; i < end; ++i) {
+                    for (const Item& item : items_of(large[i])) branches_[large[i].branch].box.add(item.box);
+                    middles[i] = large[i].first + split_longest(items_of(large[i]));
+                }
+            });
+            open.clear();
+            for (std::size_t i = 0; i < large.size(); ++i) {
+                const std::size_t left = branches_.size();
+                branches_.resize(left + 2);
+                branches_[large[i].branch].left = left;
+                branches_[large[i].branch].right = left + 1;
+                open.push_back({left, large[i].first, middles[i]});
+                open.push_back({left + 1, middles[i], large[i].last});
+            }
+        }
+        std::ranges::sort(parts, {}, &Part::first);
+        std::vector<Subtree> subtrees(parts.size());
+        executor_.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) subtrees[i].build(shape_, items_of(parts[i]), balanced_);
+        });
+        for (std::size_t i = 0; i < parts.size(); ++i) graft(subtrees[i], parts[i].branch);
+        for (std::size_t id = 0; id < shape_.triangle_blocks.size(); ++id)
+            for (std::size_t lane = 0; lane < block_size; ++lane)
+                if (const uint t = shape_.triangle_blocks[id].triangle[lane]; t != NONE)
+                    shape_.faces[t].triangle_lane = static_cast<uint>(block_size * id + lane);
+    }
+
+    // The subtree's root takes the place of a branch; the others are appended.
+    void graft(const Subtree& subtree, std::size_t at) {
+        const std::size_t shift = branches_.size() - 1;
+        const auto first_block = static_cast<uint>(shape_.triangle_blocks.size());
+        branches_.reserve(branches_.size() + subtree.branches.size());
+        for (std::size_t i = 0; i < subtree.branches.size(); ++i) {
+            Branch branch = subtree.branches[i];
+            if (branch.left == 0) {
+                branch.block += first_block;
             } else {
-                std::sort(items.begin(), items.end(), before(axis));
-                sweep(items, axis, best);
+                branch.left += shift;
+                branch.right += shift;
             }
-        std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(best.left), items.end(),
-                         before(best.axis));
-        return best.left;
-    }
-
-    static std::size_t blocks_of(std::span<const Item> items) { return (items.size() + block_size - 1) / block_size; }
-
-    void sweep(std::span<const Item> items, int axis, Cut& best) {
-        const std::size_t blocks = blocks_of(items);
-        right_area_.resize(blocks);
-        Box box;
-        for (std::size_t i = items.size(); i-- > block_size;) {
-            box.add(items[i].box);
-            if (i % block_size == 0) right_area_[i / block_size] = box.area();
+            if (i == 0)
+                branches_[at] = branch;
+            else
+                branches_.push_back(branch);
         }
-        box = {};
-        for (std::size_t i = 0; i < block_size * (blocks - 1); ++i) {
-            box.add(items[i].box);
-            const std::size_t left = (i + 1) / block_size;
-            if ((i + 1) % block_size == 0)
-                best.improve({box.area() * double(left) + right_area_[left] * double(blocks - left), axis, i + 1});
-        }
-    }
-
-    uint write_block(std::span<Item> items) {
-        std::ranges::sort(items, {}, &Item::triangle);
-        const auto id = static_cast<uint>(shape_.triangle_blocks.size());
-        kernels::TriangleBlock& block = shape_.triangle_blocks.emplace_back();
-        for (std::size_t lane = 0; lane < block_size; ++lane) {
-            const bool empty = lane >= items.size();
-            block.triangle[lane] = empty ? NONE : items[lane].triangle;
-            block.cap[lane] = 0;
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-                const Point3f p =
-                    empty ? Point3f{nan, nan, nan} : shape_.points[shape_.mesh.triangles[items[lane].triangle][corner]];
-                block.corner[3 * corner + 0][lane] = p.x;
-                block.corner[3 * corner + 1][lane] = p.y;
-                block.corner[3 * corner + 2][lane] = p.z;
-            }
-            if (!empty) shape_.faces[items[lane].triangle].triangle_lane = static_cast<uint>(block_size * id + lane);
-        }
-        return id;
+        shape_.triangle_blocks.insert(shape_.triangle_blocks.end(), subtree.blocks.begin(), subtree.blocks.end());
     }
 
     // Chooses the binary branches that become wide nodes so that the sum of their areas, the expected number of nodes
@@ -223,14 +368,15 @@ private:
     ShapeData& shape_;
     double grow_;
     bool balanced_;
+    Executor& executor_;
     std::vector<Branch> branches_;
-    std::vector<double> right_area_;
 };
 
 } // namespace
 
-void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow) {
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor) {
     std::vector<Item> items;
+    items.reserve(normals.size());
     for (uint i = 0; i < shape.mesh.triangles.size(); ++i) {
         if (normals[i] == Vec3{}) continue;
         Item item{{}, {}, i};
@@ -243,7 +389,7 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow) {
     }
     for (const bool balanced : {false, true}) {
         shape.triangle_blocks.clear();
-        if (Builder(shape, grow, balanced).build(items)) return;
+        if (Builder(shape, grow, balanced, executor).build(items)) return;
     }
     throw InputError("mesh '" + shape.mesh.name + "': more than 16 million triangles; split it into several meshes");
 }

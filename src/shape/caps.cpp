@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace raycontact {
@@ -37,6 +38,33 @@ public:
         find_cones(0, below);
     }
 
+    /// Writes the caps of a block; returns how many of its triangles have one.
+    std::size_t write(std::uint32_t block, Accelerators& to) const {
+        std::size_t with_cap = 0;
+        const double tolerance = shape_.header.tolerance, unit = double(CAP_UNIT_TOLERANCES) * tolerance;
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+            const uint t = shape_.triangle_blocks[block].triangle[lane];
+            if (t == NONE) continue;
+            const Vec3 a = shape_.corner(t, 0), b = shape_.corner(t, 1), c = shape_.corner(t, 2);
+            const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+            if (length(cross(b - a, c - a)) < least_height * tolerance * longest) continue;
+            const Vec3 centre = (1.0 / 3) * (a + b + c);
+            const double own = std::max({length(a - centre), length(b - centre), length(c - centre)});
+            const auto steps = [&](float cosine, double bound) {
+                const double radius = nearest_unlike(centre, normals_[t], double(cosine), bound);
+                // One step less: the centre in float32 differs a little.
+                return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
+            };
+            const double wide = steps(CAP_WIDE_COSINE, largest * unit);
+            const double narrow = wide > 0 ? steps(CAP_NARROW_COSINE, (wide + 1) * unit) : 0;
+            to.caps[TRIANGLE_LANES * std::size_t{block} + lane] =
+                static_cast<uint>(narrow) | static_cast<uint>(wide) << 16;
+            with_cap += wide > 0 ? 1 : 0;
+        }
+        return with_cap;
+    }
+
+private:
     /// Distance of the nearest triangle whose normal is farther from `normal` than the angle, at most `bound`.
     double nearest_unlike(const Vec3& from, const Vec3& normal, double least_cosine, double bound) const {
         double bound2 = bound * bound;
@@ -44,7 +72,6 @@ public:
         return std::sqrt(bound2);
     }
 
-private:
     // Appends the triangles below a node to `below`.
     void find_cones(uint n, std::vector<uint>& below) {
         const kernels::Node& node = shape_.nodes[n];
@@ -111,31 +138,16 @@ private:
 
 } // namespace
 
-void build_caps(ShapeData& shape, std::span<const Vec3> normals) {
+void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
     if (shape.header.outward == 0) return;
+    const std::vector<Vec3> normals = face_normals(shape);
     const Caps caps(shape, normals);
-    std::size_t with_cap = 0;
-    const double tolerance = shape.header.tolerance, unit = double(CAP_UNIT_TOLERANCES) * tolerance;
-    for (kernels::TriangleBlock& block : shape.triangle_blocks)
-        for (int lane = 0; lane < TRIANGLE_LANES; ++lane) {
-            const uint t = block.triangle[lane];
-            if (t == NONE) continue;
-            const Vec3 a = shape.corner(t, 0), b = shape.corner(t, 1), c = shape.corner(t, 2);
-            const double longest = std::max({length(b - a), length(c - b), length(a - c)});
-            if (length(cross(b - a, c - a)) < least_height * tolerance * longest) continue;
-            const Vec3 centre = (1.0 / 3) * (a + b + c);
-            const double own = std::max({length(a - centre), length(b - centre), length(c - centre)});
-            const auto steps = [&](float cosine, double bound) {
-                const double radius = caps.nearest_unlike(centre, normals[t], double(cosine), bound);
-                // One step less: the centre in float32 differs a little.
-                return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
-            };
-            const double wide = steps(CAP_WIDE_COSINE, largest * unit);
-            const double narrow = wide > 0 ? steps(CAP_NARROW_COSINE, (wide + 1) * unit) : 0;
-            block.cap[lane] = static_cast<uint>(narrow) | static_cast<uint>(wide) << 16;
-            if (wide > 0) ++with_cap;
-        }
-    shape.header.caps_pay = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+    std::atomic<std::size_t> with_cap = 0;
+    to.caps.assign(TRIANGLE_LANES * shape.triangle_blocks.size(), 0);
+    run_until(executor, stop, shape.triangle_blocks.size(), 16, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t block = begin; block < end; ++block) with_cap += caps.write(block, to);
+    });
+    to.header.caps_pay = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
 }
 
 } // namespace raycontact

@@ -68,7 +68,7 @@ public:
 
     // Distances of the middles from the surface, in cells: measured for all middles near it, which are few, farther off
     // for every second, then every fourth along each axis. The others get a lower bound from one that was measured.
-    void measure(const ShapeData& shape) {
+    void measure(const ShapeData& shape, Executor& executor, const std::stop_token& stop) {
         std::vector<Vec3> points;
         points.reserve(shape.points.size());
         for (const Point3f& p : shape.points)
@@ -76,21 +76,19 @@ public:
                              * Vec3{double(p.x) - low_[0], double(p.y) - low_[1], double(p.z) - low_[2]});
         std::vector<std::uint32_t> every(shape.mesh.triangles.size());
         std::iota(every.begin(), every.end(), 0u);
-        const TriangleBvh tree(points, shape.mesh.triangles, std::move(every));
+        const TriangleBvh tree(points, shape.mesh.triangles, std::move(every), executor);
         distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
         for (int stride = 256; stride >= 1; stride /= 2) {
             // Less than for the stride before by over a diagonal, so that a measured distance bounds each search.
             const double near = stride < 4 ? 4 * stride : far;
-            for (int z = 0; z < cells_.size[2]; z += stride)
-                for (int y = 0; y < cells_.size[1]; y += stride)
-                    for (int x = 0; x < cells_.size[0]; x += stride) {
-                        const int dx = x % (2 * stride), dy = y % (2 * stride), dz = z % (2 * stride);
-                        const double off = length({double(dx), double(dy), double(dz)});
-                        if (off == 0) continue; // measured with a longer stride
-                        const double known = distance_[cells_.index({x - dx, y - dy, z - dz})];
-                        distance_[cells_.index({x, y, z})] =
-                            known - off > near ? known - off : nearest(tree, {x, y, z}, known + off);
-                    }
+            // By rows, of which there are many: a cell is measured by itself, from what longer strides have measured.
+            const auto rows_y = static_cast<std::size_t>((cells_.size[1] + stride - 1) / stride);
+            const auto rows_z = static_cast<std::size_t>((cells_.size[2] + stride - 1) / stride);
+            run_until(executor, stop, rows_y * rows_z, 16, [&](std::uint32_t begin, std::uint32_t end) {
+                for (std::uint32_t row = begin; row < end; ++row)
+                    measure_row(tree, stride, near, static_cast<int>(row % rows_y) * stride,
+                                static_cast<int>(row / rows_y) * stride);
+            });
         }
     }
 
@@ -104,28 +102,44 @@ public:
         });
     }
 
-    void write(ShapeData& shape) const {
+    void write(Accelerators& to, Executor& executor) const {
         for (int axis = 0; axis < 3; ++axis) {
-            shape.header.clearance_low[axis] = low_[axis];
+            to.header.clearance_low[axis] = low_[axis];
             // A look-up at the upper end, however it is rounded, is in the last cell.
-            shape.header.clearance_high[axis] =
+            to.header.clearance_high[axis] =
                 static_cast<float>(double(low_[axis]) + (cells_.size[axis] - 0.01) / double(scale_));
-            shape.header.clearance_size[axis] = static_cast<uint>(cells_.size[axis]);
+            to.header.clearance_size[axis] = static_cast<uint>(cells_.size[axis]);
         }
-        shape.header.clearance_scale = scale_;
-        shape.header.clearance_cell = static_cast<float>(1 / double(scale_));
-        shape.header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
-        shape.clearances.assign(distance_.size(), 0);
-        const std::vector<Ball> outer = choose_balls(true), other = choose_balls(false);
-        for (int i = 0; i < cells_.count(); ++i) {
-            const Cell cell = cells_.at(i);
-            // Prefers a ball outside if it reaches into the cell at all: most vertices are outside.
-            const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
-            if (ball.radius >= 0) shape.clearances[i] = word(ball, cell);
-        }
+        to.header.clearance_scale = scale_;
+        to.header.clearance_cell = static_cast<float>(1 / double(scale_));
+        to.header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
+        to.clearances.assign(distance_.size(), 0);
+        std::vector<Ball> outer, other;
+        executor.run(2, 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t side = begin; side < end; ++side) (side == 0 ? outer : other) = choose_balls(side == 0);
+        });
+        executor.run(static_cast<std::uint32_t>(cells_.count()), 4096, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) {
+                const Cell cell = cells_.at(static_cast<int>(i));
+                // Prefers a ball outside if it reaches into the cell at all: most vertices are outside.
+                const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
+                if (ball.radius >= 0) to.clearances[i] = word(ball, cell);
+            }
+        });
     }
 
 private:
+    void measure_row(const TriangleBvh& tree, int stride, double near, int y, int z) {
+        for (int x = 0; x < cells_.size[0]; x += stride) {
+            const int dx = x % (2 * stride), dy = y % (2 * stride), dz = z % (2 * stride);
+            const double off = length({double(dx), double(dy), double(dz)});
+            if (off == 0) continue; // measured with a longer stride
+            const double known = distance_[cells_.index({x - dx, y - dy, z - dz})];
+            distance_[cells_.index({x, y, z})] =
+                known - off > near ? known - off : nearest(tree, {x, y, z}, known + off);
+        }
+    }
+
     // The distance of a middle, known to be no more than `bound`.
     static double nearest(const TriangleBvh& tree, const Cell& cell, double bound) {
         return std::sqrt(tree.nearest({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
@@ -178,11 +192,22 @@ private:
 
 } // namespace
 
-void build_clearance_grid(ShapeData& shape) {
+void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
     Grid grid(shape);
-    grid.measure(shape);
+    grid.measure(shape, executor, stop);
+    if (stop.stop_requested()) return;
     if (shape.header.outward != 0) grid.find_outside();
-    grid.write(shape);
+    grid.write(to, executor);
+}
+
+// A scale of 0 leads every look-up to the one cell; its word is 0, no ball.
+void set_box_clearance(kernels::ShapeHeader& header) {
+    for (int axis = 0; axis < 3; ++axis) {
+        header.clearance_low[axis] = header.low[axis];
+        header.clearance_high[axis] = header.high[axis];
+        header.clearance_size[axis] = 1;
+    }
+    header.clearance_scale = header.clearance_cell = header.clearance_unit = 0;
 }
 
 } // namespace raycontact

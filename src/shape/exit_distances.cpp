@@ -4,6 +4,7 @@
 #include "shape/build.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -48,54 +49,77 @@ bool points_inside(const ShapeData& shape, std::span<const Vec3> normals, std::u
     return dot(direction, decides) < 0;
 }
 
-// Distance at which a ray enters the box of a node's child.
-double enters(const kernels::Node& node, int lane, const Vec3& origin, const Vec3& direction) {
-    double enter = 0, leave = never;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double low = node.bounds[k][lane], high = node.bounds[3 + k][lane];
-        const double o = axis(origin, k), d = axis(direction, k);
-        if (d == 0) {
-            if (o < low || o > high) return never;
-            continue;
-        }
-        const double t0 = (low - o) / d, t1 = (high - o) / d;
-        enter = std::max(enter, std::min(t0, t1));
-        leave = std::min(leave, std::max(t0, t1));
-    }
-    return enter <= leave ? enter : never;
-}
+// A ray of float32 values against the boxes of a node in float32: they are grown by more than it rounds
+// (docs/design.md).
+struct BoxRay {
+    std::array<float, 3> origin, inverse;
 
-// Distance at which a ray meets a triangle from inside. Edges belong to the triangle.
-double distance_from_inside(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 p = a - origin, q = b - origin, r = c - origin;
-    const double u = dot(cross(q, r), direction), v = dot(cross(r, p), direction), w = dot(cross(p, q), direction);
-    if (u < 0 || v < 0 || w < 0) return never; // from outside, or beside it
-    const double volume = u + v + w;
-    if (volume == 0) return never;
-    const double t = (u * dot(p, direction) + v * dot(q, direction) + w * dot(r, direction)) / volume;
-    return t >= 0 ? t : never;
+    BoxRay(const Vec3& o, const Vec3& d) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            constexpr double steep = 1e30;
+            origin[k] = static_cast<float>(axis(o, k));
+            const double inverted = axis(d, k) != 0 ? 1 / axis(d, k) : steep;
+            inverse[k] = static_cast<float>(std::clamp(inverted, -steep, steep));
+        }
+    }
+
+    // Where it enters each child; `never` where it does not.
+    void enter(const kernels::Node& node, float (&enters)[NODE_LANES]) const {
+        const float *low[3], *high[3]; // the planes that it meets first and last
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = node.bounds[inverse[k] < 0 ? 3 + k : k];
+            high[k] = node.bounds[inverse[k] < 0 ? k : 3 + k];
+        }
+        for (int lane = 0; lane < NODE_LANES; ++lane) {
+            const float nx = (low[0][lane] - origin[0]) * inverse[0], fx = (high[0][lane] - origin[0]) * inverse[0];
+            const float ny = (low[1][lane] - origin[1]) * inverse[1], fy = (high[1][lane] - origin[1]) * inverse[1];
+            const float nz = (low[2][lane] - origin[2]) * inverse[2], fz = (high[2][lane] - origin[2]) * inverse[2];
+            const float near = nx > ny ? nx : ny, far = fx < fy ? fx : fy;
+            const float at = near > nz ? near : nz, to = far < fz ? far : fz;
+            const float from = at > 0 ? at : 0;
+            enters[lane] = from <= to ? from : std::numeric_limits<float>::infinity();
+        }
+    }
+};
+
+// Distances at which a ray meets a block's triangles from inside. Edges belong to a triangle.
+void meet_from_inside(const kernels::TriangleBlock& block, const Vec3& o, const Vec3& d,
+                      double (&distances)[TRIANGLE_LANES]) {
+    for (int lane = 0; lane < TRIANGLE_LANES; ++lane) {
+        const auto corner = [&](int c) {
+            return Vec3{block.corner[3 * c][lane], block.corner[3 * c + 1][lane], block.corner[3 * c + 2][lane]};
+        };
+        const Vec3 p = corner(0) - o, q = corner(1) - o, r = corner(2) - o;
+        const double u = dot(cross(q, r), d), v = dot(cross(r, p), d), w = dot(cross(p, q), d);
+        const double volume = u + v + w;
+        const double t = (u * dot(p, d) + v * dot(q, d) + w * dot(r, d)) / volume;
+        const bool meets = (u >= 0) & (v >= 0) & (w >= 0) & (t >= 0); // else from outside, or beside it
+        distances[lane] = meets ? t : never;
+    }
 }
 
 double leaves(const ShapeData& shape, const Vec3& origin, const Vec3& direction,
               std::span<const std::uint32_t> around) {
+    const BoxRay ray(origin, direction);
     double nearest = never;
-    std::vector<std::uint32_t> open{0};
-    while (!open.empty()) {
-        const kernels::Node& node = shape.nodes[open.back()];
-        open.pop_back();
-        for (int lane = 0; lane < NODE_LANES; ++lane) {
+    std::array<std::uint32_t, NODE_LEVELS * NODE_LANES> open{0};
+    for (std::size_t count = 1; count > 0;) {
+        const kernels::Node& node = shape.nodes[open[--count]];
+        float enters[NODE_LANES];
+        ray.enter(node, enters);
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
             const std::uint32_t child = node.child[lane];
-            if (child == NONE) continue;
-            const double at = enters(node, lane, origin, direction);
-            if (at > nearest || at == never) continue;
+            if (child == NONE || !(double(enters[lane]) * (1 - 1e-5) < nearest)) continue;
             if ((child & LEAF) == 0) {
-                open.push_back(child);
+                open[count++] = child;
                 continue;
             }
-            for (const std::uint32_t t : shape.triangle_blocks[child & ~LEAF].triangle)
-                if (t != NONE && !std::binary_search(around.begin(), around.end(), t))
-                    nearest = std::min(nearest, distance_from_inside(origin, direction, shape.corner(t, 0),
-                                                                     shape.corner(t, 1), shape.corner(t, 2)));
+            const kernels::TriangleBlock& block = shape.triangle_blocks[child & ~LEAF];
+            double distances[TRIANGLE_LANES];
+            meet_from_inside(block, origin, direction, distances);
+            for (std::size_t t = 0; t < TRIANGLE_LANES; ++t)
+                if (distances[t] < nearest && !std::binary_search(around.begin(), around.end(), block.triangle[t]))
+                    nearest = distances[t];
         }
     }
     return nearest;
@@ -103,19 +127,21 @@ double leaves(const ShapeData& shape, const Vec3& origin, const Vec3& direction,
 
 } // namespace
 
-std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals) {
+std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor) {
     const VertexTriangles triangles =
         vertex_triangles(shape.mesh.triangles, static_cast<std::uint32_t>(shape.points.size()));
     std::vector<float> distances(shape.points.size(), 0.0f);
-    for (std::uint32_t v = 0; v < distances.size(); ++v) {
-        const Vec3 n = shape.vertex_normals[v];
-        if (n == Vec3{}) continue;
-        // The direction that the kernels will use, so that both end at the same face.
-        const Vec3 direction{-static_cast<float>(n.x), -static_cast<float>(n.y), -static_cast<float>(n.z)};
-        const auto around = triangles.of(v);
-        if (points_inside(shape, normals, v, direction, around))
-            distances[v] = static_cast<float>(leaves(shape, shape.point(v), direction, around));
-    }
+    executor.run(static_cast<std::uint32_t>(distances.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t v = begin; v < end; ++v) {
+            const Vec3 n = shape.vertex_normals[v];
+            if (n == Vec3{}) continue;
+            // The direction that the kernels will use, so that both end at the same face.
+            const Vec3 direction{-static_cast<float>(n.x), -static_cast<float>(n.y), -static_cast<float>(n.z)};
+            const auto around = triangles.of(v);
+            if (points_inside(shape, normals, v, direction, around))
+                distances[v] = static_cast<float>(leaves(shape, shape.point(v), direction, around));
+        }
+    });
     return distances;
 }
 

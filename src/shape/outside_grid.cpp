@@ -17,8 +17,8 @@ enum State : unsigned char { Unknown, Surface, Outside };
 
 } // namespace
 
-void build_outside_grid(ShapeData& shape) {
-    kernels::ShapeHeader& header = shape.header;
+void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::stop_token& stop) {
+    kernels::ShapeHeader& header = made.header;
     if (header.outward == 0) return;
     const Vec3 low{header.low[0], header.low[1], header.low[2]};
     const Vec3 extent = Vec3{header.high[0], header.high[1], header.high[2]} - low;
@@ -48,7 +48,7 @@ void build_outside_grid(ShapeData& shape) {
         const Cells around{{to[0] - from[0] + 1, to[1] - from[1] + 1, to[2] - from[2] + 1}};
         const auto visits = static_cast<std::size_t>(around.count());
         // So many visits cost more than a grid could save.
-        if (visits > visits_left) return;
+        if (visits > visits_left || stop.stop_requested()) return;
         visits_left -= visits;
         const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
         const double reach = half * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z));
@@ -70,9 +70,9 @@ void build_outside_grid(ShapeData& shape) {
     for (int k = 0; k < 3; ++k) header.grid_size[k] = static_cast<kernels::uint>(cells.size[k]);
     for (int k = 0; k < 3; ++k) header.grid_low[k] = header.low[k];
     header.grid_scale = scale;
-    shape.outside_cells.assign((states.size() + 31) / 32, 0);
+    made.outside_cells.assign((states.size() + 31) / 32, 0);
     for (std::size_t i = 0; i < states.size(); ++i)
-        if (states[i] == Outside) shape.outside_cells[i / 32] |= 1u << (i % 32);
+        if (states[i] == Outside) made.outside_cells[i / 32] |= 1u << (i % 32);
 }
 
 } // namespace raycontact

@@ -16,7 +16,8 @@ namespace raycontact {
 
 namespace {
 
-constexpr double rounding = 1.1920929e-7; // 2^-23
+constexpr double rounding = 1.1920929e-7;   // 2^-23
+constexpr std::size_t few_triangles = 2048; // one thread has them done before others wake
 
 // Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
 void round_vertices(ShapeData& shape) {
@@ -44,7 +45,8 @@ void round_vertices(ShapeData& shape) {
 
 } // namespace
 
-Shape::Shape(std::unique_ptr<ShapeData> data) : data_(std::move(data)) {}
+Shape::Shape(std::unique_ptr<ShapeData> data)
+    : data_(std::move(data)), accelerators_(std::make_unique<AcceleratorSlot>()) {}
 Shape::~Shape() = default;
 
 std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
@@ -53,6 +55,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
 
 std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
+    Executor executor(mesh.triangles.size() < few_triangles ? 1 : 0);
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
         throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");
@@ -85,20 +88,33 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
     shape.header.outward = shape.header.closed != 0 && mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
-    build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal);
+    build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
-    build_caps(shape, normals);
     find_block_bounds(shape);
 
-    shape.exit_distances = measure_exits(shape, normals);
+    shape.exit_distances = measure_exits(shape, normals, executor);
     float longest_exit = 0;
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) longest_exit = std::max(longest_exit, exit);
     shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
     build_clusters(shape);
-    build_outside_grid(shape);
-    build_clearance_grid(shape);
+    set_box_clearance(shape.header);
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));
+}
+
+void Shape::prepare(std::uint32_t threads) const {
+    if (is_prepared()) return;
+    Executor executor(triangles().size() < few_triangles ? 1 : threads);
+    accelerators_->make(*data_, executor, {});
+}
+bool Shape::prepare(Executor& executor, const std::stop_token& stop) const {
+    return accelerators_->make(*data_, executor, stop);
+}
+bool Shape::is_prepared() const {
+    return accelerators() != nullptr;
+}
+const Accelerators* Shape::accelerators() const {
+    return accelerators_->get();
 }
 
 const std::string& Shape::name() const {
@@ -155,7 +171,7 @@ std::uint64_t Shape::memory_bytes() const {
            + bytes(d.sharp_edges) + bytes(d.flat_faces) + bytes(d.face_spans) + bytes(d.vertex_triangle)
            + bytes(d.hair_moves) + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours)
            + bytes(d.triangle_blocks) + bytes(d.block_bounds) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + bytes(d.outside_cells) + bytes(d.clearances);
+           + bytes(d.clusters) + bytes(d.face_normals) + (is_prepared() ? accelerators()->bytes() : 0);
 }
 
 } // namespace raycontact

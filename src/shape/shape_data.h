@@ -44,8 +44,8 @@ struct ShapeData {
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
-    std::vector<kernels::uint> outside_cells;   ///< a bit for each cell of the grid
-    std::vector<kernels::uint> clearances;      ///< a ball for each cell of the clearance grid
+    /// Of a clearance grid of one cell, until there are Accelerators: all that is known is outside of the box.
+    std::vector<kernels::uint> clearances{0};
     kernels::ShapeHeader header{};
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }

@@ -35,6 +35,10 @@ public:
     /// Frees the memory of dropped shapes once they outweigh the rest. Indices change when it returns true, or throws:
     /// then another call must follow before any shape is used.
     bool pack();
+    /// Takes over what was made of the shapes since they were added (Shape::prepare). Call it between steps.
+    void accelerate();
+    /// How many shapes have no accelerators here.
+    std::size_t plain() const { return plain_; }
     /// Counts the times that indices changed.
     std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
@@ -46,8 +50,11 @@ private:
         std::shared_ptr<const Shape> shape;
         kernels::uint index = 0;
         std::uint32_t users = 0;
+        std::uint64_t bytes = 0; ///< of the shape, when it was uploaded
+        bool accelerated = false;
     };
     void upload(Entry& entry);
+    void upload_accelerators(Entry& entry, const Accelerators& more);
 
     Device& device_;
     std::unordered_map<const Shape*, Entry> entries_;
@@ -56,7 +63,8 @@ private:
     std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
     std::uint64_t packed_ = 0;
-    bool whole_ = true; ///< all shapes of order_ are in the arrays
+    std::size_t plain_ = 0; ///< entries not accelerated
+    bool whole_ = true;     ///< all shapes of order_ are in the arrays
 };
 
 } // namespace raycontact

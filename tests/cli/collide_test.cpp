@@ -283,4 +283,52 @@ TEST_F(Collide, NoPairsIsNoOutput) {
     EXPECT_EQ(result.out, "");
 }
 
+class CollideByHand : public testing::Test {
+protected:
+    CollideByHand() { folder_.write("cube.obj", cube_obj()); }
+    ProgramResult run(std::vector<std::string> options) const {
+        options.insert(options.begin(), {"collide", "cube.obj", "cube.obj"});
+        return run_program(options, folder_.path());
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(CollideByHand, SaysWhatItIs) {
+    const auto crossing = run({"--at", "0.9,0.2,0.1"});
+    EXPECT_NE(crossing.out.find("pair 0: cube.obj and cube.obj: intersecting, "), std::string::npos) << crossing.out;
+    EXPECT_NE(crossing.out.find(" contacts, deepest 0.1 m\n"), std::string::npos) << crossing.out;
+    EXPECT_EQ(run({"--at", "1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart\n");
+    EXPECT_NE(run({"--at=-1,0,0"}).out.find("intersecting, 0 contacts"), std::string::npos) << "they touch";
+    EXPECT_EQ(run({"--at", "-1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart\n");
+}
+
+TEST_F(CollideByHand, TurnsAboutXThenYThenZ) {
+    // A cube turned by 45 degrees about z reaches to 0.707 along x.
+    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "0,0,45"}).out.find("intersecting, "), std::string::npos);
+    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,0,0"}).out.find("apart"), std::string::npos);
+    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,0,90"}).out.find("apart"), std::string::npos)
+        << "the edge that was up and down after x is so after z";
+    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,90,0"}).out.find("intersecting, "), std::string::npos);
+    const auto quarter = json_lines(run({"--at", "1,0,0", "--turn", "90,180,-270", "--json"}).out);
+    ASSERT_EQ(quarter.size(), 1u);
+    EXPECT_EQ(quarter[0]["intersecting"], true) << "quarter turns are exact: the faces still touch";
+    EXPECT_EQ(quarter[0]["colliding"], false);
+}
+
+TEST_F(CollideByHand, WitnessPoints) {
+    const auto lines = json_lines(run({"--at", "0.9,0.2,0.1", "--json"}).out);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0]["intersecting"], true);
+    for (const json& contact : lines[0]["contacts"])
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_NEAR(contact["point_a"][k].get<double>() - contact["point_b"][k].get<double>(),
+                        contact["depth"].get<double>() * contact["normal"][k].get<double>(), 1e-6);
+}
+
+TEST_F(CollideByHand, RefusesHalfAPose) {
+    expect_refused(run({"--at", "1,2"}), "--at");
+    expect_refused(run({"--turn", "1,2,x"}), "--turn");
+    expect_refused(run({"--at", "1,2,inf"}), "pose");
+}
+
 } // namespace

@@ -3,6 +3,7 @@
 // after it, too.
 #include "device/fake.h"
 #include "device/moving_crowd.h"
+#include "prepared_shape.h"
 #include "step.h"
 
 #include <gtest/gtest.h>
@@ -218,7 +219,7 @@ TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
 // A shape that a device has no room for.
 TEST(Faults, InAddingAShape) {
     MovingCrowd crowd(10, 0.8);
-    const auto more = Shape::make(scenes::scene_model("torus", 400).mesh);
+    const auto more = prepared_shape(scenes::scene_model("torus", 400).mesh);
     for (std::size_t at = 0; at < 20; ++at) {
         Rig rig(crowd, Method::standard, 2);
         rig.step(crowd);

@@ -4,6 +4,7 @@
 #include "mesh/vector.h"
 #include "pairs/directed_pairs.h"
 
+#include "prepared_shape.h"
 #include "reference/random.h"
 #include "scenes/models/model.h"
 
@@ -23,7 +24,7 @@ class MovingCrowd {
 public:
     explicit MovingCrowd(std::uint32_t count, double radius) {
         for (const char* kind : {"torus", "knot", "gear"})
-            shapes.push_back(Shape::make(scenes::scene_model(kind, 200).mesh));
+            shapes.push_back(prepared_shape(scenes::scene_model(kind, 200).mesh));
         for (std::uint32_t i = 0; i < count; ++i) {
             PlacedBody& body = bodies.emplace_back();
             body.shape = shapes[i % shapes.size()].get();

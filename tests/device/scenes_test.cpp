@@ -7,6 +7,7 @@
 #include "scenes/models/model.h"
 
 #include "part/part.h"
+#include "prepared_shape.h"
 
 #include <raycontact/contact.h>
 #include <raycontact/device.h>
@@ -25,7 +26,7 @@ namespace {
 std::vector<std::shared_ptr<const Shape>> shapes_of(const std::vector<Mesh>& meshes) {
     std::vector<std::shared_ptr<const Shape>> shapes;
     shapes.reserve(meshes.size());
-    for (const Mesh& mesh : meshes) shapes.push_back(Shape::make(mesh));
+    for (const Mesh& mesh : meshes) shapes.push_back(prepared_shape(mesh));
     return shapes;
 }
 
@@ -249,7 +250,7 @@ protected:
 TEST_P(Nothing, is_no_contact) {
     Scene scene(settings("opencl:0"));
     EXPECT_EQ(scene.step().size(), 0u) << "no body";
-    const auto shape = Shape::make(tetrahedron_mesh());
+    const auto shape = prepared_shape(tetrahedron_mesh());
     Pose far;
     far.translation = {100, 0, 0};
     scene.add(shape);
@@ -272,7 +273,7 @@ TEST_P(Nothing, is_known_of_the_outside_of_open_meshes) {
     std::string hashes[2];
     for (int i = 0; i < 2; ++i) {
         Scene scene(settings(i == 0 ? "cpu" : "opencl:0"));
-        const auto sheet = Shape::make(sheet_mesh(6));
+        const auto sheet = prepared_shape(sheet_mesh(6));
         Random random(5);
         for (int k = 0; k < 6; ++k) {
             Pose pose = random.rotation();

@@ -3,6 +3,7 @@
 
 #include "device/cpu/device.h"
 #include "part/part.h"
+#include "prepared_shape.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
 
@@ -57,7 +58,7 @@ Work make_work(std::size_t random_pairs, bool fine) {
     Work work;
     for (const Mesh& mesh : {bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8),
                              sheet_mesh(8), grid_box_mesh(4)})
-        work.shapes.push_back(Shape::make(mesh));
+        work.shapes.push_back(prepared_shape(mesh));
     const std::size_t grid_box = work.shapes.size() - 1;
 
     Random random(2013);
@@ -77,7 +78,7 @@ Work make_work(std::size_t random_pairs, bool fine) {
     }
     // Of more vertex blocks than a bit each names, and than a segment of watches holds.
     if (fine) {
-        work.shapes.push_back(Shape::make(bumpy_octahedron_mesh(25)));
+        work.shapes.push_back(prepared_shape(bumpy_octahedron_mesh(25)));
         for (const std::size_t partner : {grid_box + 1, grid_box + 1, grid_box + 1, std::size_t{0}}) {
             Pose beside = random.rotation();
             beside.translation = random.in_ball();
@@ -91,7 +92,7 @@ Work make_work(std::size_t random_pairs, bool fine) {
 
 Work make_heap(std::size_t bodies) {
     Work work;
-    work.shapes = {Shape::make(bumpy_octahedron_mesh(25)), Shape::make(bumpy_octahedron_mesh(12))};
+    work.shapes = {prepared_shape(bumpy_octahedron_mesh(25)), prepared_shape(bumpy_octahedron_mesh(12))};
     Random random(7);
     for (std::size_t i = 0; i < bodies; ++i) {
         Pose pose = random.rotation();

@@ -9,6 +9,8 @@
 #include "reference/random.h"
 #include "reference/vector.h"
 
+#include <raycontact/collide.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -117,6 +119,7 @@ PosedPair random_pair(const std::vector<Body>& as, const std::vector<Body>& bs, 
 
 struct Counts {
     std::uint64_t pairs = 0, colliding = 0, by_vertices = 0, missed = 0, invented = 0, excused = 0, contacts = 0;
+    std::uint64_t intersects_wrong = 0;
     std::uint64_t shallow = 0, deep = 0; ///< pairs that come apart by 1e-3 of the smaller; contacts deeper than 0.1
     double worst = 0;                    ///< depth of a contact of a shallow pair in sizes of the smaller
     std::string first;                   ///< of the wrong ones, in words
@@ -169,6 +172,8 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
     const Pose relative = pair.relative();
     const bool truth = collide(pair.a->exact, pair.b->exact, relative), found = !contacts.empty();
     counts.colliding += truth;
+    // b's vertices in the frame of a, as the reference has them: the very same numbers, so no case is excused.
+    counts.intersects_wrong += intersects(*pair.b->shape, pair.pose_b, *pair.a->shape, pair.pose_a) != truth;
     counts.by_vertices +=
         std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.feature == Feature::vertex; });
     if (truth == found) return;
@@ -231,6 +236,7 @@ void try_pairs(const char* what, const std::vector<Body>& as, const std::vector<
     std::fflush(stdout);
     EXPECT_EQ(counts.missed, 0u) << counts.first;
     EXPECT_EQ(counts.invented, 0u) << counts.first;
+    EXPECT_EQ(counts.intersects_wrong, 0u);
     EXPECT_EQ(counts.deep, 0u) << counts.deepest;
     EXPECT_LE(counts.excused, counts.pairs / 200);
     EXPECT_GE(counts.colliding, counts.pairs * 2 / 5);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both casters against the brute-force reference, over random overlapping poses.
+#include "prepared_shape.h"
 #include "property/ray_sources.h"
 #include "property/shapes.h"
 #include "reference/compare.h"
@@ -254,9 +255,9 @@ TEST(agreement, many_leaves_in_one_place) {
     Random random(20130606);
     Mesh small = bumpy_octahedron_mesh(6);
     for (Vec3& v : small.vertices) v = 0.1 * v;
-    const auto body = Shape::make(small);
+    const auto body = prepared_shape(small);
     for (const std::uint32_t count : {400u, 2000u}) {
-        const auto needles = Shape::make(needles_mesh(count, random));
+        const auto needles = prepared_shape(needles_mesh(count, random));
         std::uint64_t contacts = 0;
         for (int i = 0; i < 50; ++i) {
             const Pose pose = random.rotation();

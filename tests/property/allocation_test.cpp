@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Once a scene has seen its worst step, further steps allocate nothing; and one for which there was no memory leaves
 // nothing behind.
+#include "prepared_shape.h"
 #include "scenes/models/model.h"
 
 #include <raycontact/scene.h>
@@ -101,16 +102,16 @@ void expect_none_after_warm_up(Features features, const std::shared_ptr<const Sh
 }
 
 TEST(Allocations, NoneAfterWarmUp) {
-    expect_none_after_warm_up(Features::vertices, Shape::make(scenes::scene_model("knot", 902).mesh));
+    expect_none_after_warm_up(Features::vertices, prepared_shape(scenes::scene_model("knot", 902).mesh));
 }
 
 TEST(Allocations, NoneAfterWarmUpWithEdges) {
-    expect_none_after_warm_up(Features::edges, Shape::make(scenes::scene_model("knot", 60).mesh));
+    expect_none_after_warm_up(Features::edges, prepared_shape(scenes::scene_model("knot", 60).mesh));
 }
 
 // Pairs that come and go take what others left.
 TEST(Allocations, NoneForPairsThatReturn) {
-    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     for (const Method method : methods) {
         Settings settings;
         settings.method = method;
@@ -137,7 +138,7 @@ TEST(Allocations, NoneForPairsThatReturn) {
 
 // Bodies that come and go, with steps and without: not a byte more, and lists by slot are no longer.
 TEST(Allocations, NoneForAMillionBodiesThatComeAndGo) {
-    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     Settings settings;
     settings.threads = 1;
     Scene scene(settings);
@@ -161,7 +162,7 @@ TEST(Allocations, NoneForAMillionBodiesThatComeAndGo) {
 }
 
 TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
-    const auto shape = Shape::make(scenes::scene_model("knot", 902).mesh);
+    const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     Scene scene;
     const BodyId stays = scene.add(shape);
     scene.step(std::span<const Pair>{});
@@ -228,15 +229,15 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
 }
 
 TEST(Allocations, AStepThatFailsLeavesNothing) {
-    expect_nothing_left(Features::vertices, Shape::make(scenes::scene_model("knot", 902).mesh));
+    expect_nothing_left(Features::vertices, prepared_shape(scenes::scene_model("knot", 902).mesh));
 }
 
 TEST(Allocations, AContinuousStepThatFailsLeavesNothing) {
-    expect_nothing_left(Features::vertices, Shape::make(scenes::scene_model("knot", 60).mesh), true);
+    expect_nothing_left(Features::vertices, prepared_shape(scenes::scene_model("knot", 60).mesh), true);
 }
 
 TEST(Allocations, AStepWithEdgesThatFailsLeavesNothing) {
-    expect_nothing_left(Features::edges, Shape::make(scenes::scene_model("knot", 60).mesh));
+    expect_nothing_left(Features::edges, prepared_shape(scenes::scene_model("knot", 60).mesh));
 }
 
 } // namespace

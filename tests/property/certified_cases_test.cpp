@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method where its proof is nearest to its end: one vertex at one face, matrices that are hardly
 // rotations, numbers as large as they come, shapes that move in the store.
+#include "prepared_shape.h"
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "property/triplet.h"
@@ -38,7 +39,7 @@ void strike(Random& random, Counts& counts, std::uint64_t number) {
     if (targets[scale_index].empty()) {
         const auto scaled = [&](Mesh mesh) {
             for (Vec3& v : mesh.vertices) v = scale * v;
-            return Shape::make(mesh);
+            return prepared_shape(mesh);
         };
         for (const Mesh& mesh : {box_mesh({21, 21, 1}), box_mesh({0.5, 0.3, 0.4}), box_mesh({3, 0.1, 0.1})})
             targets[scale_index].push_back(scaled(mesh));
@@ -140,9 +141,9 @@ TEST(certified, a_vertex_straight_at_a_face) {
 // much.
 TEST(certified, flat_bodies_on_a_sheared_slab) {
     Counts counts;
-    const auto slab = Shape::make(box_mesh({21, 21, 1}));
+    const auto slab = prepared_shape(box_mesh({21, 21, 1}));
     std::vector<std::shared_ptr<const Shape>> shapes;
-    for (const Mesh& mesh : {grid_box_mesh(12), l_prism_mesh(), frame_mesh()}) shapes.push_back(Shape::make(mesh));
+    for (const Mesh& mesh : {grid_box_mesh(12), l_prism_mesh(), frame_mesh()}) shapes.push_back(prepared_shape(mesh));
     for (std::uint64_t i = 0; i < 30; ++i) {
         Random random(first_seed() + 700000 + i);
         Triplet triplet(some_settings(random), 1e-3, "flat bodies " + std::to_string(i));
@@ -275,10 +276,10 @@ TEST(certified, packed_shapes) {
         Pose away;
         away.translation = {1000, 0, 0};
         for (std::size_t k = 0; k < ballast.size(); ++k)
-            ballast[k] = add(Shape::make(model_mesh(k % 2 ? "gear" : "knot")), away);
+            ballast[k] = add(prepared_shape(model_mesh(k % 2 ? "gear" : "knot")), away);
         std::vector<std::shared_ptr<const Shape>> shapes;
         for (const Mesh& mesh : {bumpy_octahedron_mesh(5), frame_mesh(), l_prism_mesh(), tetrahedron_mesh()})
-            for (int k = 0; k < 2; ++k) shapes.push_back(Shape::make(mesh));
+            for (int k = 0; k < 2; ++k) shapes.push_back(prepared_shape(mesh));
         const std::vector<Pose> homes = touching_poses(shapes, 0.3, random);
         std::vector<std::pair<BodyId, Mover>> bodies;
         for (std::size_t k = 0; k < shapes.size(); ++k)
@@ -326,7 +327,7 @@ void play_two(const std::shared_ptr<const Shape>& shape, const char* what, doubl
 
 // As far apart as finite numbers go, and back.
 TEST(certified, beyond_the_range_of_squares) {
-    const auto shape = Shape::make(bumpy_octahedron_mesh(5));
+    const auto shape = prepared_shape(bumpy_octahedron_mesh(5));
     Counts counts;
     for (const double far : {1e30, 1e100, 1e200, 1.7e308})
         for (const bool begin_far : {false, true})
@@ -342,7 +343,7 @@ TEST(certified, beyond_the_range_of_squares) {
 
 // Away together, so far that the doubles of their positions lose how they lay to each other.
 TEST(certified, far_away_together) {
-    const auto shape = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    const auto shape = prepared_shape(box_mesh({0.5, 0.5, 0.5}));
     Counts counts;
     for (const double far : {1e12, 1e14, 1e15, 1e16, 1e17, 1e30})
         play_two(shape, "together", far, counts, [&](int step) {
@@ -357,10 +358,10 @@ TEST(certified, far_away_together) {
 
 // A rotation that stretches by as much as is accepted makes rays reach farther than their vertices' exit distances say.
 TEST(certified, stretched_rays) {
-    const auto small = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    const auto small = prepared_shape(box_mesh({0.5, 0.5, 0.5}));
     Mesh mesh = grid_box_mesh(32); // [0, 1]^3
     for (Vec3& v : mesh.vertices) v = 4.8 * (v - Vec3{0.5, 0.5, 0.5});
-    const auto large = Shape::make(mesh);
+    const auto large = prepared_shape(mesh);
     Random random(23);
     Counts counts;
     // 1.5e-4 too long along (1, 1, 1), and 5e-5 along an axis.

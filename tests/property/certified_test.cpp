@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method gives the contacts of the standard method, bit for bit, whatever the meshes and however they
 // move: crowds of all kinds. certified_cases_test.cpp has what crowds do not come to.
+#include "prepared_shape.h"
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "property/triplet.h"
@@ -176,7 +177,7 @@ const std::vector<std::shared_ptr<const Shape>>& fine_shapes() {
     static const std::vector<std::shared_ptr<const Shape>> shapes = [] {
         std::vector<std::shared_ptr<const Shape>> list;
         for (const char* kind : {"knot", "gear", "torus", "sphere"})
-            list.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
+            list.push_back(prepared_shape(scenes::scene_model(kind, 4000).mesh));
         return list;
     }();
     return shapes;
@@ -261,7 +262,7 @@ TEST(certified, eventful_scenes) {
         const auto add = [&] {
             auto shape = stock[random.below(static_cast<std::uint32_t>(stock.size()))];
             // A shape of its own moves the others in the store when it goes and the store is packed.
-            if (random.below(3) == 0) shape = Shape::make(model_mesh("gear"));
+            if (random.below(3) == 0) shape = prepared_shape(model_mesh("gear"));
             BodyId id = 0;
             triplet.each([&](Scene& scene) { id = scene.add(shape); });
             Pose home = random.rotation();

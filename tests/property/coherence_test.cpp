@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever happened to a scene, in whatever order, what it reports is true: by the standard and the certified method
 // the contacts of a fresh scene, by the others contacts that a ray in double finds too.
+#include "prepared_shape.h"
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "reference/margins.h"
@@ -398,7 +399,7 @@ TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
 
 // Pairs of bodies that touch, `count` of them, far from each other.
 std::vector<Pair> add_couples(Scene& scene, std::uint32_t count) {
-    static const auto shape = Shape::make(bumpy_octahedron_mesh(10));
+    static const auto shape = prepared_shape(bumpy_octahedron_mesh(10));
     std::vector<Pair> pairs;
     for (std::uint32_t i = 0; i < count; ++i) {
         Pose pose;

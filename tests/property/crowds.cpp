@@ -6,6 +6,7 @@
 #include "reference/meshes.h"
 #include "reference/vector.h"
 
+#include "prepared_shape.h"
 #include "scenes/models/model.h"
 
 #include <algorithm>
@@ -139,7 +140,7 @@ const std::vector<std::shared_ptr<const Shape>>& crowd_shapes(Kind kind, double 
     auto& shapes = made[{kind, scale}];
     if (shapes.empty())
         for (const Mesh& mesh : meshes_of(kind))
-            shapes.push_back(Shape::make(prepare_mesh(stretched(mesh, {scale, scale, scale}), Repair::as_is)));
+            shapes.push_back(prepared_shape(prepare_mesh(stretched(mesh, {scale, scale, scale}), Repair::as_is)));
     return shapes;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equal input, equal bits: whatever the threads, the order of the pairs, or what happened in the scene before.
+#include "prepared_shape.h"
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "reference/vector.h"
@@ -203,7 +204,7 @@ TEST(determinism, threads_change_no_counter_where_caps_are_asked) {
     };
     Shapes shapes;
     for (const char* kind : {"sphere", "torus", "knot"}) // of which cap_test says that caps are asked
-        shapes.push_back(Shape::make(scenes::scene_model(kind, 4000).mesh));
+        shapes.push_back(prepared_shape(scenes::scene_model(kind, 4000).mesh));
     std::vector<Step> first;
     for (const std::uint32_t count : {1u, 2u, 3u, 5u}) {
         Crowd crowd(threads(count), shapes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // No contact is invented, and none is missed, by rays against closed meshes: at random, aimed at edges and vertices,
 // grazing silhouettes, and along the axes of boxes. RAYCONTACT_RAYS sets how many; ten million unless told.
+#include "prepared_shape.h"
 #include "property/ray_sources.h"
 #include "property/shapes.h"
 #include "reference/margins.h"
@@ -81,7 +82,7 @@ struct Cloud {
 
 Cloud make_cloud(const Subject& target, Aim aim, std::uint32_t triangles, Random& random) {
     Cloud cloud;
-    cloud.shape = Shape::make(prepare_mesh(ray_cloud(target.solid, aim, triangles, random), Repair::as_is));
+    cloud.shape = prepared_shape(prepare_mesh(ray_cloud(target.solid, aim, triangles, random), Repair::as_is));
     cloud.vertices.assign(cloud.shape->vertices().begin(), cloud.shape->vertices().end());
     return cloud;
 }
@@ -172,7 +173,7 @@ TEST(invented, grazing_silhouettes) {
 // Rays along the axes from points of a dyadic grid: everything is exact, and they run inside faces, along edges and
 // through vertices of axis-aligned meshes, and in the planes of every bounding box.
 TEST(invented, along_the_axes_of_boxes) {
-    const auto source = Shape::make(prepare_mesh(needle(), Repair::as_is));
+    const auto source = prepared_shape(prepare_mesh(needle(), Repair::as_is));
     ASSERT_TRUE(std::isinf(source->exit_distances()[0]));
     const std::vector<Pose> rotations = axis_rotations();
     ASSERT_EQ(rotations.size(), 24u);

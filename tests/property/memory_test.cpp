@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the process takes for pairs, as the system counts it: at most twice what is stated, and given back.
+#include "prepared_shape.h"
 #include "scenes/models/model.h"
 
 #include <raycontact/scene.h>
@@ -40,7 +41,7 @@ std::shared_ptr<const Shape> tetrahedron() {
     mesh.name = "tetrahedron";
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    return Shape::make(mesh);
+    return prepared_shape(mesh);
 }
 
 // All in one place, but for some millimetres; or each by itself.
@@ -112,8 +113,8 @@ TEST(Memory, FollowsThePairsOfPredictive) {
 // Two thousand shapes of a third of a megabyte each, of which one is in use at a time, and no step.
 TEST(Memory, OfShapesThatNoBodyUsesIsGivenBackWithoutAStep) {
     if (sanitized) GTEST_SKIP() << why_skipped;
-    const std::shared_ptr<const Shape> shapes[] = {Shape::make(scenes::scene_model("knot", 902).mesh),
-                                                   Shape::make(scenes::scene_model("gear", 902).mesh)};
+    const std::shared_ptr<const Shape> shapes[] = {prepared_shape(scenes::scene_model("knot", 902).mesh),
+                                                   prepared_shape(scenes::scene_model("gear", 902).mesh)};
     Settings settings;
     settings.devices = "cpu";
     settings.threads = 1;

@@ -4,6 +4,7 @@
 #include "reference/meshes.h"
 #include "reference/vector.h"
 
+#include "prepared_shape.h"
 #include "scenes/models/model.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 
 namespace raycontact::reference {
 
-Subject::Subject(const Mesh& mesh) : shape(Shape::make(mesh)), solid(make_solid(*shape)) {}
+Subject::Subject(const Mesh& mesh) : shape(prepared_shape(mesh)), solid(make_solid(*shape)) {}
 
 Mesh model_mesh(const char* kind) {
     Mesh mesh = scenes::scene_model(kind, 902).mesh;

@@ -3,16 +3,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace raycontact::bullet {
 
 namespace {
 constexpr std::uint32_t leaf_triangles = 8;
 constexpr std::size_t exact_bounds = 1024;
-
-btVector3 centroid3(const std::vector<btVector3>& vertices, const std::array<std::uint32_t, 3>& t) {
-    return vertices[t[0]] + vertices[t[1]] + vertices[t[2]]; // three times the centroid orders the same
-}
 } // namespace
 
 MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles().begin(), shape.triangles().end()) {
@@ -20,7 +17,7 @@ MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles().begin(), s
     for (const Vec3& v : shape.vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
     order_.resize(triangles_.size());
     std::iota(order_.begin(), order_.end(), 0u);
-    build(0, static_cast<std::uint32_t>(order_.size()));
+    build();
 
     if (vertices_.size() <= exact_bounds) {
         for (const btVector3& v : vertices_) cover_.push_back({v, btVector3(0, 0, 0)});
@@ -32,36 +29,59 @@ MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles().begin(), s
     }
 }
 
-void MeshTree::build(std::uint32_t begin, std::uint32_t end) {
-    const std::size_t index = nodes_.size();
-    nodes_.emplace_back();
-    btVector3 low = vertices_[triangles_[order_[begin]][0]], high = low;
-    btVector3 first = centroid3(vertices_, triangles_[order_[begin]]), last = first;
-    for (std::uint32_t k = begin; k < end; ++k) {
-        for (const std::uint32_t v : triangles_[order_[k]]) {
-            low.setMin(vertices_[v]);
-            high.setMax(vertices_[v]);
+/// What triangles are sorted by: read in their order, it is a third of the time of looking at their vertices.
+struct MeshTree::Sorting {
+    struct Item {
+        btVector3 low, high;
+        btVector3 centroid3; ///< three times the centroid orders the same
+    };
+    std::vector<Item> items; ///< by triangle
+    std::vector<std::pair<btScalar, std::uint32_t>> keys;
+};
+
+void MeshTree::build() {
+    Sorting sorting;
+    sorting.items.reserve(triangles_.size());
+    for (const auto& t : triangles_) {
+        btVector3 low = vertices_[t[0]], high = low;
+        for (int k = 1; k < 3; ++k) {
+            low.setMin(vertices_[t[k]]);
+            high.setMax(vertices_[t[k]]);
         }
-        const btVector3 c = centroid3(vertices_, triangles_[order_[k]]);
-        first.setMin(c);
-        last.setMax(c);
+        sorting.items.push_back({low, high, vertices_[t[0]] + vertices_[t[1]] + vertices_[t[2]]});
     }
-    nodes_[index].low = low;
-    nodes_[index].high = high;
+    sorting.keys.resize(triangles_.size());
+    nodes_.reserve(triangles_.size() / (leaf_triangles / 4) + 1);
+    build(0, static_cast<std::uint32_t>(order_.size()), sorting);
+    nodes_.shrink_to_fit();
+}
+
+void MeshTree::build(std::uint32_t begin, std::uint32_t end, Sorting& sorting) {
+    const std::size_t index = nodes_.size();
+    Node& node = nodes_.emplace_back();
+    const Sorting::Item& any = sorting.items[order_[begin]];
+    btVector3 low = any.low, high = any.high, first = any.centroid3, last = first;
+    for (std::uint32_t k = begin + 1; k < end; ++k) {
+        const Sorting::Item& item = sorting.items[order_[k]];
+        low.setMin(item.low);
+        high.setMax(item.high);
+        first.setMin(item.centroid3);
+        last.setMax(item.centroid3);
+    }
+    node.low = low;
+    node.high = high;
     if (end - begin <= leaf_triangles) {
-        nodes_[index].begin = begin;
-        nodes_[index].end = end;
+        node.begin = begin;
+        node.end = end;
     } else {
         const int axis = (last - first).maxAxis();
         const std::uint32_t middle = begin + (end - begin) / 2;
-        std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                         [&](std::uint32_t a, std::uint32_t b) {
-                             const btScalar ca = centroid3(vertices_, triangles_[a])[axis];
-                             const btScalar cb = centroid3(vertices_, triangles_[b])[axis];
-                             return ca < cb || (ca == cb && a < b);
-                         });
-        build(begin, middle);
-        build(middle, end);
+        const auto keys = sorting.keys.begin();
+        for (std::uint32_t k = begin; k < end; ++k) keys[k] = {sorting.items[order_[k]].centroid3[axis], order_[k]};
+        std::nth_element(keys + begin, keys + middle, keys + end);
+        for (std::uint32_t k = begin; k < end; ++k) order_[k] = keys[k].second;
+        build(begin, middle, sorting);
+        build(middle, end, sorting);
     }
     nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
 }

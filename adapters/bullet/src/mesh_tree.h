@@ -58,7 +58,9 @@ private:
                && a_low.z() <= b_high.z() && b_low.z() <= a_high.z();
     }
     bool triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const;
-    void build(std::uint32_t begin, std::uint32_t end);
+    struct Sorting;
+    void build();
+    void build(std::uint32_t begin, std::uint32_t end, Sorting& sorting);
 
     std::vector<btVector3> vertices_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;

@@ -80,8 +80,9 @@ PairSet by_us(const PreparedMesh& mesh) {
     std::vector<std::uint32_t> all(mesh.triangles.size());
     std::iota(all.begin(), all.end(), 0u);
     PairSet pairs;
-    const TriangleBvh bvh(mesh.vertices, mesh.triangles, all);
-    bvh.any_pair([&](std::uint32_t i, std::uint32_t k) {
+    Executor one_thread(1);
+    const TriangleBvh bvh(mesh.vertices, mesh.triangles, all, one_thread);
+    bvh.any_pair(one_thread, [&](std::uint32_t i, std::uint32_t k) {
         if (triangles_meet(mesh.vertices, mesh.triangles[i], mesh.triangles[k]))
             pairs.insert(std::minmax<std::size_t>(i, k));
         return false;

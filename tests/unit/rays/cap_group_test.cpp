@@ -5,8 +5,10 @@
 #include "property/crowds.h"
 #include "scenes/models/model.h"
 #include "unit/rays/aimed_ray.h"
+#include "unit/shape/accelerated.h"
 
 #include <cstdio>
+#include <deque>
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -19,7 +21,7 @@ using namespace reference;
 struct Ground {
     explicit Ground(const std::vector<std::shared_ptr<const Shape>>& all) : shapes(all) {
         for (const auto& shape : all) {
-            const ShapeData& data = shape->data();
+            const ShapeData& data = of_shapes.emplace_back(accelerated(*shape));
             kernels::ShapeHeader& header = headers.emplace_back(data.header);
             header.triangle_block_first = static_cast<std::uint32_t>(blocks.size());
             header.face_first = static_cast<std::uint32_t>(faces.size());
@@ -39,6 +41,7 @@ struct Ground {
     }
 
     std::vector<std::shared_ptr<const Shape>> shapes;
+    std::deque<ShapeData> of_shapes;
     std::vector<kernels::ShapeHeader> headers;
     std::vector<kernels::TriangleBlock> blocks;
     std::vector<kernels::Face> faces;
@@ -61,9 +64,9 @@ Asked any_ray(const Ground& ground, Random& random) {
         PlacedBody body;
         body.shape = ground.shapes[asked.target].get();
         margin = rounding_margin(body, body);
-        aimed = aim_at_cap(body.shape->data(), margin, random);
+        aimed = aim_at_cap(ground.of_shapes[asked.target], margin, random);
     }
-    const ShapeData& target = ground.shapes[asked.target]->data();
+    const ShapeData& target = ground.of_shapes[asked.target];
     asked.held_range = held_range(margin, any_length(1e-3, 1e-1, random) * target.diagonal, random.below(4) > 0);
     asked.ray = aimed->ray;
     if (random.below(3) == 0) {
@@ -95,7 +98,7 @@ TEST(CapGroup, SaysOfEachRayWhatItSaysOfThatAlone) {
         test_tubes_and_caps(&arrays, ground.faces.data(), &group);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto together = said_of(arrays, group, i);
-            const auto alone = ask(all[i].ray, all[i].held, shapes[all[i].target]->data(), all[i].held_range, 0);
+            const auto alone = ask(all[i].ray, all[i].held, ground.of_shapes[all[i].target], all[i].held_range, 0);
             ++rays;
             if (together.has_value() != alone.has_value()) {
                 ++differing;

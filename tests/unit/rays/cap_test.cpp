@@ -5,6 +5,7 @@
 #include "property/crowds.h"
 #include "scenes/models/model.h"
 #include "unit/rays/aimed_ray.h"
+#include "unit/shape/accelerated.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,7 @@ void count_against_premises(const ShapeData& target, std::uint32_t triangle_lane
 }
 
 void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
-    const ShapeData& target = shape.data();
+    const ShapeData target = accelerated(shape);
     PlacedBody body;
     body.shape = &shape;
     const double margin = rounding_margin(body, body);
@@ -96,7 +97,7 @@ TEST(Cap, DecidesAsACastDoes) {
     for (const char* kind : {"sphere", "torus", "knot"}) {
         Counts counts;
         const auto shape = Shape::make(scenes::scene_model(kind, 4000).mesh);
-        EXPECT_NE(shape->data().header.caps_pay, 0u) << kind;
+        EXPECT_NE(accelerated(*shape).header.caps_pay, 0u) << kind;
         examine(*shape, 150000, random, counts);
         expect(kind, counts);
     }
@@ -116,9 +117,9 @@ TEST(Cap, NothingIsSaidWhereTheInsideIsNotKnown) {
     for (const Kind kind : {Kind::open, Kind::crossing})
         for (const auto& shape : crowd_shapes(kind, 1)) {
             if (shape->data().header.outward != 0) continue;
-            EXPECT_EQ(shape->data().header.caps_pay, 0u);
-            for (const auto& block : shape->data().triangle_blocks)
-                EXPECT_TRUE(std::all_of(std::begin(block.cap), std::end(block.cap), [](auto cap) { return cap == 0; }));
+            shape->prepare();
+            EXPECT_EQ(shape->accelerators()->header.caps_pay, 0u);
+            EXPECT_TRUE(shape->accelerators()->caps.empty());
         }
 }
 

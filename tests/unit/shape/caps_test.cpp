@@ -6,7 +6,7 @@
 #include "reference/margins.h"
 #include "reference/meshes.h"
 #include "scenes/models/model.h"
-#include "shape/shape_data.h"
+#include "unit/shape/accelerated.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ struct Counts {
 };
 
 void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts& counts) {
-    const ShapeData& data = shape.data();
+    const ShapeData data = accelerated(shape);
     const auto corner = [&](std::uint32_t t, std::size_t c) {
         const Point3f& p = data.points[data.mesh.triangles[t][c]];
         return Vec3{p.x, p.y, p.z};
@@ -120,7 +120,8 @@ std::uint32_t cap_of_needle(double height) {
     const auto shape = Shape::make(mesh);
     EXPECT_NE(shape->data().header.outward, 0u);
     const std::uint32_t triangle_lane = shape->data().faces[middle].triangle_lane;
-    return shape->data().triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
+    shape->prepare();
+    return shape->accelerators()->caps[triangle_lane];
 }
 
 TEST(Caps, NeedlesHaveNone) {

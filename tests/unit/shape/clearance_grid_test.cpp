@@ -5,7 +5,7 @@
 #include "reference/meshes.h"
 #include "reference/side.h"
 #include "reference/vector.h"
-#include "shape/shape_data.h"
+#include "unit/shape/accelerated.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ struct Counts {
 };
 
 void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
-    const ShapeData& data = shape.data();
+    const ShapeData data = accelerated(shape);
     const Solid solid = make_surface(shape);
     const Vec3 size = solid.box_max - solid.box_min;
     for (int round = 0; round < rounds; ++round) {
@@ -131,7 +131,7 @@ TEST(ClearanceGrid, AHollowIsNotOutside) {
     const auto& shapes = crowd_shapes(Kind::cavities, 1);
     ASSERT_EQ(shapes[1]->data().header.outward, 1u);
     const Point3f middle[VERTEX_LANES] = {};
-    const Lookup found = look_up(shapes[1]->data(), middle);
+    const Lookup found = look_up(accelerated(*shapes[1]), middle);
     EXPECT_FALSE(found.outside[0]);
     EXPECT_GT(found.distance[0], 0.1f);
 }
@@ -141,7 +141,7 @@ TEST(ClearanceGrid, EmptyLanesAreSafe) {
     const auto shape = Shape::make(l_prism_mesh());
     Point3f nothing[VERTEX_LANES];
     std::fill(std::begin(nothing), std::end(nothing), Point3f{NAN, NAN, NAN});
-    EXPECT_EQ(look_up(shape->data(), nothing).distance[3], UNBOUNDED);
+    EXPECT_EQ(look_up(accelerated(*shape), nothing).distance[3], UNBOUNDED);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shape/shape_data.h"
+#include "shape/accelerators.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,8 @@ Mesh cube(double half) {
 TEST(OutsideGrid, HoldsTheCellOfTheUpperCorner) {
     for (int i = 1; i <= 200; ++i) {
         const auto shape = Shape::make(cube(0.01 * i));
-        const kernels::ShapeHeader& header = shape->data().header;
+        shape->prepare();
+        const kernels::ShapeHeader& header = shape->accelerators()->header;
         ASSERT_GT(header.grid_size[0], 0u);
         for (int axis = 0; axis < 3; ++axis) // as the kernels look it up
             EXPECT_LT(static_cast<int>((header.high[axis] - header.grid_low[axis]) * header.grid_scale),

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <clash/coloured.h>
+
+#include <raycontact/error.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+namespace raycontact::clash {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// Positions relative to the middle of the part, which its node carries: float32 keeps detail far from the origin.
+class Writer {
+public:
+    void add(const Part& part, bool clashes) {
+        const Mesh& mesh = part.mesh;
+        Vec3 low = mesh.vertices.front(), high = low;
+        for (const Vec3& v : mesh.vertices) {
+            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+        }
+        const Vec3 middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
+        std::array<float, 3> least, most;
+        least.fill(std::numeric_limits<float>::infinity());
+        most.fill(-std::numeric_limits<float>::infinity());
+        const std::size_t positions = bytes_.size();
+        for (const Vec3& v : mesh.vertices) {
+            const std::array p{static_cast<float>(v.x - middle.x), static_cast<float>(v.y - middle.y),
+                               static_cast<float>(v.z - middle.z)};
+            for (std::size_t k = 0; k < 3; ++k) {
+                least[k] = std::min(least[k], p[k]);
+                most[k] = std::max(most[k], p[k]);
+            }
+            append(bytes_, p);
+        }
+        const std::size_t indices = bytes_.size();
+        for (const auto& triangle : mesh.triangles) append(bytes_, triangle);
+        const std::size_t view = views_.size();
+        views_.push_back(
+            {{"buffer", 0}, {"byteOffset", positions}, {"byteLength", indices - positions}, {"target", 34962}});
+        views_.push_back(
+            {{"buffer", 0}, {"byteOffset", indices}, {"byteLength", bytes_.size() - indices}, {"target", 34963}});
+        accessors_.push_back({{"bufferView", view},
+                              {"componentType", 5126},
+                              {"count", mesh.vertices.size()},
+                              {"type", "VEC3"},
+                              {"min", least},
+                              {"max", most}});
+        accessors_.push_back({{"bufferView", view + 1},
+                              {"componentType", 5125},
+                              {"count", 3 * mesh.triangles.size()},
+                              {"type", "SCALAR"}});
+        const Json primitive{
+            {"attributes", {{"POSITION", view}}}, {"indices", view + 1}, {"material", clashes ? 0 : 1}};
+        nodes_.push_back(
+            {{"name", part.name}, {"mesh", meshes_.size()}, {"translation", {middle.x, middle.y, middle.z}}});
+        meshes_.push_back({{"primitives", Json::array({primitive})}});
+    }
+
+    void mark(const std::string& name, const Clash& clash) {
+        nodes_.push_back({{"name", name},
+                          {"translation", {clash.point.x, clash.point.y, clash.point.z}},
+                          {"extras", {{"depth", clash.depth}, {"contacts", clash.contacts}}}});
+    }
+
+    std::string glb() {
+        std::vector<std::size_t> all(nodes_.size());
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+        const auto material = [](const char* name, std::array<double, 4> colour) -> Json {
+            return {{"name", name},
+                    {"doubleSided", true},
+                    {"alphaMode", colour[3] < 1 ? "BLEND" : "OPAQUE"},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", colour}, {"metallicFactor", 0}, {"roughnessFactor", 0.8}}}};
+        };
+        const Json root{
+            {"asset", {{"version", "2.0"}, {"generator", "raycontact clash"}}},
+            {"scene", 0},
+            {"scenes", {{{"nodes", all}}}},
+            {"nodes", nodes_},
+            {"meshes", meshes_},
+            {"materials", {material("clashes", {0.8, 0.05, 0.05, 1}), material("others", {0.6, 0.6, 0.6, 0.25})}},
+            {"accessors", accessors_},
+            {"bufferViews", views_},
+            {"buffers", {{{"byteLength", bytes_.size()}}}}};
+        std::string text = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        const std::size_t size = 12 + 8 + text.size() + 8 + bytes_.size();
+        if (size > std::numeric_limits<std::uint32_t>::max())
+            throw InputError("the coloured assembly would exceed the 4 GiB of a .glb; give fewer parts");
+        const auto word = [](std::string& to, std::size_t value) { append(to, static_cast<std::uint32_t>(value)); };
+        std::string glb = "glTF";
+        word(glb, 2);
+        word(glb, size);
+        word(glb, text.size());
+        glb += "JSON" + text;
+        word(glb, bytes_.size());
+        glb += std::string("BIN\0", 4) + bytes_;
+        return glb;
+    }
+
+private:
+    std::string bytes_;
+    Json views_ = Json::array(), accessors_ = Json::array(), meshes_ = Json::array(), nodes_ = Json::array();
+};
+
+} // namespace
+
+std::string coloured_glb(const std::vector<Part>& parts, const std::vector<Clash>& clashes) {
+    std::vector<char> clashing(parts.size(), 0);
+    for (const Clash& clash : clashes) clashing[clash.a] = clashing[clash.b] = 1;
+    Writer writer;
+    for (std::size_t i = 0; i < parts.size(); ++i) writer.add(parts[i], clashing[i] != 0);
+    for (const Clash& clash : clashes)
+        if (clash.contacts > 0) writer.mark(parts[clash.a].name + " x " + parts[clash.b].name, clash);
+    return writer.glb();
+}
+
+} // namespace raycontact::clash

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <clash/parts.h>
+
+#include <clash/side_by_side.h>
+
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+namespace raycontact::clash {
+
+namespace {
+
+struct Box {
+    Vec3 low, high;
+    std::size_t part;
+};
+
+Box box_of(const Mesh& mesh, std::size_t part) {
+    Box box{mesh.vertices.front(), mesh.vertices.front(), part};
+    for (const Vec3& v : mesh.vertices) {
+        box.low = {std::min(box.low.x, v.x), std::min(box.low.y, v.y), std::min(box.low.z, v.z)};
+        box.high = {std::max(box.high.x, v.x), std::max(box.high.y, v.y), std::max(box.high.z, v.z)};
+    }
+    // Shapes round vertices to a ten-millionth of their size.
+    const double grow = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+    box.low = {box.low.x - grow, box.low.y - grow, box.low.z - grow};
+    box.high = {box.high.x + grow, box.high.y + grow, box.high.z + grow};
+    return box;
+}
+
+void tell_apart(std::vector<Part>& parts) {
+    std::map<std::string, std::size_t> count;
+    for (const Part& part : parts) ++count[part.name];
+    std::map<std::string, std::size_t> given;
+    for (Part& part : parts)
+        if (count[part.name] > 1) part.name += " #" + std::to_string(++given[part.name]);
+}
+
+} // namespace
+
+std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
+    std::vector<Part> parts;
+    for (const std::filesystem::path& file : files)
+        for (Mesh& mesh : load_mesh_parts(file)) {
+            Part& part = parts.emplace_back();
+            part.name = mesh.name;
+            part.mesh = std::move(mesh);
+        }
+    tell_apart(parts);
+    return parts;
+}
+
+// Sorted by their lower x, so a box meets only those that begin before it ends.
+std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i].mesh, i));
+    std::sort(boxes.begin(), boxes.end(), [](const Box& p, const Box& q) { return p.low.x < q.low.x; });
+    std::vector<PartPair> pairs;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t k = i + 1; k < boxes.size() && boxes[k].low.x <= boxes[i].high.x; ++k) {
+            const Box &p = boxes[i], &q = boxes[k];
+            if (p.low.y <= q.high.y && q.low.y <= p.high.y && p.low.z <= q.high.z && q.low.z <= p.high.z)
+                pairs.push_back({std::min(p.part, q.part), std::max(p.part, q.part)});
+        }
+    std::sort(pairs.begin(), pairs.end(),
+              [](const PartPair& p, const PartPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+    return pairs;
+}
+
+void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, std::uint32_t threads,
+                 const std::function<void(std::size_t, std::size_t)>& progress, const std::function<bool()>& stop) {
+    std::vector<std::size_t> wanted;
+    for (const auto& [a, b] : pairs) wanted.insert(wanted.end(), {a, b});
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::mutex mutex;
+    std::size_t done = 0;
+    for_each_beside(
+        wanted.size(), threads,
+        [&](std::size_t i) {
+            Part& part = parts[wanted[i]];
+            try {
+                part.shape = Shape::make(part.mesh);
+            } catch (const InputError& error) {
+                part.fault = error.what();
+            }
+            const std::lock_guard lock(mutex);
+            progress(++done, wanted.size());
+        },
+        stop);
+}
+
+} // namespace raycontact::clash

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/clash.h"
+
+#include "cli/exit_status.h"
+#include "cli/number_option.h"
+#include "cli/out_option.h"
+#include "cli/progress.h"
+#include "cli/stop.h"
+
+#include <clash/coloured.h>
+#include <clash/parts.h>
+#include <clash/search.h>
+#include <output/out_file.h>
+
+#include <raycontact/error.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace raycontact;
+using Json = nlohmann::ordered_json;
+
+struct ClashOptions {
+    std::vector<std::string> files;
+    std::optional<double> ignore_touching; ///< metres
+    std::uint32_t threads = 0;
+    std::string out;
+    bool json = false;
+    bool check = false;
+};
+
+struct Result {
+    std::vector<clash::Part> parts;
+    std::size_t pairs = 0; ///< whose boxes touch
+    std::vector<clash::Clash> clashes;
+    std::size_t ignored = 0;
+
+    std::size_t faults() const {
+        return static_cast<std::size_t>(
+            std::count_if(parts.begin(), parts.end(), [](const clash::Part& part) { return !part.fault.empty(); }));
+    }
+    std::size_t open() const {
+        return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [](const clash::Part& part) {
+            return part.shape && !part.shape->report().closed;
+        }));
+    }
+};
+
+Json json_of(const Result& result) {
+    Json list = Json::array();
+    for (const clash::Clash& c : result.clashes) {
+        Json entry{
+            {"a", result.parts[c.a].name}, {"b", result.parts[c.b].name}, {"depth", c.depth}, {"contacts", c.contacts}};
+        entry["point"] = c.contacts > 0 ? Json{c.point.x, c.point.y, c.point.z} : Json();
+        entry["normal"] = c.contacts > 0 ? Json{c.normal.x, c.normal.y, c.normal.z} : Json();
+        list.push_back(std::move(entry));
+    }
+    Json unchecked = Json::array();
+    for (const clash::Part& part : result.parts)
+        if (!part.fault.empty()) unchecked.push_back({{"part", part.name}, {"why", part.fault}});
+    return {{"parts", result.parts.size()},   {"pairs", result.pairs},       {"clashes", std::move(list)},
+            {"ignored", result.ignored},      {"open_parts", result.open()}, {"unchecked", std::move(unchecked)},
+            {"cut_short", stop_signal() != 0}};
+}
+
+std::string text_of(const Result& result) {
+    std::string text;
+    for (const clash::Clash& c : result.clashes) {
+        const std::string names = fmt::format("{}  x  {}", result.parts[c.a].name, result.parts[c.b].name);
+        if (c.contacts == 0)
+            text += fmt::format("{:>12}  {}\n", "touching", names);
+        else
+            text += fmt::format("{:>10.4g} m  {}  at {:.6g}, {:.6g}, {:.6g}\n", c.depth, names, c.point.x, c.point.y,
+                                c.point.z);
+    }
+    text += fmt::format("{} clash{} among {} parts ({} pairs of touching boxes)", result.clashes.size(),
+                        result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs);
+    if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
+    if (result.open() > 0) text += fmt::format("; {} parts are open: nothing is inside of them", result.open());
+    if (stop_signal() != 0) text += fmt::format("; cut short by {}", stop_name());
+    return text + "\n";
+}
+
+Result search(const ClashOptions& options) {
+    Result result;
+    result.parts = clash::load_parts({options.files.begin(), options.files.end()});
+    const auto pairs = clash::touching_boxes(result.parts);
+    result.pairs = pairs.size();
+    listen_for_stop();
+    const auto stop = [] { return stop_signal() != 0; };
+    // Two tasks on one bar: shapes take most of the time.
+    Progress progress("clash", 1000, "");
+    const auto show = [&](double from, double to) {
+        return [&progress, from, to](std::size_t done, std::size_t total) {
+            progress.show(static_cast<std::uint32_t>(from + (to - from) * double(done) / double(total)));
+        };
+    };
+    clash::make_shapes(result.parts, pairs, options.threads, show(0, 700), stop);
+    for (const clash::Part& part : result.parts)
+        if (!part.fault.empty()) std::cerr << fmt::format("not checked: {}: {}\n", part.name, part.fault);
+    clash::SearchOptions how;
+    how.threads = options.threads;
+    how.progress = show(700, 1000);
+    how.stop = stop;
+    result.clashes = clash::find_clashes(result.parts, pairs, how);
+    progress.done();
+    if (options.ignore_touching)
+        result.ignored =
+            std::erase_if(result.clashes, [&](const clash::Clash& c) { return c.depth <= *options.ignore_touching; });
+    return result;
+}
+
+void run_clash(const ClashOptions& options) {
+    std::optional<output::OutFile> out;
+    if (!options.out.empty()) out.emplace(options.out);
+    const Result result = search(options);
+    std::cout << (options.json ? json_of(result).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"
+                               : text_of(result))
+              << std::flush;
+    if (out) {
+        out->write(clash::coloured_glb(result.parts, result.clashes));
+        out->keep(stop_signal() != 0);
+    }
+    if (options.check && stop_signal() == 0 && (!result.clashes.empty() || result.faults() > 0)) throw EndWith{found};
+}
+
+} // namespace
+
+void add_clash(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect");
+    auto options = std::make_shared<ClashOptions>();
+    command->add_option("FILES", options->files, "mesh files; of a glTF file each node with a mesh is a part")
+        ->required();
+    add_number(*command, "--ignore-touching", options->ignore_touching,
+               "leave out clashes no deeper than this, metres; 0: those that only touch", 0.0, 1e9);
+    add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
+    add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
+        ->type_name("FILE.glb");
+    command->add_flag("--json", options->json, "print one JSON object on stdout");
+    command->add_flag("--check", options->check, "exit status 3 where parts clash, or cannot be tested");
+    command->footer(
+        "A clash has the depth of its deepest contact and a point there; parts that share a point and have no\n"
+        "contact touch. Parts stay where their files place them.\n"
+        "Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 3 clashes found (--check).");
+    command->callback([options] { run_clash(*options); });
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/accelerators.h"
+
+#include "executor/float_environment.h"
+#include "shape/build.h"
+
+namespace raycontact {
+
+std::uint64_t Accelerators::bytes() const {
+    const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    return sizeof *this + bytes(caps) + bytes(outside_cells) + bytes(clearances);
+}
+
+std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, Executor& executor,
+                                                       const std::stop_token& stop) {
+    const FloatEnvironment environment;
+    auto made = std::make_unique<Accelerators>();
+    made->header = shape.header;
+    build_outside_grid(shape, *made, stop);
+    if (stop.stop_requested()) return nullptr;
+    build_clearance_grid(shape, *made, executor, stop);
+    build_caps(shape, *made, executor, stop);
+    if (stop.stop_requested()) return nullptr;
+    return made;
+}
+
+bool AcceleratorSlot::make(const ShapeData& shape, Executor& executor, const std::stop_token& stop) {
+    if (get() != nullptr) return true;
+    const std::lock_guard lock(making_);
+    if (get() != nullptr) return true;
+    made_ = build_accelerators(shape, executor, stop);
+    ready_.store(made_.get(), std::memory_order_release);
+    return made_ != nullptr;
+}
+
+} // namespace raycontact

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "executor/executor.h"
+#include "shape/shape_data.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <vector>
+
+namespace raycontact {
+
+/// What only makes later steps faster: no contact of `standard` or `certified` depends on it. It takes several times as
+/// long to make as the shape itself, so it is made when a shape proves to be met again, or by Shape::prepare().
+struct Accelerators {
+    kernels::ShapeHeader header;              ///< the shape's, with these
+    std::vector<kernels::uint> caps;          ///< of the triangle blocks, TRIANGLE_LANES each; empty: none
+    std::vector<kernels::uint> outside_cells; ///< a bit for each cell of the outside grid
+    std::vector<kernels::uint> clearances;    ///< a ball for each cell of the clearance grid
+
+    std::uint64_t bytes() const;
+};
+
+/// Null if it was asked to stop.
+std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, Executor& executor,
+                                                       const std::stop_token& stop);
+
+/// The accelerators of one shape, made once; read by any thread while another makes them.
+class AcceleratorSlot {
+public:
+    /// Null until they are made.
+    const Accelerators* get() const { return ready_.load(std::memory_order_acquire); }
+    /// Makes them, unless they are there. Waits for a thread that is at it. False if it was asked to stop.
+    bool make(const ShapeData& shape, Executor& executor, const std::stop_token& stop);
+
+private:
+    std::mutex making_;
+    std::unique_ptr<const Accelerators> made_;
+    std::atomic<const Accelerators*> ready_{nullptr};
+};
+
+/// Calls piece(begin, end) over [0, count) on the executor's threads until all are done, or it is asked to stop.
+template <class Piece>
+void run_until(Executor& executor, const std::stop_token& stop, std::size_t count, std::uint32_t grain, Piece&& piece) {
+    executor.run(static_cast<std::uint32_t>(count), grain, [&](std::uint32_t begin, std::uint32_t end) {
+        // A slice may be long: with one thread it is all.
+        for (std::uint32_t next = begin; next < end && !stop.stop_requested(); next += grain)
+            piece(next, std::min(end, next + grain));
+    });
+}
+
+} // namespace raycontact

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// `clash`: which parts of an assembly intersect, on cubes whose answers are known by hand.
+#include "expect.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace {
+
+using nlohmann::json;
+
+class Clash : public testing::Test {
+protected:
+    /// An OBJ file of a cube of that edge about (x, 0, 0).
+    void write_cube(const std::string& name, double x, double edge = 1) const {
+        std::string text;
+        for (int i = 0; i < 8; ++i) {
+            const auto side = [&](int bit) { return (i >> bit & 1 ? 0.5 : -0.5) * edge; };
+            text += "v " + std::to_string(x + side(0)) + " " + std::to_string(side(1)) + " " + std::to_string(side(2))
+                    + "\n";
+        }
+        text += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        folder_.write(name, text);
+    }
+
+    /// A glTF file that places the cube of `cube.bin` at these x, under these names.
+    void write_assembly(const std::string& name, const std::vector<std::pair<std::string, double>>& places) const {
+        const std::vector<std::array<std::uint16_t, 3>> triangles{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
+                                                                  {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                                                  {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+        std::string bytes;
+        for (int i = 0; i < 8; ++i)
+            for (int bit = 0; bit < 3; ++bit) {
+                const float p = i >> bit & 1 ? 0.5f : -0.5f;
+                bytes.append(reinterpret_cast<const char*>(&p), sizeof p);
+            }
+        bytes.append(reinterpret_cast<const char*>(triangles.data()), 72);
+        folder_.write("cube.bin", bytes);
+        json nodes = json::array();
+        for (const auto& [node, x] : places) {
+            json entry{{"mesh", 0}, {"translation", {x, 0, 0}}};
+            if (!node.empty()) entry["name"] = node;
+            nodes.push_back(entry);
+        }
+        std::vector<std::size_t> all(places.size());
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+        const json root{
+            {"asset", {{"version", "2.0"}}},
+            {"scene", 0},
+            {"scenes", {{{"nodes", all}}}},
+            {"nodes", nodes},
+            {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
+            {"accessors",
+             {{{"bufferView", 0}, {"componentType", 5126}, {"count", 8}, {"type", "VEC3"}},
+              {{"bufferView", 1}, {"componentType", 5123}, {"count", 36}, {"type", "SCALAR"}}}},
+            {"bufferViews",
+             {{{"buffer", 0}, {"byteLength", 96}}, {{"buffer", 0}, {"byteOffset", 96}, {"byteLength", 72}}}},
+            {"buffers", {{{"uri", "cube.bin"}, {"byteLength", 168}}}}};
+        folder_.write(name, root.dump());
+    }
+
+    ProgramResult run(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), "clash");
+        return run_program(arguments, folder_.path());
+    }
+    json run_json(std::vector<std::string> arguments) const {
+        arguments.push_back("--json");
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return json::parse(result.out);
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Clash, DeepestFirstByFileName) {
+    write_cube("a.obj", 0);
+    write_cube("b.obj", 0.9);
+    write_cube("c.obj", 1.6);
+    write_cube("far.obj", 10);
+    const json found = run_json({"a.obj", "b.obj", "c.obj", "far.obj"});
+    EXPECT_EQ(found["parts"], 4);
+    EXPECT_EQ(found["pairs"], 2) << "boxes of a and c do not touch";
+    ASSERT_EQ(found["clashes"].size(), 2u);
+    const json &first = found["clashes"][0], &second = found["clashes"][1];
+    EXPECT_EQ(first["a"], "b.obj");
+    EXPECT_EQ(first["b"], "c.obj");
+    EXPECT_NEAR(first["depth"].get<double>(), 0.3, 1e-5);
+    EXPECT_NEAR(first["point"][0].get<double>(), 1.25, 1e-5);
+    EXPECT_NEAR(first["normal"][0].get<double>(), 1, 1e-6);
+    EXPECT_EQ(second["a"], "a.obj");
+    EXPECT_NEAR(second["depth"].get<double>(), 0.1, 1e-5);
+    EXPECT_NEAR(second["point"][0].get<double>(), 0.45, 1e-5);
+
+    const ProgramResult text = run({"a.obj", "b.obj", "c.obj", "far.obj"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_NE(text.out.find("0.3 m  b.obj  x  c.obj  at 1.25, "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("2 clashes among 4 parts (2 pairs of touching boxes)\n"), std::string::npos) << text.out;
+    EXPECT_EQ(text.err, "") << "no progress bar where nobody sees it";
+}
+
+TEST_F(Clash, NodesOfAnAssembly) {
+    write_assembly("all.gltf", {{"left", 0}, {"right", 0.9}, {"", 5}, {"left", 5.8}});
+    write_cube("more.obj", 20);
+    const json found = run_json({"all.gltf", "more.obj"});
+    EXPECT_EQ(found["parts"], 5);
+    ASSERT_EQ(found["clashes"].size(), 2u);
+    EXPECT_EQ(found["clashes"][0]["a"], "nodes[2]");
+    EXPECT_EQ(found["clashes"][0]["b"], "left #2");
+    EXPECT_EQ(found["clashes"][1]["a"], "left #1");
+    EXPECT_EQ(found["clashes"][1]["b"], "right");
+}
+
+TEST_F(Clash, TouchingPartsCanBeIgnored) {
+    write_cube("a.obj", 0);
+    write_cube("b.obj", 1);
+    write_cube("c.obj", 1.9);
+    const std::vector<std::string> files{"a.obj", "b.obj", "c.obj"};
+    const json all = run_json(files);
+    ASSERT_EQ(all["clashes"].size(), 2u);
+    EXPECT_EQ(all["clashes"][1]["depth"], 0.0);
+    EXPECT_TRUE(all["clashes"][1]["point"].is_null());
+    EXPECT_NE(run(files).out.find("touching  a.obj  x  b.obj"), std::string::npos);
+
+    const json crossing = run_json({"a.obj", "b.obj", "c.obj", "--ignore-touching", "0"});
+    ASSERT_EQ(crossing["clashes"].size(), 1u);
+    EXPECT_EQ(crossing["clashes"][0]["b"], "c.obj");
+    EXPECT_EQ(crossing["ignored"], 1);
+    EXPECT_TRUE(run_json({"a.obj", "b.obj", "c.obj", "--ignore-touching", "0.2"})["clashes"].empty());
+}
+
+TEST_F(Clash, OneInsideAnother) {
+    write_cube("box.obj", 0);
+    write_cube("hidden.obj", 0.1, 0.2);
+    const json found = run_json({"box.obj", "hidden.obj"});
+    ASSERT_EQ(found["clashes"].size(), 1u);
+    EXPECT_GT(found["clashes"][0]["depth"].get<double>(), 0.2);
+}
+
+TEST_F(Clash, TheSamePartTwice) {
+    write_assembly("all.gltf", {{"p", 0}, {"p", 0}});
+    const json found = run_json({"all.gltf"});
+    ASSERT_EQ(found["clashes"].size(), 1u);
+    EXPECT_EQ(found["clashes"][0]["a"], "p #1");
+}
+
+TEST_F(Clash, CheckIsForScripts) {
+    write_cube("a.obj", 0);
+    write_cube("b.obj", 0.9);
+    write_cube("far.obj", 10);
+    EXPECT_EQ(run({"a.obj", "b.obj", "--check"}).status, 3);
+    EXPECT_EQ(run({"a.obj", "far.obj", "--check"}).status, 0);
+    EXPECT_EQ(run({"a.obj", "b.obj", "--check", "--ignore-touching", "0.2"}).status, 0);
+}
+
+TEST_F(Clash, APartThatCannotBeTestedIsNamed) {
+    write_cube("a.obj", 0);
+    write_cube("tiny.obj", 0, 1e-7);
+    const ProgramResult result = run({"a.obj", "tiny.obj", "--json"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.err.find("not checked: tiny.obj: "), std::string::npos) << result.err;
+    const json found = json::parse(result.out);
+    ASSERT_EQ(found["unchecked"].size(), 1u);
+    EXPECT_EQ(found["unchecked"][0]["part"], "tiny.obj");
+    EXPECT_EQ(run({"a.obj", "tiny.obj", "--check"}).status, 3) << "nothing passes untested";
+}
+
+TEST_F(Clash, ColouredAssembly) {
+    write_assembly("all.gltf", {{"left", 1000}, {"right", 1000.9}, {"alone", 1005}});
+    const ProgramResult result = run({"all.gltf", "--out", "red.glb", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    std::ifstream file(folder_.path() / "red.glb", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    std::uint32_t size = 0;
+    std::memcpy(&size, &bytes.at(12), 4);
+    const json root = json::parse(bytes.substr(20, size));
+    ASSERT_EQ(root["nodes"].size(), 4u);
+    EXPECT_EQ(root["meshes"][0]["primitives"][0]["material"], 0);
+    EXPECT_EQ(root["meshes"][1]["primitives"][0]["material"], 0);
+    EXPECT_EQ(root["meshes"][2]["primitives"][0]["material"], 1);
+    EXPECT_EQ(root["nodes"][3]["name"], "left x right");
+    EXPECT_NEAR(root["nodes"][3]["translation"][0].get<double>(), 1000.45, 1e-3);
+    const json again = run_json({"red.glb"}); // it is an assembly, too
+    ASSERT_EQ(again["clashes"].size(), 1u);
+    EXPECT_EQ(again["clashes"][0]["a"], "left");
+}
+
+TEST_F(Clash, SameForEveryNumberOfThreads) {
+    std::vector<std::string> arguments;
+    for (int i = 0; i < 40; ++i) {
+        write_cube("p" + std::to_string(i) + ".obj", 0.37 * (i * 7 % 40), 0.3 + 0.02 * (i % 11));
+        arguments.push_back("p" + std::to_string(i) + ".obj");
+    }
+    arguments.insert(arguments.end(), {"--threads", "1"});
+    const json one = run_json(arguments);
+    EXPECT_GT(one["clashes"].size(), 30u);
+    arguments.back() = "4";
+    EXPECT_EQ(run_json(arguments), one);
+}
+
+TEST_F(Clash, BadInputIsRefused) {
+    write_cube("a.obj", 0);
+    expect_refused(run({"a.obj", "missing.glb"}), "missing.glb");
+    expect_refused(run({"a.obj", "--ignore-touching", "-1"}), "--ignore-touching");
+    expect_refused(run({"a.obj", "--threads", "many"}), "--threads");
+    expect_refused(run({"a.obj", "--out", "no/such/folder.glb"}), "no/such");
+    folder_.write("empty.gltf", R"({"asset": {"version": "2.0"}})");
+    expect_refused(run({"empty.gltf"}), "empty.gltf");
+    folder_.write("text.glb", "no mesh");
+    expect_refused(run({"text.glb"}), "text.glb");
+    EXPECT_EQ(run({}).status, 2);
+}
+
+} // namespace

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/collide.h>
+#include <raycontact/scene.h>
+
+#include "property/shapes.h"
+#include "reference/meshes.h"
+#include "reference/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+Pose at(double x, double y, double z) {
+    return {.translation = {x, y, z}};
+}
+
+TEST(Collide, FindsWhatASceneFinds) {
+    Random random(3);
+    std::size_t contacts = 0;
+    for (int i = 0; i < 100; ++i) {
+        const Placement p = random_placement(pointers(closed_subjects()), random);
+        for (const Direction direction : {Direction::ray, Direction::reprojected, Direction::weighted})
+            for (const Features features : {Features::vertices, Features::edges}) {
+                Settings settings;
+                settings.direction = direction;
+                settings.features = features;
+                Scene scene(settings);
+                scene.add(p.a->shape, p.pose_a);
+                scene.add(p.b->shape, p.pose_b);
+                const Pair pair{0, 1};
+                const auto expected = scene.step({&pair, 1});
+                const auto found = collide(*p.a->shape, p.pose_a, *p.b->shape, p.pose_b,
+                                           {.direction = direction, .features = features});
+                EXPECT_TRUE(same_bits(expected, found));
+                contacts += found.size();
+            }
+    }
+    EXPECT_GT(contacts, 500u);
+}
+
+// A is above B and 0.1 m too low, so its point is below that of B.
+TEST(Collide, WitnessPointsAreADepthApart) {
+    const auto box = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    const auto small = Shape::make(box_mesh({0.2, 0.2, 0.2}));
+    for (const bool swapped : {false, true}) {
+        const auto contacts = swapped ? collide(*box, at(0, 0, 0), *small, at(0, 0, 0.6))
+                                      : collide(*small, at(0, 0, 0.6), *box, at(0, 0, 0));
+        ASSERT_FALSE(contacts.empty());
+        for (const Contact& c : contacts) {
+            const Vec3 a = point_on_a(c), b = point_on_b(c);
+            EXPECT_NEAR(a.z, swapped ? 0.5 : 0.4, 1e-6);
+            EXPECT_NEAR(b.z, swapped ? 0.4 : 0.5, 1e-6);
+            EXPECT_NEAR(c.depth, 0.1, 1e-6);
+            const Vec3 apart{a.x - b.x, a.y - b.y, a.z - b.z};
+            EXPECT_NEAR(apart.x, double(c.depth) * double(c.normal[0]), 1e-6);
+            EXPECT_NEAR(apart.y, double(c.depth) * double(c.normal[1]), 1e-6);
+            EXPECT_NEAR(apart.z, double(c.depth) * double(c.normal[2]), 1e-6);
+        }
+    }
+}
+
+TEST(Collide, RefusesAPoseThatIsNotRigid) {
+    const auto box = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+    Pose twice;
+    twice.rotation[0] = 2;
+    EXPECT_THROW(collide(*box, {}, *box, twice), InputError);
+    EXPECT_THROW(intersects(*box, {}, *box, twice), InputError);
+    EXPECT_THROW(intersects(*box, at(NAN, 0, 0), *box, {}), InputError);
+}
+
+} // namespace
+} // namespace raycontact

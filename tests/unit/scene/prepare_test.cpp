@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accelerators come when they come: no contact of standard or certified depends on it, and a single query makes none.
+#include <raycontact/scene.h>
+
+#include "property/shapes.h"
+#include "reference/random.h"
+#include "reference/vector.h"
+#include "scenes/models/model.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+std::shared_ptr<const Shape> new_shape(const char* kind = "knot") {
+    return Shape::make(scenes::scene_model(kind, 902).mesh);
+}
+
+bool prepared_soon(const Shape& shape) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!shape.is_prepared() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return shape.is_prepared();
+}
+
+TEST(Prepare, BelongsToTheShapeAndIsMadeOnce) {
+    const auto shape = new_shape();
+    const std::uint64_t before = shape->memory_bytes();
+    EXPECT_FALSE(shape->is_prepared());
+    shape->prepare();
+    EXPECT_TRUE(shape->is_prepared());
+    const auto* made = shape->accelerators();
+    shape->prepare(2);
+    EXPECT_EQ(shape->accelerators(), made);
+    EXPECT_GT(shape->memory_bytes(), before);
+}
+
+TEST(Prepare, ComesAfterASecondMeetingAndNotBefore) {
+    for (const Method method : {Method::standard, Method::certified}) {
+        const auto a = new_shape(), b = new_shape(), lonely = new_shape();
+        Settings settings;
+        settings.method = method;
+        Scene scene(settings);
+        scene.add(a);
+        scene.add(b, {.translation = {0.3, 0, 0}});
+        scene.add(lonely, {.translation = {100, 0, 0}});
+        scene.step();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_FALSE(a->is_prepared() || b->is_prepared()) << "one query";
+        scene.step();
+        EXPECT_TRUE(prepared_soon(*a) && prepared_soon(*b));
+        scene.step();
+        EXPECT_FALSE(lonely->is_prepared());
+    }
+}
+
+TEST(Prepare, MethodsThatFollowRaysDoSoFirst) {
+    for (const Method method : {Method::iterative, Method::predictive}) {
+        const auto a = new_shape(), b = new_shape();
+        Settings settings;
+        settings.method = method;
+        Scene scene(settings);
+        scene.add(a);
+        scene.add(b, {.translation = {0.3, 0, 0}});
+        scene.step();
+        EXPECT_TRUE(a->is_prepared() && b->is_prepared());
+    }
+}
+
+TEST(Prepare, OfASceneIsThatOfItsShapes) {
+    const auto a = new_shape();
+    Scene scene;
+    scene.add(a, {.translation = {100, 0, 0}});
+    scene.prepare();
+    EXPECT_TRUE(a->is_prepared());
+}
+
+// Shapes of a moving crowd are prepared in any step, by hand or by the scene beside its steps.
+TEST(Prepare, NoContactDependsOnWhen) {
+    Random random(7);
+    std::uint64_t contacts = 0;
+    for (const Method method : {Method::standard, Method::certified})
+        for (int run = 0; run < 6; ++run) {
+            const char* kinds[] = {"knot", "gear", "torus", "sphere"};
+            std::vector<std::shared_ptr<const Shape>> shapes, prepared;
+            for (const char* kind : kinds) {
+                shapes.push_back(new_shape(kind));
+                prepared.push_back(new_shape(kind));
+                prepared.back()->prepare();
+            }
+            Settings settings;
+            settings.method = method;
+            settings.threads = 2;
+            Scene scene(settings), reference(settings);
+            std::vector<Pose> poses;
+            std::vector<Vec3> ways;
+            for (std::size_t i = 0; i < 12; ++i) {
+                poses.push_back(random.rotation());
+                poses.back().translation = 0.8 * random.in_ball();
+                ways.push_back(0.004 * random.in_ball());
+                scene.add(shapes[i % 4], poses.back());
+                reference.add(prepared[i % 4], poses.back());
+            }
+            for (std::uint32_t step = 0; step < 40; ++step) {
+                if (run < 3 && step == 5u * static_cast<std::uint32_t>(run)) shapes[step % 4]->prepare(1);
+                if (run == 3 && step == 20) scene.prepare();
+                for (BodyId i = 0; i < 12; ++i) {
+                    poses[i].translation = poses[i].translation + ways[i];
+                    scene.set_pose(i, poses[i]);
+                    reference.set_pose(i, poses[i]);
+                }
+                ASSERT_TRUE(same_bits(scene.step(), reference.step())) << "step " << step;
+                contacts += scene.contacts().size();
+            }
+        }
+    EXPECT_GT(contacts, 10000u);
+}
+
+// The scene goes while its shapes are being prepared.
+TEST(Prepare, ASceneThatGoesDoesNotWaitLong) {
+    const auto shape = Shape::make(scenes::scene_model("sphere", 60000).mesh);
+    const auto start = std::chrono::steady_clock::now();
+    {
+        Settings settings;
+        settings.features = Features::vertices;
+        Scene scene(settings);
+        scene.add(shape);
+        scene.add(shape, {.translation = {0.99 * (shape->box_max().x - shape->box_min().x), 0, 0}});
+        for (int i = 0; i < 3; ++i) scene.step();
+    }
+    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+    const auto again = std::chrono::steady_clock::now();
+    shape->prepare();
+    const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - again;
+    std::printf("[ counts   ] three steps and the end of the scene %.3f s, preparing %.3f s\n", gone.count(),
+                whole.count());
+    EXPECT_TRUE(shape->is_prepared());
+}
+
+} // namespace
+} // namespace raycontact
