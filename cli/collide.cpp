@@ -3,6 +3,7 @@
 
 #include "cli/coarse.h"
 #include "cli/common_options.h"
+#include "cli/nested_option.h"
 #include "cli/pairs_file.h"
 
 #include <raycontact/collide.h>
@@ -32,11 +33,13 @@ struct CollideOptions {
     std::vector<double> at, turn; ///< of b
     bool json = false;
     Settings settings;
+    std::optional<Nesting> nested;
 };
 
 /// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
 class ShapeCache {
 public:
+    explicit ShapeCache(Nesting nesting) : nesting_(nesting) {}
     std::shared_ptr<const Shape> get(const PairBody& body) {
         auto& shape = shapes_[{body.file.string(), body.scale}];
         if (!shape) shape = make(body);
@@ -47,7 +50,7 @@ public:
     }
 
 private:
-    static std::shared_ptr<const Shape> make(const PairBody& body) {
+    std::shared_ptr<const Shape> make(const PairBody& body) const {
         try {
             Mesh mesh = load_mesh(body.file);
             for (Vec3& v : mesh.vertices) {
@@ -56,12 +59,13 @@ private:
                     throw InputError(body.file.string() + fmt::format(": too large to be scaled by {}", body.scale));
                 }
             }
-            return Shape::make(mesh);
+            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_));
         } catch (const InputError& error) {
             throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
         }
     }
 
+    Nesting nesting_;
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
 
@@ -183,7 +187,7 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
 void collide(const CollideOptions& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
-    ShapeCache shapes;
+    ShapeCache shapes(options.nested.value_or(Nesting::as_wound));
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }
@@ -215,6 +219,7 @@ void add_collide(CLI::App& app) {
     three("--at", options->at, "move B there, metres");
     three("--turn", options->turn, "turn B first, degrees: about the axes x, then y, then z, through its origin");
     command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
+    add_nested_option(*command, options->nested);
     add_common_options(*command, options->settings);
     command->callback([options] { collide(*options); });
 }

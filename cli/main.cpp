@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
+#include "cli/complain.h"
 #include "cli/exit_status.h"
 #include "cli/stop.h"
 
@@ -13,16 +14,8 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 namespace {
-
-/// One line, whatever a file name or a library put into the message.
-void complain(std::string_view message) {
-    std::string line = "raycontact: ";
-    for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    std::cerr << line << '\n';
-}
 
 int run_program(int argc, char** argv) {
     CLI::App app{"RayContact finds the contacts between moving, concave triangle meshes by casting rays.",

@@ -1,38 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/mesh.h"
 
+#include "cli/complain.h"
+#include "cli/nested_option.h"
+
+#include <raycontact/error.h>
 #include <raycontact/mesh.h>
+
+#include <nlohmann/json.hpp>
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace {
 
+using namespace raycontact;
+
 struct MeshOptions {
-    std::string file;
+    std::vector<std::string> files;
     bool json = false;
     bool as_is = false;
+    bool strict = false;
+    std::optional<Nesting> nested;
 };
 
-void print_line(std::string_view text) {
-    std::cout << text;
-    if (!text.ends_with('\n')) std::cout << '\n';
+using Json = nlohmann::ordered_json;
+
+/// A name may be of any bytes.
+void print_json(const Json& line) {
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+/// Its own keys come after the file's name.
+void print_json(const std::string& file, const MeshReport& report, const Verdict& verdict) {
+    Json line{{"file", file}};
+    line.update(Json::parse(to_json(report)));
+    line["good"] = verdict.good;
+    line["verdict"] = verdict.text;
+    print_json(line);
+}
+
+std::string on_one_line(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text;
+}
+
+/// Most errors name the file first.
+std::string without_name(const std::string& error, const std::string& name) {
+    return error.starts_with(name + ": ") ? error.substr(name.size() + 2) : error;
+}
+
+/// All files are looked at, whatever is wrong with one. What is wrong is said one line each, the last of them by the
+/// error that is thrown.
+void check_meshes(const MeshOptions& options) {
+    const bool several = options.files.size() > 1;
+    std::string verdicts;
+    std::vector<std::string> complaints;
+    std::size_t bad = 0;
+    std::string first_bad;
+    for (const std::string& file : options.files) {
+        const std::string shown = on_one_line(file);
+        try {
+            const MeshReport report = prepare_mesh(load_mesh(file), options.as_is ? Repair::as_is : Repair::allowed,
+                                                   options.nested.value_or(Nesting::as_wound))
+                                          .report;
+            const Verdict verdict = verdict_of(report);
+            if (options.json)
+                print_json(file, report, verdict);
+            else
+                std::cout << (several ? shown + "\n" : "") << to_text(report) << (several ? "\n" : "");
+            verdicts += shown + ": " + verdict.text + "\n";
+            if (verdict.good) continue;
+            ++bad;
+            if (first_bad.empty()) first_bad = shown;
+        } catch (const InputError& error) {
+            if (!several) throw;
+            complaints.emplace_back(error.what());
+            const std::string verdict = "refused: " + without_name(complaints.back(), shown);
+            if (options.json) print_json({{"file", file}, {"good", false}, {"verdict", verdict}});
+            verdicts += shown + ": " + verdict + "\n";
+        }
+    }
+    if (!options.json) std::cout << verdicts;
+    if (options.strict && bad > 0) {
+        const std::string others = bad > 1 ? " and " + std::to_string(bad - 1) + " more" : "";
+        complaints.push_back("--strict: not good for contacts: " + first_bad + others);
+    }
+    if (complaints.empty()) return;
+    std::cout.flush();
+    for (std::size_t i = 0; i + 1 < complaints.size(); ++i) complain(complaints[i]);
+    throw InputError(complaints.back());
 }
 
 } // namespace
 
 void add_mesh(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("mesh", "Check a mesh file: OBJ, STL, PLY, OFF, glTF or GLB");
+    CLI::App* command = app.add_subcommand("mesh", "Check mesh files: OBJ, STL, PLY, OFF, glTF or GLB");
     auto options = std::make_shared<MeshOptions>();
-    command->add_option("FILE", options->file, "the mesh file")->required();
-    command->add_flag("--json", options->json, "print one JSON object on stdout");
-    command->add_flag("--as-is", options->as_is, "report the mesh as the file gives it, repair nothing");
-    command->callback([options] {
-        using namespace raycontact;
-        const PreparedMesh mesh =
-            prepare_mesh(load_mesh(options->file), options->as_is ? Repair::as_is : Repair::allowed);
-        print_line(options->json ? to_json(mesh.report) : to_text(mesh.report));
-    });
+    command->add_option("FILE", options->files, "the mesh files; the last lines say what each is good for")->required();
+    command->add_flag("--json", options->json, "print one JSON object a file and line on stdout");
+    CLI::Option* as_is =
+        command->add_flag("--as-is", options->as_is, "report the mesh as the file gives it, repair nothing");
+    add_nested_option(*command, options->nested)->excludes(as_is);
+    command->add_flag("--strict", options->strict, "exit status 2 if a mesh is not good for contacts");
+    command->callback([options] { check_meshes(*options); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_scene.h"
 
+#include "cli/nested_option.h"
 #include "cli/number_option.h"
 #include "cli/scene_file.h"
 
@@ -45,6 +46,7 @@ void refuse_mesh_options(const RunScene& given) {
     if (given.size) throw InputError("--size" + only);
     if (given.density) throw InputError("--density" + only);
     if (given.ground) throw InputError("--ground" + only);
+    if (given.nested) throw InputError("--nested" + only);
 }
 
 template <class Options>
@@ -85,6 +87,7 @@ SceneDescription from_meshes(const RunScene& given, const Settings& settings) {
     how.files.assign(given.meshes.begin(), given.meshes.end());
     how.size = given.size;
     how.density = given.density.value_or(how.density);
+    how.nesting = given.nested.value_or(how.nesting);
     how.plane = given.ground == "plane";
     if (given.ground && !how.plane) how.ground = *given.ground;
     SceneDescription scene = own(how);
@@ -94,6 +97,7 @@ SceneDescription from_meshes(const RunScene& given, const Settings& settings) {
     if (given.size) scene.arguments += fmt::format(" --size {}", *given.size);
     if (given.ground) scene.arguments += " --ground " + shell_word(*given.ground);
     if (given.density) scene.arguments += fmt::format(" --density {}", *given.density);
+    if (given.nested) scene.arguments += fmt::format(" --nested {}", word_of(*given.nested));
     return scene;
 }
 
@@ -115,6 +119,7 @@ void add_scene_options(CLI::App& command, RunScene& scene) {
                     "with --mesh: a mesh that stands still where its file places it, or plane: an endless one, z = 0, "
                     "whose contacts are not counted; else a slab")
         ->type_name("FILE|plane");
+    add_nested_option(command, scene.nested);
     add_number(command, "--density", scene.density, "with --mesh: kilograms a cubic metre", 0.0,
                std::numeric_limits<double>::max())
         ->type_name("D")

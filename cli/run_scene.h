@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/mesh.h>
 #include <scenes/description.h>
 
 #include <CLI/CLI.hpp>
@@ -18,10 +19,11 @@ struct RunScene {
     std::optional<std::uint64_t> seed;
     std::optional<double> size, density; ///< metres, kg/m^3
     std::optional<std::string> ground;   ///< FILE or "plane"
+    std::optional<raycontact::Nesting> nested;
 };
 
-/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground and --density; `scene` is filled while the command
-/// line is read and must outlive it.
+/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground, --density and --nested; `scene` is filled while the
+/// command line is read and must outlive it.
 void add_scene_options(CLI::App& command, RunScene& scene);
 
 /// Throws InputError naming the option, or the file and the field.

@@ -129,6 +129,7 @@ void check_claims(PreparedMesh& mesh) {
         throw Damage("is not as closed, manifold or oriented as its report says");
     said.self_intersecting = said.self_intersecting || found.self_intersecting;
     said.outward = said.outward && found.outward;
+    said.border_edges = found.border_edges; // not recorded
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/mesh.h>
 #include <raycontact/shape.h>
 
 #include <memory>
@@ -17,6 +18,7 @@ struct CentredShape {
 
 /// `size`: the longest edge of its box becomes this, metres, > 0; without, all is multiplied by `scale`, > 0. The
 /// centre of an open mesh, and of one without volume, is that of its box. Throws InputError for a mesh without an area.
-CentredShape centred_shape(Mesh mesh, std::optional<double> size, double scale = 1);
+CentredShape centred_shape(Mesh mesh, std::optional<double> size, double scale = 1,
+                           Nesting nesting = Nesting::as_wound);
 
 } // namespace raycontact::scenes

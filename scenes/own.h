@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/mesh.h>
 #include <scenes/description.h>
 
 #include <cstdint>
@@ -21,7 +22,8 @@ struct OwnOptions {
     std::uint32_t steps = 600; ///< planned, of 1/60 s
     std::uint64_t seed = 1;    ///< of the small offsets and tilts
     double density = 1000;     ///< kg/m^3
-    Settings settings;         ///< of RayContact
+    Nesting nesting = Nesting::as_wound;
+    Settings settings; ///< of RayContact
     /// Its slop is that of bodies of 1 m, and becomes smaller or larger with the smallest.
     Response response;
 };

@@ -14,4 +14,11 @@ inline std::string text_of(double value) {
     return {text.data(), end.ptr};
 }
 
+/// As short as it can be and still read back to the same bits, with a point.
+inline std::string full_text_of(double value) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+    return {text.data(), end.ptr};
+}
+
 } // namespace raycontact

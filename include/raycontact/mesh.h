@@ -12,7 +12,9 @@
 namespace raycontact {
 
 /// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
-/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order; polygons split as fans).
+/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order). A polygon of n corners is n - 2
+/// triangles: the fan of its first corner where that is right, as it is for convex ones; else ears are cut off it, seen
+/// along the axis closest to its normal. One that crosses itself or has no area stays a fan.
 struct Mesh {
     std::string name;                                    ///< for messages; the file name when loaded
     std::vector<Vec3> vertices;                          ///< metres, body frame
@@ -35,9 +37,10 @@ struct MeshReport {
     std::uint64_t triangles = 0;      ///< kept
     std::uint64_t file_vertices = 0;  ///< as in the file
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
-    bool closed = false;   ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
-    bool manifold = false; ///< no edge has more than two triangles, no vertex more than one fan
-    bool oriented = false; ///< across every shared edge the two triangles wind the same way
+    bool closed = false; ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
+    std::uint64_t border_edges = 0;   ///< edges met an odd number of times; 0: closed
+    bool manifold = false;            ///< no edge has more than two triangles, no vertex more than one fan
+    bool oriented = false;            ///< across every shared edge the two triangles wind the same way
     bool self_intersecting = false;   ///< two triangles meet elsewhere than in their shared vertices or edge
     bool outward = false;             ///< closed and oriented, winding number 0 outside and 1 inside everywhere
     std::uint64_t components = 0;     ///< connected over shared vertices
@@ -49,9 +52,18 @@ struct MeshReport {
 
 /// Whether prepare_mesh may change anything beyond welding for connectivity.
 enum class Repair {
-    allowed, ///< drop degenerate triangles, make windings agree, turn components whose winding contradicts their
-             ///< nesting
+    allowed, ///< drop degenerate and duplicate triangles, never so that a closed edge opens (where a degenerate one
+             ///< joins a corner to the side of a triangle on which it lies, that triangle is split there); make
+             ///< windings agree; turn components as Nesting has it
     as_is,   ///< change nothing; connectivity is still found by exact position
+};
+
+/// Which way a repair lets closed components wind. A component is outermost if it is in no other closed one.
+enum class Nesting {
+    as_wound, ///< outermost ones outward; those inside others stay as the file has them: a solid of its own in a solid
+              ///< (the winding number is 2 there, and the volumes add up), or a cavity
+    cavities, ///< by turns: outward, in there a cavity, in there outward, ... The winding number is 0 or 1 everywhere
+    solids,   ///< all outward, each a solid of its own: undoes cavities
 };
 
 /// A mesh ready to become a shape: welded by exact position, checked, with the way back to the file's indices.
@@ -65,7 +77,15 @@ struct PreparedMesh {
 };
 
 /// Welds, checks and, where allowed, repairs. Throws InputError when no triangle with an area is left.
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed);
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound);
+
+/// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
+/// itself.
+struct Verdict {
+    bool good;
+    std::string text; ///< one line: "good for contacts", or what is wrong and what to do
+};
+Verdict verdict_of(const MeshReport& report);
 
 /// As text for a person, or as the JSON of `raycontact mesh --json`.
 std::string to_text(const MeshReport& report);

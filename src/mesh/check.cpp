@@ -44,7 +44,8 @@ private:
 
 /// Whether the mesh is closed, manifold and oriented, and its number of components.
 void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std::span<const HalfEdge> edges) {
-    report.closed = report.manifold = report.oriented = true;
+    report.manifold = report.oriented = true;
+    report.border_edges = 0;
     // Corners of triangles that follow each other around a vertex end in one set: a fan.
     DisjointSets fans(3 * triangles.size()), components(report.vertices);
     const auto corner_at = [&](const HalfEdge& side, std::uint32_t vertex) {
@@ -58,12 +59,13 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
             fans.unite(corner_at(side, side.lo), corner_at(sides[0], side.lo));
             fans.unite(corner_at(side, side.hi), corner_at(sides[0], side.hi));
         }
-        report.closed = report.closed && sides.size() % 2 == 0;
+        report.border_edges += sides.size() % 2;
         report.manifold = report.manifold && sides.size() <= 2;
         // As many sides run one way as the other; of an odd number one is left over. A border always agrees.
         report.oriented = report.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
         components.unite(sides[0].lo, sides[0].hi);
     });
+    report.closed = report.border_edges == 0;
     report.manifold = report.manifold && fans.count() == report.vertices;
     report.components = components.count();
 }

@@ -66,4 +66,40 @@ InputFile InputFile::read(const std::filesystem::path& path, std::size_t most) {
     return file;
 }
 
+const InputFile& as_utf8(const InputFile& file, InputFile& room) {
+    const bool little = file.bytes.starts_with("\xff\xfe");
+    if (!little && !file.bytes.starts_with("\xfe\xff")) return file;
+    const std::size_t size = file.bytes.size();
+    if (size % 2 != 0) file.fail("is in UTF-16 and has an odd number of bytes; it is truncated");
+    room = {file.path, file.shown, {}};
+    room.bytes.reserve(size / 2);
+    const auto unit = [&](std::size_t at) { return read_bytes<std::uint16_t>(&file.bytes[at], little); };
+    const auto add = [&](std::uint32_t byte) { room.bytes += static_cast<char>(byte); };
+    for (std::size_t at = 2; at < size; at += 2) {
+        std::uint32_t code = unit(at);
+        if (code >= 0xd800 && code < 0xe000) { // half of a pair
+            const std::uint32_t low = code < 0xdc00 && at + 2 < size ? unit(at + 2) : 0;
+            const bool pair = low >= 0xdc00 && low < 0xe000;
+            code = pair ? 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00) : 0xfffd; // else the replacement character
+            if (pair) at += 2;
+        }
+        if (code < 0x80) {
+            add(code);
+        } else if (code < 0x800) {
+            add(0xc0 | code >> 6);
+            add(0x80 | (code & 0x3f));
+        } else {
+            if (code < 0x10000) {
+                add(0xe0 | code >> 12);
+            } else {
+                add(0xf0 | code >> 18);
+                add(0x80 | (code >> 12 & 0x3f));
+            }
+            add(0x80 | (code >> 6 & 0x3f));
+            add(0x80 | (code & 0x3f));
+        }
+    }
+    return room;
+}
+
 } // namespace raycontact

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -30,6 +31,10 @@ struct InputFile {
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };
 
+/// The file itself; or `room`, filled with it in UTF-8, where it is UTF-16 with a byte order mark. No binary format
+/// that is read starts so. Throws InputError where half of a unit is missing.
+const InputFile& as_utf8(const InputFile& file, InputFile& room);
+
 /// Text from a file in quotes, cut to a length, without control characters.
 std::string in_quotes(std::string_view text);
 /// The same for a whole path or a library's message: one line, no quotes, not cut.
@@ -45,12 +50,6 @@ Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
 std::vector<Mesh> read_gltf_parts(const InputFile& file); ///< by node; their names are set
-
-/// Appends the fan of a polygon. Its corners are vertex indices already checked.
-template <class Corners>
-void append_fan(Mesh& mesh, const Corners& corners) {
-    for (std::size_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
-}
 
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>

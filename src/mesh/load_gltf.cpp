@@ -95,6 +95,7 @@ public:
     explicit GltfReader(const InputFile& file) : file_(file) {
         std::string_view text = file.bytes;
         if (text.starts_with("glTF")) {
+            if (text.size() >= 8 && read_bytes<std::uint32_t>(&text[4]) == 1) fail_of_version_1();
             if (text.size() < 12 || read_bytes<std::uint32_t>(&text[8]) > text.size())
                 file.fail("has fewer bytes than its GLB header says; it is truncated");
             if (read_bytes<std::uint32_t>(&text[4]) != 2) file.fail("is not of GLB version 2; export it as glTF 2.0");
@@ -105,6 +106,7 @@ public:
         if (json_depth(text) > deepest)
             file.fail("nests its JSON more than " + std::to_string(deepest) + " deep; export without extras");
         json_ = json::parse(text);
+        if (is_version_1()) fail_of_version_1();
         if (!text_of(needed(needed(root_, "asset"), "version")).starts_with("2"))
             file.fail("is no sound glTF file: it does not say that its version is 2");
         for (const char* key : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"}) {
@@ -115,6 +117,8 @@ public:
     Mesh read() {
         for (const json& entry : list(root_, "extensionsRequired")) {
             const std::string extension = text_of({entry, "extensionsRequired"});
+            if (extension == draco) fail_of_compression("Draco");
+            if (std::ranges::find(meshopt, extension) != meshopt.end()) fail_of_compression("meshopt");
             if (extension != "KHR_mesh_quantization" && extension.find("materials") == std::string::npos
                 && extension.find("texture") == std::string::npos && extension.find("lights") == std::string::npos) {
                 file_.fail("needs the extension " + in_quotes(extension) + "; export without it");
@@ -174,6 +178,39 @@ private:
         bool in_scene = false;
         Placement placement; ///< in its parent, then in the scene
     };
+
+    static constexpr std::string_view draco = "KHR_draco_mesh_compression";
+    static constexpr std::array<std::string_view, 2> meshopt{"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+    [[noreturn]] void fail_of_compression(const char* kind) const {
+        file_.fail("its meshes are compressed with " + std::string(kind)
+                   + ", which is not read; decompress it (`gltf-transform copy IN.glb OUT.glb` does), or export it "
+                     "without compression");
+    }
+
+    /// Its lists were objects. A file may lack the version.
+    bool is_version_1() const {
+        if (!json_.is_object()) return false;
+        const auto asset = json_.find("asset");
+        if (asset != json_.end() && asset->is_object() && asset->contains("version")) {
+            const json& version = (*asset)["version"];
+            return version.is_string() ? version.get_ref<const std::string&>().starts_with("1")
+                                       : version.is_number() && version.get<double>() < 2;
+        }
+        return std::ranges::any_of(std::array{"meshes", "nodes", "accessors"}, [&](const char* key) {
+            const auto found = json_.find(key);
+            return found != json_.end() && found->is_object();
+        });
+    }
+
+    [[noreturn]] void fail_of_version_1() const {
+        file_.fail("is of glTF 1.0, which is not read; convert it to glTF 2.0 (`gltf-pipeline -i IN -o OUT` does)");
+    }
+
+    bool has_extension(const Item& item, std::string_view name) const {
+        const std::optional<Item> extensions = member(item, "extensions");
+        return extensions && extensions->value.is_object() && extensions->value.contains(name);
+    }
 
     [[noreturn]] void fail(const Item& item, const std::string& what) const { file_.fail(item.name + ": " + what); }
 
@@ -298,6 +335,8 @@ private:
         if (const std::optional<Item> uri = member(buffer, "uri")) {
             bytes = is_data(*uri) ? keep(decoded_data(*uri, length)) : fetched(*uri);
         } else {
+            for (const std::string_view name : meshopt)
+                if (has_extension(buffer, name)) fail_of_compression("meshopt");
             // The chunk of a GLB is its first buffer (glTF 2.0, section 3.6.1.2).
             if (index > 0 || !after_json_) file_.fail(buffer.name + " has no uri; it is damaged");
             bytes = chunk(*after_json_, {"BIN\0", 4});
@@ -498,6 +537,7 @@ private:
         const std::optional<Item> position = member(needed(primitive, "attributes"), "POSITION");
         if (mode < triangles || !position) return; // allowed, and nothing to see
         const Item accessor = item("accessors", whole(*position));
+        if (has_extension(primitive, draco) && !member(accessor, "bufferView")) fail_of_compression("Draco");
         const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
         const std::size_t base = mesh_.vertices.size();
         if (base + points.size() / 3 > most_vertices) file_.fail("has too many vertices; split or reduce it");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: tinyobjloader reads `v 1 abc nan` as 1 0 0 without an error, and names no line for a damaged face.
 // The tests compare with it on valid files.
+#include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
 
 #include <algorithm>
@@ -44,6 +45,7 @@ public:
                                         + std::to_string(mesh_.vertices.size()));
             }
         }
+        polygons_.finish(mesh_);
         return std::move(mesh_);
     }
 
@@ -62,7 +64,7 @@ private:
             if (slash != std::string_view::npos) check_others(word.substr(slash + 1));
         }
         if (corners_.size() < 3) scanner_.fail("a face needs at least 3 vertices");
-        append_fan(mesh_, corners_);
+        polygons_.append(mesh_, corners_);
     }
 
     std::uint32_t resolve(std::int64_t index) {
@@ -89,6 +91,7 @@ private:
     const InputFile& file_;
     TextScanner scanner_;
     Mesh mesh_;
+    PolygonCutter polygons_;
     std::vector<std::uint32_t> corners_;
     /// Vertices that come later in the file than a face that uses them, which is legal; with the line of the face.
     std::vector<std::pair<std::uint32_t, std::size_t>> forward_;
@@ -97,7 +100,8 @@ private:
 } // namespace
 
 Mesh read_obj(const InputFile& file) {
-    return ObjReader(file).read();
+    InputFile room;
+    return ObjReader(as_utf8(file, room)).read();
 }
 
 } // namespace raycontact

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp reads OFF as float32 and accepts damaged lines.
+#include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
 
 #include <string_view>
@@ -27,7 +28,9 @@ std::int64_t read_count(TextScanner& scanner, std::string_view word, const char*
 
 } // namespace
 
-Mesh read_off(const InputFile& file) {
+Mesh read_off(const InputFile& as_stored) {
+    InputFile room;
+    const InputFile& file = as_utf8(as_stored, room);
     TextScanner scanner(file);
     scanner.comment = '#';
     check_header(scanner);
@@ -47,6 +50,7 @@ Mesh read_off(const InputFile& file) {
     }
     mesh.triangles.reserve(static_cast<std::size_t>(faces));
     std::vector<std::uint32_t> corners;
+    PolygonCutter polygons;
     for (std::int64_t i = 0; i < faces; ++i) {
         if (scanner.at_end())
             scanner.fail("the file ends at face " + std::to_string(i) + " of " + std::to_string(faces));
@@ -58,7 +62,7 @@ Mesh read_off(const InputFile& file) {
             if (index < 0 || index >= vertices) scanner.fail(no_vertex(index, mesh.vertices.size()));
             corners.push_back(static_cast<std::uint32_t>(index));
         }
-        append_fan(mesh, corners);
+        polygons.append(mesh, corners);
         scanner.next_line(); // colours
     }
     if (!scanner.at_end())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements without an error.
+#include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
 
 #include <algorithm>
@@ -40,13 +41,16 @@ struct Element {
 
 class PlyReader {
 public:
-    explicit PlyReader(const InputFile& file) : file_(file), text_(file) {}
+    explicit PlyReader(const InputFile& file) : file_(file), text_(file) {
+        text_.comment = '{'; // as in the description of the format, where `{ ... }` explains a line
+    }
 
     Mesh read() {
         read_header();
         for (const Element& element : elements_) read_element(element);
         if (ascii_ ? !text_.at_end() : rest().find_first_not_of(" \t\r\n") != std::string_view::npos)
             file_.fail("more data than its header announces; it is damaged");
+        polygons_.finish(mesh_);
         return std::move(mesh_);
     }
 
@@ -58,7 +62,7 @@ private:
             if (!text_.next_line()) text_.fail("the header has no end_header; the file is truncated");
             const std::string_view word = text_.word_on_line();
             if (word == "end_header") break;
-            if (word.empty() || word == "comment" || word == "obj_info") continue;
+            if (word.empty() || is_comment(word)) continue;
             if (word == "format") {
                 read_format();
                 format_seen = true;
@@ -69,14 +73,26 @@ private:
                 elements_.push_back({name, static_cast<std::uint64_t>(count), {}});
             } else if (word == "property") {
                 read_property();
-            } else {
+            } else if (!elements_.empty()) { // before, exporters have left out the word `comment`
                 text_.fail(in_quotes(word) + " is no PLY header line; the file is damaged");
             }
         }
         if (!format_seen) text_.fail("the header names no format; the file is damaged");
-        // The data starts after this very line end, whatever bytes follow.
-        at_ = std::min(file_.bytes.find('\n', text_.offset()), file_.bytes.size() - 1) + 1;
+        // The data starts after this very line end, whatever bytes follow. The end of the first line tells of which
+        // kind.
+        const std::string& bytes = file_.bytes;
+        const std::size_t first = bytes.find_first_of("\r\n");
+        const bool returns = bytes[first] == '\r' && bytes.compare(first, 2, "\r\n") != 0; // alone, as on old Macs
+        at_ = std::min(bytes.find(returns ? '\r' : '\n', text_.offset()), bytes.size() - 1) + 1;
         if (ascii_) text_.next_line();
+    }
+
+    /// `comment` and `obj_info`, in capitals, with a colon, or a # as in other formats.
+    static bool is_comment(std::string_view word) {
+        std::string lower(word);
+        for (char& c : lower)
+            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        return lower.starts_with("comment") || lower.starts_with("obj_info") || lower.starts_with("#");
     }
 
     void read_format() {
@@ -166,7 +182,7 @@ private:
             if (index < 0 || index >= 0xffffffffll) fail("vertex index " + std::to_string(index) + " is out of range");
             corners_.push_back(static_cast<std::uint32_t>(index)); // faces may come before vertices
         }
-        append_fan(mesh_, corners_);
+        polygons_.append(mesh_, corners_);
     }
 
     void skip(const Property& property) {
@@ -220,12 +236,14 @@ private:
     std::vector<Element> elements_;
     std::vector<std::uint32_t> corners_;
     Mesh mesh_;
+    PolygonCutter polygons_;
 };
 
 } // namespace
 
 Mesh read_ply(const InputFile& file) {
-    return PlyReader(file).read();
+    InputFile room;
+    return PlyReader(as_utf8(file, room)).read();
 }
 
 } // namespace raycontact

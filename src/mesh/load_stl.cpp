@@ -94,10 +94,13 @@ Mesh read_stl(const InputFile& file) {
     const std::size_t size = file.bytes.size();
     const std::uint64_t facets = size >= header_size ? read_bytes<std::uint32_t>(file.bytes.data() + 80) : 0;
     if (size >= header_size && size == header_size + facets * facet_size) return read_binary(file, facets);
-    const std::size_t start = file.bytes.find_first_not_of(" \t\r\n");
+    InputFile room;
+    const InputFile& text = as_utf8(file, room);
+    const std::size_t mark = text.bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; // of the byte order
+    const std::size_t start = text.bytes.find_first_not_of(" \t\r\n", mark);
     if (start != std::string::npos
-        && (file.bytes.compare(start, 5, "solid") == 0 || file.bytes.compare(start, 5, "SOLID") == 0)) {
-        return AsciiStl(file).read();
+        && (text.bytes.compare(start, 5, "solid") == 0 || text.bytes.compare(start, 5, "SOLID") == 0)) {
+        return AsciiStl(text).read();
     }
     if (size < header_size) {
         file.fail("is neither an ASCII STL file (`solid`) nor long enough for a binary one; it is truncated or of "

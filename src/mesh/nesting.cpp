@@ -2,6 +2,7 @@
 #include "mesh/nesting.h"
 
 #include "mesh/measure.h"
+#include "mesh/useless.h"
 
 #include <algorithm>
 #include <array>
@@ -78,10 +79,12 @@ bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& 
 }
 
 /// The triangles of each patch that reach furthest along each axis, either way: if a patch pokes out of another, one of
-/// them usually shows that it is not inside. By place, not by index, so the order of a file does not matter.
+/// them usually shows that it is not inside. By place, not by index, so the order of a file does not matter. Degenerate
+/// triangles have no front to look from.
 std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& mesh, const Patches& patches) {
     std::vector<std::array<std::uint32_t, 6>> extremes(patches.list.size());
-    for (std::size_t p = 0; p < extremes.size(); ++p) extremes[p].fill(patches.list[p].first);
+    constexpr std::uint32_t none = 0xffffffffu;
+    for (std::array<std::uint32_t, 6>& extreme : extremes) extreme.fill(none);
     const auto reach = [&](std::uint32_t t, std::size_t way) {
         double most = -1e300;
         for (const std::uint32_t v : mesh.triangles[t])
@@ -89,22 +92,25 @@ std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& 
         return most;
     };
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (is_degenerate(mesh.triangles[t], mesh.vertices)) continue;
         std::array<std::uint32_t, 6>& best = extremes[patches.of[t]];
         for (std::size_t way = 0; way < 6; ++way) {
-            if (reach(t, way) > reach(best[way], way)) best[way] = t;
+            if (best[way] == none || reach(t, way) > reach(best[way], way)) best[way] = t;
         }
     }
+    for (std::size_t p = 0; p < extremes.size(); ++p)
+        if (extremes[p][0] == none) extremes[p].fill(patches.list[p].first);
     return extremes;
 }
 
-/// Whether an odd number of closed patches surrounds every given triangle of a patch. A patch surrounds a triangle if a
-/// ray from there crosses it an odd number of times.
-bool is_cavity(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh, const Patches& patches,
-               const TriangleBvh& bvh) {
+/// How many closed patches surround every given triangle of a patch. A patch surrounds a triangle if a ray from there
+/// crosses it an odd number of times.
+std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh,
+                           const Patches& patches, const TriangleBvh& bvh) {
     std::vector<std::uint32_t> around;
     std::vector<Crossing> crossings;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        if (!cast_from(from[k], mesh, bvh, crossings)) return false; // not known: not nested
+        if (!cast_from(from[k], mesh, bvh, crossings)) return 0; // not known: not nested
         std::map<std::uint32_t, std::size_t> times;
         for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
         if (k == 0) {
@@ -115,12 +121,13 @@ bool is_cavity(std::uint32_t own, std::span<const std::uint32_t> from, const Pre
         std::erase_if(around, [&](std::uint32_t patch) { return times[patch] % 2 == 0; });
         if (around.empty()) break;
     }
-    return around.size() % 2 == 1;
+    return around.size();
 }
 
 } // namespace
 
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh,
+                                  Nesting nesting) {
     const std::size_t count = patches.list.size();
     const Vec3 near = box_of(mesh.vertices).middle();
     std::vector<LongSum> volumes(count), sizes(count);
@@ -136,8 +143,17 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
         if (!patches.list[p].closed || !(std::fabs(volume) > 1e-12 * sizes[p].value())) continue;
-        const bool cavity = count > 1 && is_cavity(p, extremes[p], mesh, patches, bvh);
-        turn[p] = (volume < 0) != cavity ? 1 : 0;
+        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh) : 0; };
+        switch (nesting) {
+        case Nesting::as_wound:
+            turn[p] = volume < 0 && around() == 0 ? 1 : 0;
+            break;
+        case Nesting::cavities:
+            turn[p] = (volume < 0) != (around() % 2 == 1) ? 1 : 0;
+            break;
+        case Nesting::solids:
+            turn[p] = volume < 0 ? 1 : 0;
+        }
     }
     return turn;
 }

@@ -5,36 +5,19 @@
 #include "executor/float_environment.h"
 #include "mesh/check.h"
 #include "mesh/input_file.h"
+#include "mesh/lowest_equal.h"
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
+#include "mesh/useless.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
-#include <xxhash.h>
 
 namespace raycontact {
 namespace {
-
-/// The lowest index of an equal item, for each item, in linear time; -0 and 0 must have been made equal. Open
-/// addressing; items are visited in order, so the first of its kind is the lowest. No result depends on the hash.
-template <class Item>
-std::vector<std::uint32_t> lowest_equal(const std::vector<Item>& items) {
-    constexpr std::uint32_t empty = 0xffffffffu;
-    const std::size_t slots = std::bit_ceil(2 * items.size() + 1);
-    std::vector<std::uint32_t> table(slots, empty), lowest;
-    lowest.reserve(items.size());
-    for (std::uint32_t i = 0; i < items.size(); ++i) {
-        std::size_t slot = XXH3_64bits(&items[i], sizeof(Item)) & (slots - 1);
-        while (table[slot] != empty && items[table[slot]] != items[i]) slot = (slot + 1) & (slots - 1);
-        if (table[slot] == empty) table[slot] = i;
-        lowest.push_back(table[slot]);
-    }
-    return lowest;
-}
 
 /// The triangles of the file over file vertices, the lowest of each place.
 PreparedMesh weld(const Mesh& mesh) {
@@ -47,12 +30,6 @@ PreparedMesh weld(const Mesh& mesh) {
     prepared.triangle_index.resize(mesh.triangles.size());
     std::iota(prepared.triangle_index.begin(), prepared.triangle_index.end(), 0u);
     return prepared;
-}
-
-/// Whether a vertex occurs twice or all three lie on one line, exactly.
-bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
-    const auto [a, b, c] = triangle;
-    return a == b || b == c || c == a || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
 }
 
 std::vector<Vec3> all_snapped(std::span<const Vec3> vertices) {
@@ -73,30 +50,23 @@ std::string counted(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// Drops the triangles for which drop(i) holds, and reports how many.
-template <class Drop>
-void drop_triangles(PreparedMesh& prepared, const char* kind, Drop&& drop) {
+/// Drops what drop_useless() finds, and reports how many.
+void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
+    const Dropped dropped = drop_useless(prepared.triangles, vertices);
     std::size_t kept = 0;
-    const std::size_t before = prepared.triangles.size();
-    for (std::size_t i = 0; i < before; ++i) {
-        if (drop(i)) continue;
+    for (std::size_t i = 0; i < prepared.triangles.size(); ++i) {
+        if (dropped.triangles[i]) continue;
         prepared.triangles[kept] = prepared.triangles[i];
         prepared.triangle_index[kept++] = prepared.triangle_index[i];
     }
     prepared.triangles.resize(kept);
     prepared.triangle_index.resize(kept);
-    if (kept < before) prepared.report.repairs.push_back("dropped " + counted(before - kept, kind));
-}
-
-/// Drops degenerate triangles, and those with the vertices and the winding of an earlier one.
-void drop_useless(PreparedMesh& prepared, std::span<const Vec3> vertices) {
-    std::vector<Triangle>& triangles = prepared.triangles;
-    drop_triangles(prepared, "degenerate triangle",
-                   [&](std::size_t i) { return is_degenerate(triangles[i], vertices); });
-    std::vector<Triangle> turned(triangles); // rotated so that the lowest vertex comes first
-    for (Triangle& t : turned) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    const std::vector<std::uint32_t> lowest = lowest_equal(turned);
-    drop_triangles(prepared, "duplicate triangle", [&](std::size_t i) { return lowest[i] != i; });
+    std::vector<std::string>& repairs = prepared.report.repairs;
+    if (dropped.degenerate > 0) repairs.push_back("dropped " + counted(dropped.degenerate, "degenerate triangle"));
+    if (dropped.duplicate > 0) repairs.push_back("dropped " + counted(dropped.duplicate, "duplicate triangle"));
+    if (dropped.split > 0)
+        repairs.push_back("split " + counted(dropped.split, "triangle") + " at a corner of another, in place of "
+                          + counted(dropped.split, "degenerate triangle"));
 }
 
 /// Replaces file vertices by the distinct ones in use.
@@ -116,9 +86,8 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
-/// Makes the windings of each orientable patch agree with the majority, then turns closed patches whose winding
-/// contradicts their nesting.
-void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh) {
+/// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told.
+void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -126,7 +95,7 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
         const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
         if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
     }
-    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh);
+    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh, nesting);
     std::size_t mended = 0, turned_whole = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const std::uint32_t p = patches.of[i];
@@ -139,9 +108,9 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
     if (mended > 0)
         prepared.report.repairs.push_back("turned " + counted(mended, "triangle") + " to make windings agree");
     if (turned_whole > 0) {
-        prepared.report.repairs.push_back("turned " + counted(turned_whole, "component") + " of "
-                                          + std::to_string(patches.list.size())
-                                          + " whose winding contradicts its nesting");
+        prepared.report.repairs.push_back(
+            "turned " + counted(turned_whole, "component") + " of " + std::to_string(patches.list.size())
+            + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
     }
 }
 
@@ -152,7 +121,7 @@ Executor executor_for(std::size_t triangles) {
 
 } // namespace
 
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
@@ -164,7 +133,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
                              + " is further than 1e9 m from the origin; scale the mesh");
     }
     PreparedMesh prepared = weld(mesh);
-    if (repair == Repair::allowed) drop_useless(prepared, mesh.vertices);
+    if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
     Executor executor = executor_for(prepared.triangles.size());
@@ -176,7 +145,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair) {
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
-        mend_windings(prepared, patches, bvh);
+        mend_windings(prepared, patches, bvh, nesting);
         edges = sorted_half_edges(prepared.triangles);
     }
     prepared.report.file_vertices = mesh.vertices.size();

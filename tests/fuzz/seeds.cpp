@@ -72,6 +72,18 @@ int main(int argc, char** argv) {
     root = argv[1];
     const Mesh mesh = test::box();
     write("obj/sound", test::as_obj(mesh));
+    // An L, a square with a bridge to its hole, a corner on a side: polygons that are no fans.
+    const std::string places = "v 0 0 0\nv 6 0 0\nv 6 2 0\nv 2 2 0\nv 2 6 0\nv 0 6 0\nv 1 1 1\nv 1 3 0\n";
+    write("obj/polygons", places + "f 1 2 3 4 5 6\nf 4 1 2 3 5 6 1 4 8\nf -8 -5 -2 -1 9\nf 1 4 6 2\nv 3 0 0\n");
+    std::string wide = "\xff\xfe";
+    for (const char c : "# \xe9\n" + places + "f 1 2 3 4 5 6\nf 1 2 7\n") wide += {c, '\0'};
+    write("obj/utf16", wide);
+    write("off/polygons", "OFF\n6 2 0\n0 0 0\n6 0 0\n6 2 0\n2 2 0\n2 6 0\n0 6 0\n6 0 1 2 3 4 5\n5 0 1 1 3 5 255 0 0\n");
+    write("ply/polygons",
+          "ply\rcomment faces first\rformat ascii 1.0 { as described }\rmade by hand\relement face 2\r"
+          "property list uchar int vertex_index\relement vertex 6\rproperty float x\rproperty float y\r"
+          "property float z\rend_header\r6 0 1 2 3 4 5 { an L }\r4 5 3 1 0\r0 0 0\r6 0 0\r6 2 0\r2 2 0\r"
+          "2 6 0\r0 6 0\r");
     write("off/sound", test::as_off(mesh));
     write("stl/ascii", test::as_ascii_stl(mesh));
     write("stl/binary", test::as_binary_stl(mesh));
@@ -79,6 +91,8 @@ int main(int argc, char** argv) {
     write("ply/little", test::as_binary_ply(mesh, false));
     write("ply/big", test::as_binary_ply(mesh, true));
     write("gltf/binary", test::as_glb(mesh));
+    write("gltf/draco", R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]})");
+    write("gltf/version_1", R"({"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":[]}},"meshes":{}})");
     // m.bin is the target's: a torus
     write("gltf/with_buffer", test::gltf_json(test::torus(6, 4, 1, 0.3), R"([{"mesh":0,"scale":[1,2,1]}])", "m.bin"));
     write("recording/certified", blocks(Method::certified));

@@ -90,6 +90,24 @@ Mesh sound() {
 TEST(FuzzMesh, Obj) {
     fuzz(&read_obj, as_obj(sound()), rounds);
 }
+/// A prism over a concave polygon, with a corner on a side, and its faces before the last vertices.
+std::string polygons() {
+    return "v 0 0 0\nv 9 0 0\nv 9 9 0\nv 6 9 0\nv 6 3 0\nv 3 3 0\nv 3 9 0\nv 0 9 0\nv 0 4 0\nv 0 0 2\nv 9 0 2\n"
+           "v 9 9 2\nv 6 9 2\nv 6 3 2\nv 3 3 2\nf 9 8 7 6 5 4 3 2 1\nf 10 11 12 13 14 15 16 17 18\nf 1 2 11 10\n"
+           "f 2 3 12 11\nf 3 4 13 12\nf 4 5 14 13\nf 5 6 15 14\nf 6 7 16 15\nf 7 8 17 16\nf 8 9 18 17\nf 9 1 10 18\n"
+           "v 3 9 2\nv 0 9 2\nv 0 4 2\n";
+}
+TEST(FuzzMesh, ObjOfPolygons) {
+    fuzz(&read_obj, polygons(), rounds);
+}
+TEST(FuzzMesh, ObjInUtf16) {
+    std::string wide = "\xff\xfe";
+    for (const char c : as_obj(sound())) {
+        wide += c;
+        wide += '\0';
+    }
+    fuzz(&read_obj, wide, rounds);
+}
 TEST(FuzzMesh, Off) {
     fuzz(&read_off, as_off(sound()), rounds);
 }

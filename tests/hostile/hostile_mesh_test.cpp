@@ -249,6 +249,29 @@ TEST(HostileMesh, Ply) {
     refused(folder.write("point.ply", replaced(ascii, "3 0 4 5", "1 0")));
 }
 
+TEST(HostileMesh, PlyHeaderLinesThatMayBeALostProperty) {
+    const TempFolder folder;
+    for (const std::string& file : {as_ascii_ply(sound()), as_binary_ply(sound())}) {
+        refused(folder.write("t.ply", replaced(file, "property double z", "propertly double z")));
+        refused(folder.write("t.ply", replaced(file, "element face", "Created by\nelement face")));
+        refused(folder.write("t.ply", file.substr(0, file.find("end_header") + 10)));
+        std::string alone = file.substr(0, file.find("end_header") + 11);
+        std::ranges::replace(alone, '\n', '\r');
+        refused(folder.write("t.ply", alone));
+        refused(folder.write("t.ply", "ply\r"));
+        refused(folder.write("t.ply", "ply\rend_header"));
+    }
+}
+
+TEST(HostileMesh, Utf16) {
+    const TempFolder folder;
+    for (const char* name : {"t.obj", "t.off", "t.ply", "t.stl"}) {
+        for (const std::string& text : {std::string("\xff\xfe"), std::string("\xfe\xff"), std::string("\xff\xfe\0", 3),
+                                        std::string("\xff\xfe\xd8\xd8", 4), std::string("\xfe\xff\xd8\0\0f", 6)})
+            refused(folder.write(name, text));
+    }
+}
+
 TEST(HostileMesh, Off) {
     const TempFolder folder;
     const std::string file = as_off(sound());
@@ -395,10 +418,55 @@ TEST(HostileMesh, GltfErrorsSayWhatIsWrongAndWhere) {
     for (const auto& [old, with, words] : cases)
         expect(refused(folder.write("t.glb", glb(replaced(json, old, with), buffer))), words);
     expect(refused(folder.write("t.gltf", json)), "buffers[0] has no uri");
-    expect(refused(folder.write("t.glb", as_glb(sound()).replace(4, 1, "\1"))), "is not of GLB version 2");
+    expect(refused(folder.write("t.glb", as_glb(sound()).replace(4, 1, "\1"))), "is of glTF 1.0");
     expect(refused(folder.write("t.glb", as_glb(sound()).replace(10, 1, "\1"))),
            "fewer bytes than its GLB header says");
     expect(refused(folder.write("t.glb", "glTF")), "fewer bytes than its GLB header says");
+}
+
+TEST(HostileMesh, GltfOfAnotherKindIsCalledByItsName) {
+    const TempFolder folder;
+    const std::string json = gltf_json(sound(), R"([{"mesh":0}])", ""), buffer = gltf_buffer(sound());
+    struct Case {
+        const char *old, *with, *words;
+    };
+    const std::vector<Case> cases{
+        {R"({"asset")", R"({"extensionsRequired":["KHR_draco_mesh_compression"],"asset")", "compressed with Draco"},
+        {R"("indices":1})", R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}})", nullptr},
+        {R"("bufferView":0,)", "", "neither a bufferView"},
+        {R"({"asset")", R"({"extensionsRequired":["EXT_meshopt_compression"],"asset")", "compressed with meshopt"},
+        {R"({"asset")", R"({"extensionsRequired":["KHR_meshopt_compression"],"asset")", "compressed with meshopt"},
+        {R"("2.0")", R"("1.0")", "of glTF 1.0"},
+        {R"("2.0")", R"("1.1")", "of glTF 1.0"},
+        {R"("2.0")", "1.0", "of glTF 1.0"},
+        {R"("2.0")", R"("3.0")", "version is 2"}};
+    for (const auto& [old, with, words] : cases) {
+        const auto file = folder.write("t.glb", glb(replaced(json, old, with), buffer));
+        if (words == nullptr) {
+            EXPECT_EQ(load_mesh(file).triangles.size(), 48u); // it has the plain data, too
+            continue;
+        }
+        const std::string error = refused(file);
+        EXPECT_NE(error.find(words), std::string::npos) << error;
+    }
+    const auto expect = [&](const std::string& text, const char* words) {
+        const std::string error = refused(folder.write("t.gltf", text));
+        EXPECT_NE(error.find(words), std::string::npos) << error;
+    };
+    std::string squeezed = replaced(json, R"("indices":1})",
+                                    R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}})");
+    squeezed = replaced(squeezed, R"("bufferView":0,"componentType")", R"("componentType")");
+    EXPECT_NE(refused(folder.write("t.glb", glb(squeezed, buffer))).find("compressed with Draco"), std::string::npos);
+    expect(replaced(json, R"({"byteLength":864)",
+                    R"({"extensions":{"EXT_meshopt_compression":{"fallback":true}},"byteLength":864)"),
+           "compressed with meshopt");
+    // As exporters wrote it: objects in place of lists, names for numbers.
+    expect(R"({"asset":{"generator":"COLLADA2GLTF","version":"1.0"},"scene":"defaultScene","scenes":{},"meshes":{}})",
+           "of glTF 1.0");
+    expect(R"({"scene":"defaultScene","scenes":{"defaultScene":{"nodes":["n"]}},"nodes":{"n":{}},"meshes":{}})",
+           "of glTF 1.0");
+    const std::string binary("glTF\1\0\0\0\x20\0\0\0\x4\0\0\0\0\0\0\0{}  ", 24);
+    EXPECT_NE(refused(folder.write("t.glb", binary)).find("of glTF 1.0"), std::string::npos);
 }
 
 TEST(HostileMesh, ManyPrimitivesInManyNodesAreNoLongWait) {

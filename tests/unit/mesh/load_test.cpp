@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <tiny_obj_loader.h>
 
+#include <bit>
 #include <clocale>
 #include <cstdlib>
 #include <locale>
@@ -201,6 +202,86 @@ TEST(Load, PlyOtherElementsPolygonsAndTypes) {
         "property uchar flags\r\nproperty list uint8 uint32 vertex_index\r\nelement edge 1\r\nproperty int a\r\n"
         "end_header\r\n2 0.5 nan 1\r\n0 2\r\n0 0 0\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n9 4 3 2 1 0\r\n5\r\n"));
     EXPECT_EQ(mesh.triangles, (Triangles{{3, 2, 1}, {3, 1, 0}}));
+}
+
+TEST(Load, PlyHeadersWithOddComments) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    for (const bool binary : {false, true}) {
+        const std::string file = binary ? as_binary_ply(made) : as_ascii_ply(made);
+        const auto with = [&](const std::string& before, const std::string& lines) {
+            std::string changed = file;
+            const std::size_t at = changed.find(before);
+            EXPECT_NE(at, std::string::npos) << before;
+            return changed.insert(at, lines);
+        };
+        for (const std::string& changed :
+             {with("format ", "comment before the format\n"),
+              with("element vertex", "obj_info\nobj_info x 1\n\n \t \n"),
+              with("property double y", "comment\ncomment element face 9\n"),
+              with("element face", "\tcomment\ttabs\t\n"), with("end_header", "comment the last\n"),
+              with("end_header", "COMMENT in capitals\n"),
+              with("end_header", "comment: with a colon\n#\n# as elsewhere\n"),
+              with("element vertex", "Created by Blender3D 247 - www.blender.org, source file: \n"),
+              with("element vertex", "comment a return alone\r\n"), with("\nelement face", " { number of faces }")}) {
+            SCOPED_TRACE(changed.substr(0, 300));
+            expect_equal(load_mesh(folder.write("m.ply", changed)), made);
+        }
+    }
+    const std::string explained = // as the description of the format has it
+        "ply\nformat ascii 1.0 { ascii/binary, format version number }\ncomment made by anonymous { comments }\n"
+        "element vertex 3 { define \"vertex\" element, 3 of them in file }\nproperty float x { coordinate }\n"
+        "property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_index\n"
+        "end_header { delimits the end of the header }\n0 0 0 { start of vertex list }\n1 0 0\n0 1 0\n3 0 1 2 { a face "
+        "}\n";
+    EXPECT_EQ(load_mesh(folder.write("m.ply", explained)).triangles, (Triangles{{0, 1, 2}}));
+}
+
+TEST(Load, PlyHeadersWithEachLineEnd) {
+    const TempFolder folder;
+    Mesh made = box();
+    made.vertices[0].x = std::bit_cast<double>(0x3fe0000000000d0aull); // the data begins with \n \r
+    for (const bool big : {false, true}) {
+        const std::string file = as_binary_ply(made, big);
+        const std::size_t data = file.find("end_header\n") + 11;
+        for (const char* end : {"\n", "\r", "\r\n"}) {
+            std::string changed;
+            for (const char c : file.substr(0, data)) changed += c == '\n' ? std::string(end) : std::string(1, c);
+            expect_equal(load_mesh(folder.write("m.ply", changed + file.substr(data))), made);
+        }
+    }
+}
+
+/// With a byte order mark.
+std::string utf16(const std::u16string& text, bool little) {
+    std::string out;
+    put(out, std::uint16_t{0xfeff}, !little);
+    for (const char16_t c : text) put(out, static_cast<std::uint16_t>(c), !little);
+    return out;
+}
+std::string utf16(const std::string& ascii, bool little) {
+    return utf16(std::u16string(ascii.begin(), ascii.end()), little);
+}
+
+TEST(Load, TextInUtf16OrWithAByteOrderMark) {
+    const TempFolder folder;
+    const Mesh made = odd_mesh();
+    const std::vector<std::pair<std::string, std::string>> files{
+        {"m.obj", as_obj(made)}, {"m.off", as_off(made)}, {"m.ply", as_ascii_ply(made)}, {"m.stl", as_ascii_stl(made)}};
+    for (const auto& [name, text] : files) {
+        const Mesh wanted = load_mesh(folder.write(name, text));
+        expect_equal(load_mesh(folder.write(name, utf16(text, true))), wanted);
+        expect_equal(load_mesh(folder.write(name, utf16(text, false))), wanted);
+        expect_equal(load_mesh(folder.write(name, "\xef\xbb\xbf" + text)), wanted);
+        EXPECT_NE(error_of(folder.write(name, utf16(text, true) + "x")).find("odd number of bytes"), std::string::npos);
+    }
+    // Names that are not ASCII: two bytes, three, a pair, half of one.
+    std::u16string named = {u'o', u' ', 0xe9, 0x20ac, 0xd83d, 0xde00, 0xd83d, u'\n'};
+    for (const char c : as_obj(made)) named += static_cast<char16_t>(c);
+    expect_equal(load_mesh(folder.write("m.obj", utf16(named, false))), made);
+    expect_equal(load_mesh(folder.write("m.obj", utf16(named, true))), made);
+    EXPECT_NE(error_of(folder.write("e.obj", utf16("v 0 0 0\nv 1 x 0\n", true))).find("e.obj: line 2: coordinate 'x'"),
+              std::string::npos);
 }
 
 TEST(Load, ErrorsNameTheLineOrTheElement) {

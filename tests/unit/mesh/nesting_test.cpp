@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace raycontact;
 using namespace raycontact::test;
 
@@ -31,20 +33,64 @@ TEST(Nesting, CavityStays) {
     EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
 }
 
-TEST(Nesting, TurnsWhatContradicts) {
-    const MeshReport report = prepare_mesh(nested({true, true})).report;
+PreparedMesh prepared(std::initializer_list<bool> outward, Nesting nesting) {
+    return prepare_mesh(nested(outward), Repair::allowed, nesting);
+}
+
+TEST(Nesting, PartsInPartsStayAsTheFileHasThem) {
+    const MeshReport report = prepared({true, true}, Nesting::as_wound).report;
+    EXPECT_TRUE(report.repairs.empty());
+    EXPECT_TRUE(report.closed && report.oriented && !report.self_intersecting);
+    EXPECT_FALSE(report.outward); // the winding number is 2 in the inner one
+    EXPECT_NEAR(report.volume, 1000 + 512, 1e-9);
+    EXPECT_NEAR(prepared({true, false, true, true, false}, Nesting::as_wound).report.volume, 1000 - 512 + 216 + 64 - 8,
+                1e-9);
+}
+
+TEST(Nesting, OnlyOutermostPartsThatAreInsideOutAreTurned) {
+    for (const bool inner : {true, false}) {
+        const PreparedMesh mesh = prepared({false, inner}, Nesting::as_wound);
+        EXPECT_EQ(mesh.report.repairs, Words{"turned 1 component of 2 that wound inward"});
+        EXPECT_NEAR(mesh.report.volume, inner ? 1512 : 488, 1e-9);
+        const Mesh file = nested({false, inner});
+        EXPECT_TRUE(std::equal(mesh.triangles.begin() + 12, mesh.triangles.end(), file.triangles.begin() + 12));
+    }
+}
+
+TEST(Nesting, CavitiesAreMadeWhenAskedFor) {
+    const MeshReport report = prepared({true, true}, Nesting::cavities).report;
     EXPECT_EQ(report.repairs, Words{"turned 1 component of 2 whose winding contradicts its nesting"});
     EXPECT_TRUE(report.outward);
     EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
-    EXPECT_EQ(prepare_mesh(nested({false, true})).report.repairs,
+    EXPECT_EQ(prepared({false, true}, Nesting::cavities).report.repairs,
               Words{"turned 2 components of 2 whose winding contradicts its nesting"});
 }
 
 TEST(Nesting, AlternatesWithDepth) {
-    const MeshReport report = prepare_mesh(nested({true, false, true, true, false})).report;
+    const MeshReport report = prepared({true, false, true, true, false}, Nesting::cavities).report;
     EXPECT_EQ(report.repairs, Words{"turned 2 components of 5 whose winding contradicts its nesting"});
     EXPECT_TRUE(report.outward);
     EXPECT_NEAR(report.volume, 1000 - 512 + 216 - 64 + 8, 1e-9);
+}
+
+TEST(Nesting, CavitiesAreUndoneWhenAskedFor) {
+    const MeshReport report = prepared({true, false, true, false}, Nesting::solids).report;
+    EXPECT_EQ(report.repairs, Words{"turned 2 components of 4 that wound inward"});
+    EXPECT_NEAR(report.volume, 1000 + 512 + 216 + 64, 1e-9);
+    EXPECT_FALSE(report.outward);
+    EXPECT_TRUE(prepared({true, false}, Nesting::as_wound).report.outward);
+}
+
+TEST(Nesting, ADegenerateTriangleDoesNotHideThatAPartIsInside) {
+    // Its corner reaches furthest: the inner box has one on an edge, on both sides, so that nothing can be split.
+    Mesh mesh = nested({true, false});
+    for (int k = 0; k < 2; ++k) {
+        mesh.vertices.push_back({9, 5.0 + k, 9});
+        mesh.triangles.push_back({13, 15, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
+    }
+    const MeshReport report = prepare_mesh(mesh, Repair::allowed, Nesting::cavities).report;
+    EXPECT_TRUE(report.closed);
+    EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
 }
 
 TEST(Nesting, AsIsChangesNothingAndSaysSo) {
@@ -64,7 +110,7 @@ TEST(Nesting, BesideIsNotInside) {
     turn_over(away);
     append(mesh, away, {0, 0, 3});
     const MeshReport report = prepare_mesh(mesh).report;
-    EXPECT_EQ(report.repairs, Words{"turned 1 component of 3 whose winding contradicts its nesting"});
+    EXPECT_EQ(report.repairs, Words{"turned 1 component of 3 that wound inward"});
     EXPECT_TRUE(report.outward);
 }
 
@@ -91,7 +137,7 @@ TEST(Nesting, ManySolidsInAShell) {
     for (int i = 0; i < 6; ++i) {
         for (int k = 0; k < 6; ++k) append_box(mesh, {2.0 + i, 2.0 + k, 3}, {2.7 + i, 2.7 + k, 4}, (i + k) % 2 == 0);
     }
-    const MeshReport report = prepare_mesh(mesh).report;
+    const MeshReport report = prepare_mesh(mesh, Repair::allowed, Nesting::cavities).report;
     EXPECT_EQ(report.repairs, Words{"turned 18 components of 38 whose winding contradicts its nesting"});
     EXPECT_TRUE(report.outward);
     EXPECT_EQ(report.components, 38u);

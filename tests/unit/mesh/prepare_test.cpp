@@ -5,10 +5,12 @@
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
+#include <raycontact/shape.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <random>
 
@@ -78,6 +80,189 @@ TEST(Prepare, DropsDegenerateAndDuplicateTrianglesOnlyWhenAllowed) {
     EXPECT_TRUE(as_is.report.repairs.empty());
     EXPECT_FALSE(as_is.report.manifold);
     EXPECT_TRUE(as_is.report.self_intersecting); // the duplicate
+}
+
+/// Puts a corner on an edge of a closed mesh: the triangle on one side is halved there, and a degenerate one joins both
+/// halves to the whole one on the other side. Closed, as exporters of STL leave it.
+void add_corner_on_edge(Mesh& mesh, std::uint32_t triangle, std::size_t side) {
+    const auto [a, b, c] = [&] {
+        auto t = mesh.triangles[triangle];
+        std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(side), t.end());
+        return t;
+    }();
+    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b];
+    const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2}); // exact: coordinates are multiples
+    mesh.triangles[triangle] = {a, middle, c};
+    mesh.triangles.push_back({middle, b, c});
+    mesh.triangles.push_back({a, b, middle});
+}
+
+/// A torus whose coordinates can be halved many times without a rounding.
+Mesh lattice_torus(std::uint32_t around, std::uint32_t across) {
+    Mesh mesh = torus(around, across, 1, 0.3);
+    const auto round = [](double x) { return std::round(x * 1024) / 1024; };
+    for (Vec3& v : mesh.vertices) v = {round(v.x), round(v.y), round(v.z)};
+    return mesh;
+}
+
+TEST(Repair, ACornerOnASideDoesNotOpenAClosedMesh) {
+    Mesh mesh = box();
+    add_corner_on_edge(mesh, 4, 1);
+    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    const PreparedMesh prepared = prepare_mesh(mesh);
+    EXPECT_EQ(prepared.report.repairs,
+              (std::vector<std::string>{"split 1 triangle at a corner of another, in place of 1 degenerate triangle"}));
+    EXPECT_TRUE(prepared.report.closed && prepared.report.manifold && prepared.report.oriented);
+    EXPECT_TRUE(prepared.report.outward);
+    EXPECT_FALSE(prepared.report.self_intersecting);
+    EXPECT_EQ(prepared.report.triangles, 14u);
+    EXPECT_DOUBLE_EQ(prepared.report.volume, 1);
+}
+
+TEST(Repair, SeveralCornersOnOneSide) {
+    Mesh mesh = box();
+    add_corner_on_edge(mesh, 4, 1);
+    add_corner_on_edge(mesh, 4, 0); // once more in the half
+    add_corner_on_edge(mesh, 4, 0);
+    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    const MeshReport report = prepare_mesh(mesh).report;
+    EXPECT_TRUE(report.closed && report.manifold && report.outward && !report.self_intersecting);
+    EXPECT_DOUBLE_EQ(report.volume, 1);
+}
+
+TEST(Repair, ADegenerateTriangleThatNothingCanReplaceStays) {
+    // Two corners on a side of the one face, between them one on that of the other: halves on both sides.
+    Mesh mesh{"m",
+              {{0, 0, 0}, {4, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}, {2, 0, 0}},
+              {{0, 2, 1}, {0, 4, 3}, {4, 5, 3}, {5, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 4}, {4, 1, 5}}};
+    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    EXPECT_TRUE(prepare_mesh(mesh).report.closed);
+    // Each edge of the degenerate one has three others: it cannot be exchanged for halves.
+    Mesh pinched{"p", {{0, 0, 0}, {4, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
+    constexpr std::array<std::array<std::uint32_t, 2>, 3> sides{{{0, 1}, {0, 2}, {2, 1}}};
+    for (const auto& [from, to] : sides) {
+        for (int k = 0; k < 3; ++k) {
+            const auto apex = static_cast<std::uint32_t>(pinched.vertices.size());
+            pinched.vertices.push_back({1.0 * apex, 1.0 * apex * apex, 10 + 1.0 * apex * apex * apex});
+            pinched.triangles.push_back({from, to, apex});
+        }
+    }
+    const MeshReport as_is = prepare_mesh(pinched, Repair::as_is).report, repaired = prepare_mesh(pinched).report;
+    EXPECT_EQ(repaired.triangles, 10u); // open elsewhere, but not here
+    EXPECT_EQ(as_is.triangles, 10u);
+}
+
+TEST(Repair, DuplicatesGoOnlyWhereNothingOpens) {
+    Mesh doubled = box();
+    append(doubled, box());
+    ASSERT_TRUE(prepare_mesh(doubled, Repair::as_is).report.closed);
+    EXPECT_EQ(prepare_mesh(doubled).report.repairs, std::vector<std::string>{"dropped 12 duplicate triangles"});
+    EXPECT_TRUE(prepare_mesh(doubled).report.outward);
+
+    Mesh thrice = doubled;
+    append(thrice, box());
+    EXPECT_EQ(prepare_mesh(thrice).report.repairs, std::vector<std::string>{"dropped 24 duplicate triangles"});
+
+    // A fin of two equal triangles has an even number at each edge, and is closed so.
+    Mesh fin = box();
+    fin.vertices.push_back({2, 2, 2});
+    fin.triangles.push_back({0, 1, 8});
+    fin.triangles.push_back({0, 1, 8});
+    ASSERT_TRUE(prepare_mesh(fin, Repair::as_is).report.closed);
+    EXPECT_TRUE(prepare_mesh(fin).report.closed);
+
+    // Of an open mesh they go.
+    Mesh sheet{"sheet", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {2, 1, 3}, {1, 2, 0}}};
+    EXPECT_EQ(prepare_mesh(sheet).report.repairs, std::vector<std::string>{"dropped 1 duplicate triangle"});
+}
+
+TEST(Repair, ManyAtOneEdgeAreNoLongWait) {
+    Mesh mesh = box();
+    constexpr int many = 50000;
+    for (int i = 1; i < many; ++i) {
+        mesh.vertices.push_back({static_cast<double>(i) / many, 0, 0});
+        mesh.triangles.push_back({0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
+    }
+    const auto start = std::chrono::steady_clock::now();
+    prepare_mesh(mesh);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+/// Closed meshes with all that a repair may drop: the repaired mesh is closed, and as good as the mesh before.
+TEST(Repair, NeverOpensAClosedMesh) {
+    std::size_t closed = 0, opened_before = 0, split = 0;
+    for (std::uint32_t seed = 0; seed < 400; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937 random(seed);
+        const auto any = [&](std::size_t count) { return static_cast<std::uint32_t>(random() % count); };
+        Mesh mesh = seed % 3 == 0 ? box(4) : lattice_torus(5 + any(4), 4 + any(3));
+        if (seed % 5 == 0) append(mesh, box(4), {8, 0, 0});
+        const std::size_t sound = mesh.triangles.size();
+        bool only_corners = true;
+        for (int change = 0; change < 1 + static_cast<int>(random() % 8); ++change) {
+            switch (any(seed % 2 == 0 ? 1 : 7)) {
+            case 0:
+            case 1: { // on a triangle that has an area
+                add_corner_on_edge(mesh, any(sound), any(3));
+                break;
+            }
+            case 2: // a duplicate
+                mesh.triangles.push_back(mesh.triangles[any(mesh.triangles.size())]);
+                only_corners = false;
+                break;
+            case 3: { // the whole surface once more
+                const std::size_t count = mesh.triangles.size();
+                if (count > 400) break;
+                for (std::size_t i = 0; i < count; ++i) mesh.triangles.push_back(mesh.triangles[i]);
+                only_corners = false;
+                break;
+            }
+            case 4: { // a degenerate triangle on an edge, once or twice
+                const auto t = mesh.triangles[any(sound)];
+                const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+                const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]];
+                mesh.vertices.push_back({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2});
+                for (std::uint32_t i = any(2); i < 2; ++i) mesh.triangles.push_back({t[0], t[1], middle});
+                only_corners = false;
+                break;
+            }
+            case 5: { // a fin, once or twice
+                const auto t = mesh.triangles[any(sound)];
+                mesh.vertices.push_back({9, 9, 9});
+                const auto tip = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+                for (std::uint32_t i = any(2); i < 2; ++i) mesh.triangles.push_back({t[0], t[1], tip});
+                only_corners = false;
+                break;
+            }
+            default: { // a vertex twice
+                const auto v = any(mesh.vertices.size());
+                mesh.triangles.push_back({v, any(mesh.vertices.size()), v});
+            }
+            }
+        }
+        std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
+        const MeshReport as_is = prepare_mesh(mesh, Repair::as_is).report;
+        const PreparedMesh once = prepare_mesh(mesh);
+        if (as_is.closed) {
+            ++closed;
+            EXPECT_TRUE(once.report.closed);
+        } else if (once.report.closed) {
+            ++opened_before;
+        }
+        if (only_corners) {
+            EXPECT_TRUE(once.report.closed && once.report.outward && !once.report.self_intersecting);
+            split += once.report.repairs.size();
+        }
+        const PreparedMesh twice = prepare_mesh({"m", once.vertices, once.triangles});
+        EXPECT_EQ(twice.triangles, once.triangles);
+        std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
+        EXPECT_EQ(prepare_mesh(mesh).report.closed, once.report.closed);
+        if (seed % 16 == 0) Shape::make(once); // can cast and be met, whatever stays
+    }
+    EXPECT_GT(closed, 200u);
+    EXPECT_GT(opened_before, 10u);
+    EXPECT_GT(split, 100u);
 }
 
 TEST(Prepare, OneTriangleTheOtherWay) {
@@ -167,16 +352,61 @@ Mesh jumble(std::uint32_t seed) {
 }
 
 TEST(Prepare, IsIdempotent) {
-    for (std::uint32_t seed = 0; seed < 20; ++seed) {
-        const PreparedMesh once = prepare_mesh(jumble(seed));
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        const Nesting nesting = static_cast<Nesting>(seed % 3);
+        const PreparedMesh once = prepare_mesh(jumble(seed), Repair::allowed, nesting);
         EXPECT_FALSE(once.report.repairs.empty());
-        const PreparedMesh twice = prepare_mesh({once.name, once.vertices, once.triangles});
+        const PreparedMesh twice = prepare_mesh({once.name, once.vertices, once.triangles}, Repair::allowed, nesting);
         EXPECT_EQ(twice.vertices, once.vertices);
         EXPECT_EQ(twice.triangles, once.triangles);
         EXPECT_TRUE(twice.report.repairs.empty());
         EXPECT_EQ(twice.report.volume, once.report.volume);
-        EXPECT_TRUE(twice.report.outward);
+        EXPECT_TRUE(twice.report.outward || nesting != Nesting::cavities);
     }
+}
+
+TEST(Report, NumbersAreInFull) {
+    Mesh mesh = box(1.0 / 3);
+    for (Vec3& v : mesh.vertices) v.z += 123456.789012345;
+    const MeshReport report = prepare_mesh(mesh).report;
+    const std::string words = to_text(report);
+    const auto read_back = [&](const char* key) {
+        return std::stod(words.substr(words.find(key) + 19)); // the column of values
+    };
+    EXPECT_EQ(read_back("volume "), report.volume);
+    EXPECT_EQ(read_back("area "), report.area);
+    EXPECT_NE(words.find("123456.789012345 "), std::string::npos) << words;
+    EXPECT_NE(words.find(" 0.3333333333333333 0.3333333333333333 "), std::string::npos) << words;
+}
+
+TEST(Report, Verdicts) {
+    const auto verdict = [](const Mesh& mesh, Repair repair = Repair::allowed) {
+        return verdict_of(prepare_mesh(mesh, repair).report);
+    };
+    EXPECT_TRUE(verdict(box()).good);
+    EXPECT_EQ(verdict(box()).text, "good for contacts");
+    const auto starts = [](const Verdict& said, const char* words) {
+        EXPECT_FALSE(said.good);
+        EXPECT_TRUE(said.text.starts_with(words)) << said.text;
+        EXPECT_EQ(said.text.find('\n'), std::string::npos);
+    };
+    Mesh open = box();
+    open.triangles.pop_back();
+    starts(verdict(open), "open: 3 border edges");
+    Mesh crossed = box();
+    append(crossed, box(), {0.5, 0.5, 0.5});
+    starts(verdict(crossed), "self-intersecting: ");
+    append(open, crossed, {5, 0, 0});
+    starts(verdict(open), "open: 3 border edges");
+    EXPECT_TRUE(verdict(open).text.ends_with("; also self-intersecting")) << verdict(open).text;
+    Mesh turned = box();
+    turn_over(turned);
+    starts(verdict(turned, Repair::as_is), "inside out: ");
+    std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+    starts(verdict(turned, Repair::as_is), "badly wound: ");
+    Mesh nested = box(4);
+    append(nested, box(), {1, 1, 1});
+    starts(verdict(nested), "nested: ");
 }
 
 TEST(Prepare, OrderOfTrianglesDoesNotMatter) {

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// raycontact mesh: several files, a verdict for each, --strict, --nested; the other commands' --nested.
+#include "expect.h"
+
+namespace {
+
+/// A cube with its lower corner there, of edge 1 unless told; its faces are numbered after `before` vertices.
+std::string cube_at(double at, double edge, int before) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+        text += "v";
+        for (const int bit : {1, 2, 4}) text.append(" ").append(std::to_string(at + ((i & bit) != 0 ? edge : 0.0)));
+        text += "\n";
+    }
+    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& face : faces) {
+        text += "f";
+        for (const int corner : face) text.append(" ").append(std::to_string(before + corner + 1));
+        text += "\n";
+    }
+    return text;
+}
+
+class MeshCommand : public testing::Test {
+protected:
+    MeshCommand() {
+        folder_.write("cube.obj", cube_obj());
+        std::string open = cube_obj();
+        folder_.write("open.obj", open.substr(0, open.rfind("f ")));
+        folder_.write("crossed.obj", cube_at(0, 1, 0) + cube_at(0.5, 1, 8));
+        folder_.write("nested.obj", cube_at(0, 4, 0) + cube_at(1, 1, 8));
+    }
+    ProgramResult run(const std::vector<std::string>& arguments) const {
+        return run_program(arguments, folder_.path());
+    }
+    /// Lines of text, without the last, empty one.
+    static std::vector<std::string> lines(const std::string& text) {
+        std::vector<std::string> all;
+        for (std::size_t from = 0; from < text.size(); from = text.find('\n', from) + 1)
+            all.push_back(text.substr(from, text.find('\n', from) - from));
+        return all;
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(MeshCommand, EndsWithAVerdictForEachFile) {
+    const auto one = run({"mesh", "cube.obj"});
+    EXPECT_EQ(one.status, 0);
+    EXPECT_EQ(lines(one.out).back(), "cube.obj: good for contacts");
+
+    const auto all = run({"mesh", "cube.obj", "open.obj", "crossed.obj", "nested.obj"});
+    EXPECT_EQ(all.status, 0) << all.err;
+    EXPECT_EQ(all.err, "");
+    const auto text = lines(all.out);
+    ASSERT_GT(text.size(), 8u);
+    const auto verdict = [&](std::size_t from_last) { return text[text.size() - from_last]; };
+    EXPECT_EQ(verdict(4), "cube.obj: good for contacts");
+    EXPECT_TRUE(verdict(3).starts_with("open.obj: open: 4 border edges")) << verdict(3);
+    EXPECT_TRUE(verdict(2).starts_with("crossed.obj: self-intersecting: ")) << verdict(2);
+    EXPECT_TRUE(verdict(1).starts_with("nested.obj: nested: ")) << verdict(1);
+}
+
+TEST_F(MeshCommand, JsonIsOneObjectAFile) {
+    const auto result = run({"mesh", "cube.obj", "open.obj", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto objects = json_lines(result.out);
+    ASSERT_EQ(objects.size(), 2u);
+    EXPECT_EQ(objects[0]["file"], "cube.obj");
+    EXPECT_EQ(objects[0]["verdict"], "good for contacts");
+    EXPECT_EQ(objects[0]["good"], true);
+    EXPECT_EQ(objects[0]["border_edges"], 0);
+    EXPECT_EQ(objects[1]["file"], "open.obj");
+    EXPECT_EQ(objects[1]["good"], false);
+    EXPECT_EQ(objects[1]["border_edges"], 4);
+}
+
+TEST_F(MeshCommand, StrictIsStatusTwoWhereOneIsBad) {
+    EXPECT_EQ(run({"mesh", "cube.obj", "cube.obj", "--strict"}).status, 0);
+    const auto one = run({"mesh", "open.obj", "--strict"});
+    EXPECT_EQ(one.status, 2);
+    EXPECT_TRUE(lines(one.out).back().starts_with("open.obj: open")); // what was found is printed all the same
+    EXPECT_EQ(one.err, "raycontact: --strict: not good for contacts: open.obj\n");
+    const auto two = run({"mesh", "open.obj", "cube.obj", "crossed.obj", "--strict", "--json"});
+    EXPECT_EQ(two.status, 2);
+    EXPECT_EQ(json_lines(two.out).size(), 3u);
+    EXPECT_EQ(two.err, "raycontact: --strict: not good for contacts: open.obj and 1 more\n");
+}
+
+TEST_F(MeshCommand, AFileThatCannotBeReadDoesNotStopTheOthers) {
+    folder_.write("bad.obj", "v 0 0 x\n");
+    const auto result = run({"mesh", "bad.obj", "cube.obj", "missing.obj"});
+    EXPECT_EQ(result.status, 2);
+    const auto text = lines(result.out);
+    ASSERT_GT(text.size(), 3u);
+    EXPECT_EQ(text[text.size() - 3], "bad.obj: refused: line 1: coordinate 'x' is not a number");
+    EXPECT_EQ(text[text.size() - 2], "cube.obj: good for contacts");
+    EXPECT_TRUE(text.back().starts_with("missing.obj: refused: no such file")) << text.back();
+    EXPECT_EQ(lines(result.err).size(), 2u) << result.err;
+    EXPECT_TRUE(result.err.starts_with("raycontact: bad.obj: line 1")) << result.err;
+    const auto json = run({"mesh", "bad.obj", "cube.obj", "--json"});
+    EXPECT_EQ(json.status, 2);
+    const auto objects = json_lines(json.out);
+    ASSERT_EQ(objects.size(), 2u);
+    EXPECT_EQ(objects[0]["file"], "bad.obj");
+    EXPECT_EQ(objects[0]["good"], false);
+    EXPECT_FALSE(objects[0].contains("closed"));
+    EXPECT_EQ(objects[1]["good"], true);
+    expect_refused(run({"mesh", "bad.obj"}), "bad.obj");
+}
+
+TEST_F(MeshCommand, PartsInPartsAreMadeCavitiesOrSolidsWhenAskedFor) {
+    const auto report = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"mesh", "nested.obj", "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        const auto result = run(words);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return json_lines(result.out).at(0);
+    };
+    EXPECT_DOUBLE_EQ(report({})["volume"], 65);
+    EXPECT_DOUBLE_EQ(report({"--nested", "as-wound"})["volume"], 65);
+    EXPECT_DOUBLE_EQ(report({"--nested", "cavities"})["volume"], 63);
+    EXPECT_EQ(report({"--nested", "cavities"})["good"], true);
+    EXPECT_DOUBLE_EQ(report({"--nested", "solids"})["volume"], 65);
+    expect_refused(run({"mesh", "nested.obj", "--nested", "caves"}), "--nested: 'caves' is unknown");
+    expect_refused(run({"mesh", "nested.obj", "--nested", "cavities", "--as-is"}), "--nested");
+}
+
+TEST_F(MeshCommand, CollideAndRunTakeTheSameWord) {
+    folder_.write("small.obj", cube_at(1.25, 0.5, 0)); // in the inner part of nested.obj
+    const auto contacts = [&](const char* word) {
+        const auto result = run({"collide", "small.obj", "nested.obj", "--json", "--nested", word});
+        EXPECT_EQ(result.status, 0) << result.err;
+        return json_lines(result.out).at(0)["contacts"].size();
+    };
+    EXPECT_EQ(contacts("cavities"), 0u);
+    EXPECT_GT(contacts("as-wound"), 0u);
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--nested", "no"}), "--nested");
+    expect_refused(run({"run", "avalanche", "--nested", "solids"}), "--nested");
+    EXPECT_EQ(run({"run", "--mesh", "nested.obj", "--nested", "cavities", "--steps", "2", "--bodies", "2"}).status, 0);
+}
+
+} // namespace
