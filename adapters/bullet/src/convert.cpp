@@ -178,6 +178,14 @@ std::uint64_t content_hash(const Mesh& mesh) {
     return hash;
 }
 
+/// A ball, or a capsule of two.
+bool is_round(const btMultiSphereShape& shape) {
+    const btVector3& scaling = shape.getLocalScaling();
+    if (!(scaling.x() > 0 && scaling.x() == scaling.y() && scaling.x() == scaling.z())) return false;
+    const int count = shape.getSphereCount();
+    return count == 1 || (count == 2 && shape.getSphereRadius(0) == shape.getSphereRadius(1));
+}
+
 } // namespace
 
 Kind kind_of(const btCollisionShape& shape) {
@@ -199,6 +207,8 @@ Kind kind_of(const btCollisionShape& shape) {
     case SPHERE_SHAPE_PROXYTYPE:
     case CAPSULE_SHAPE_PROXYTYPE:
         return Kind::round;
+    case MULTI_SPHERE_SHAPE_PROXYTYPE:
+        return is_round(static_cast<const btMultiSphereShape&>(shape)) ? Kind::round : Kind::convex;
     default:
         return has_stand_in(shape) ? Kind::convex : Kind::other;
     }

@@ -28,7 +28,7 @@ enum class Kind {
     plane,  ///< btStaticPlaneShape
     field,  ///< btHeightfieldTerrainShape
     convex, ///< one for which a mesh can stand: box, cylinder, cone, hull, multi-sphere
-    round,  ///< ball or capsule
+    round,  ///< ball or capsule, also as a multi-sphere of one ball, or of two equal ones
     other,  ///< left to Bullet
 };
 Kind kind_of(const btCollisionShape& shape);

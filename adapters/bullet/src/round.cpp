@@ -2,6 +2,7 @@
 #include <round.h>
 
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
@@ -211,6 +212,15 @@ Round round_of(const btCollisionShape& shape) {
     round.ends[1].setZero();
     if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
         round.radius = static_cast<const btSphereShape&>(shape).getRadius();
+        return round;
+    }
+    if (shape.getShapeType() == MULTI_SPHERE_SHAPE_PROXYTYPE) {
+        const auto& balls = static_cast<const btMultiSphereShape&>(shape);
+        const btScalar scaling = balls.getLocalScaling().x();
+        round.balls = balls.getSphereCount();
+        round.radius = balls.getSphereRadius(0) * scaling;
+        round.ends[0] = balls.getSpherePosition(0) * scaling;
+        round.ends[1] = balls.getSpherePosition(round.balls - 1) * scaling;
         return round;
     }
     const auto& capsule = static_cast<const btCapsuleShape&>(shape);
