@@ -76,7 +76,7 @@ TEST(Rest, OnBulletsBox) {
     TestWorld w;
     w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.5))), 0, at(0, 0, -0.5));
     expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);
-    EXPECT_EQ(w.dispatcher.stats().mesh_pairs, 1u);
+    EXPECT_EQ(w.dispatcher.stats().plane_pairs, 1u);
 }
 
 TEST(Rest, OnHeightField) {

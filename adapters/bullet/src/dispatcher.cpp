@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/dispatcher.h>
 
+#include <box_face.h>
 #include <pair.h>
 #include <plane.h>
 #include <query.h>
@@ -13,6 +14,7 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace raycontact::bullet {
 
@@ -50,6 +52,16 @@ bool is_whole(const btCollisionObjectWrapper& wrap) {
     return wrap.getCollisionShape() == wrap.getCollisionObject()->getCollisionShape();
 }
 
+btTransform world_pose(const PairState& state, bool of_0, const Leaf& leaf) {
+    return (of_0 ? state.object0 : state.object1)->getWorldTransform() * leaf.local;
+}
+
+HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
+    const bool plane_is_0 = a.kind == Kind::plane;
+    const Leaf& plane = plane_is_0 ? a : b;
+    return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
+}
+
 } // namespace
 
 struct CollisionDispatcher::State {
@@ -65,7 +77,8 @@ struct CollisionDispatcher::State {
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
     PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
-    void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    std::optional<HalfSpace> face_between(const PairState& state, const Leaf& a, const Leaf& b) const;
+    void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
     void hand_out(std::span<const Contact> contacts);
@@ -248,6 +261,10 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
             switch (work_for(la, lb)) {
             case Work::batch: {
+                if (const auto face = face_between(state, la, lb)) {
+                    add_plane(state, i, j, la, lb, *face);
+                    break;
+                }
                 const bool swapped = slot_of(la.body) > slot_of(lb.body);
                 const Pair pair = swapped ? Pair{lb.body, la.body} : Pair{la.body, lb.body};
                 const btScalar reach = manifolds.patch_reach * btMin(diagonal(la), diagonal(lb));
@@ -255,7 +272,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
                 break;
             }
             case Work::plane:
-                add_plane(state, i, j, la, lb);
+                add_plane(state, i, j, la, lb, plane_between(state, la, lb));
                 break;
             case Work::round:
                 add_round(state, i, j, la, lb);
@@ -271,15 +288,26 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+// The batch alone knows other directions, and what is coming.
+std::optional<HalfSpace> CollisionDispatcher::State::face_between(const PairState& state, const Leaf& a,
+                                                                  const Leaf& b) const {
+    const bool box_is_0 = a.kind == Kind::convex;
+    const Leaf& box = box_is_0 ? a : b;
+    const Leaf& mesh = box_is_0 ? b : a;
+    const Settings& settings = scene.settings();
+    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.continuous || settings.direction != Direction::reprojected)
+        return std::nullopt;
+    return only_face(mesh.converted, world_pose(state, !box_is_0, mesh), static_cast<const btBoxShape&>(*box.shape),
+                     world_pose(state, box_is_0, box));
+}
+
+void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b,
+                                           const HalfSpace& space) {
+    ++stats.plane_pairs;
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
-    const Leaf& plane = mesh_is_0 ? b : a;
-    const btTransform pose0 = state.object0->getWorldTransform() * a.local;
-    const btTransform pose1 = state.object1->getWorldTransform() * b.local;
-    btVector3 normal;
-    plane_contacts(mesh.converted, mesh_is_0 ? pose0 : pose1, static_cast<const btStaticPlaneShape&>(*plane.shape),
-                   mesh_is_0 ? pose1 : pose0, normal, below);
+    const btVector3& normal = space.normal;
+    plane_contacts(mesh.converted, world_pose(state, mesh_is_0, mesh), space, below);
     for (const PlaneContact& c : below) {
         const btVector3 on_plane = c.point + normal * c.depth;
         Candidate candidate;
@@ -299,8 +327,8 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
     const Leaf& ball = mesh_is_0 ? b : a;
-    const btTransform pose0 = state.object0->getWorldTransform() * a.local;
-    const btTransform pose1 = state.object1->getWorldTransform() * b.local;
+    const btTransform pose0 = world_pose(state, true, a);
+    const btTransform pose1 = world_pose(state, false, b);
     const Round round = round_of(*ball.shape);
     // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
     const btScalar reach =

@@ -93,10 +93,10 @@ void Queries::run_plane(const Placed& a, const Placed& b, btManifoldResult& resu
     const bool a_is_mesh = b.leaf.kind == Kind::plane;
     const Placed& mesh = a_is_mesh ? a : b;
     const Placed& plane = a_is_mesh ? b : a;
-    btVector3 normal;
+    const HalfSpace space = half_space(static_cast<const btStaticPlaneShape&>(*plane.leaf.shape), plane.pose);
+    const btVector3& normal = space.normal;
     std::vector<PlaneContact> found;
-    plane_contacts(mesh.leaf.converted, mesh.pose, static_cast<const btStaticPlaneShape&>(*plane.leaf.shape),
-                   plane.pose, normal, found);
+    plane_contacts(mesh.leaf.converted, mesh.pose, space, found);
     for (const PlaneContact& c : found) {
         const int vertex = static_cast<int>(mesh.leaf.converted.shape->vertex_index()[c.vertex]);
         result.setShapeIdentifiersA(a.index, a_is_mesh ? vertex : 0);

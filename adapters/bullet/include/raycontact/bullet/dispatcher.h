@@ -36,6 +36,7 @@ enum class ConvexShapes {
 struct DispatcherStats {
     std::uint64_t pairs = 0;          ///< pairs of objects that RayContact handled
     std::uint64_t mesh_pairs = 0;     ///< pairs of meshes, or their like, in its batch (a compound gives several)
+    std::uint64_t plane_pairs = 0;    ///< pairs of a mesh and a plane, or a box's face that it lies wholly over
     std::uint64_t round_pairs = 0;    ///< pairs of a mesh and a ball or capsule
     std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
