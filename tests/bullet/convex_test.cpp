@@ -116,6 +116,39 @@ TEST(Convex, CylinderRollsOnAMesh) {
     EXPECT_NEAR(double(at_end.z()), 0.5, 0.01);
 }
 
+/// Meshes and every convex shape on a heap, on a floor of Bullet's: nobody falls through, and it comes to rest.
+TEST(Convex, HeapOfEverythingComesToRest) {
+    TestWorld w;
+    w.add(std::make_unique<btBoxShape>(btVector3(6, 6, btScalar(0.5))), 0, at(0, 0, -0.5));
+    for (const double side : {-1.0, 1.0}) { // walls of meshes
+        w.add_mesh(Shape::make(box_mesh(0.5, 4.5, 20)), 0, at(2.25 * side, 0, 10));
+        w.add_mesh(Shape::make(box_mesh(4.5, 0.5, 20)), 0, at(0, 2.25 * side, 10));
+    }
+    const std::size_t first = w.bodies.size();
+    int place = 0; // four in a layer, apart
+    const auto next = [&] {
+        const double x = place % 2 ? 0.9 : -0.9, y = place / 2 % 2 ? 0.9 : -0.9;
+        return at(x, y, 0.9 + 1.4 * (place++ / 4));
+    };
+    for (int layer = 0; layer < 3; ++layer)
+        for (const Solid& solid : solids()) {
+            w.add(solid.make(), 2, next());
+            w.add_mesh((place / 2) % 2 ? table() : torus(), 2, next());
+        }
+    w.steps(600);
+    double fastest = 0;
+    for (std::size_t i = first; i < w.bodies.size(); ++i) {
+        const btRigidBody& body = *w.bodies[i];
+        const btVector3 o = body.getWorldTransform().getOrigin();
+        EXPECT_GT(double(o.z()), 0.02) << i;
+        EXPECT_LT(std::fabs(double(o.x())), 6) << i;
+        fastest = std::max(fastest, double(body.getLinearVelocity().length()));
+    }
+    EXPECT_LT(fastest, 0.3);
+    EXPECT_GT(w.dispatcher.stats().round_pairs, 5u);
+    EXPECT_GT(w.dispatcher.stats().mesh_pairs, 20u);
+}
+
 TEST(Convex, LeftToBulletIfAsked) {
     TestWorld w({}, {}, bullet::ConvexShapes::bullet);
     w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.5))), 0, at(0, 0, -0.5));

@@ -215,7 +215,8 @@ void CollisionDispatcher::State::fetch_ahead(std::size_t i) const {
     constexpr std::size_t algorithms = 12, states = 6;
     if (i + algorithms < ours.size()) __builtin_prefetch(ours[i + algorithms]->m_algorithm);
     if (i + states >= ours.size()) return;
-    if (PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm)) {
+    PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm);
+    if (coming && coming->state()) {
         const char* bytes = reinterpret_cast<const char*>(coming->state());
         for (std::size_t at = 0; at < sizeof(PairState); at += 64) __builtin_prefetch(bytes + at);
     }
