@@ -165,8 +165,6 @@ bool CollisionDispatcher::State::is_ours(btBroadphasePair& pair) {
     const bool ours_now = for_us(shape_a, shape_b, convex);
     if (!ours_now && unsupported(shape_a, shape_b) && ((kinds_in(shape_a) | kinds_in(shape_b)) & bit(Kind::mesh)))
         ++stats.unsupported;
-    // Where a shape was replaced, the algorithm is one for the shapes that were.
-    if (pair.m_algorithm && ours_now != (PairAlgorithm::of(pair.m_algorithm) != nullptr)) drop_algorithm(pair);
     return ours_now;
 }
 
@@ -180,10 +178,12 @@ void CollisionDispatcher::State::visit(btBroadphasePair& pair, const btDispatche
         return;
     }
     ++stats.other_pairs;
+    if (PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair); // a shape was replaced
     dispatcher.getNearCallback()(pair, dispatcher, info);
 }
 
 void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherInfo& info) {
+    if (!PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair);
     asking = true;
     dispatcher.getNearCallback()(pair, dispatcher, info);
     asking = false;
@@ -241,6 +241,7 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
                                                 const btCollisionObject& b) {
     PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
     if (!algorithm) {
+        drop_algorithm(pair);
         const btCollisionAlgorithmConstructionInfo info(&dispatcher, -1);
         algorithm = new (dispatcher.allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info);
         pair.m_algorithm = algorithm;
