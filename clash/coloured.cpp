@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
 
 namespace raycontact::clash {
 
@@ -23,52 +26,28 @@ void append(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Positions relative to the middle of the part, which its node carries: float32 keeps detail far from the origin.
+/// The triangles of a mesh are written once. Positions are relative to the middle of its box, so that float32 keeps
+/// detail far from the origin.
 class Writer {
 public:
     void add(const Part& part, bool clashes) {
-        const Mesh& mesh = part.mesh;
-        Vec3 low = mesh.vertices.front(), high = low;
-        for (const Vec3& v : mesh.vertices) {
-            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+        const auto [known, is_new] = places_.try_emplace(part.mesh.get());
+        Place& place = known->second;
+        if (is_new) place = write(*part.mesh);
+        std::optional<std::size_t>& mesh = place.mesh[clashes ? 0 : 1];
+        if (!mesh) {
+            mesh = meshes_.size();
+            const Json primitive{{"attributes", {{"POSITION", place.accessor}}},
+                                 {"indices", place.accessor + 1},
+                                 {"material", clashes ? 0 : 1}};
+            meshes_.push_back({{"primitives", Json::array({primitive})}});
         }
-        const Vec3 middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
-        std::array<float, 3> least, most;
-        least.fill(std::numeric_limits<float>::infinity());
-        most.fill(-std::numeric_limits<float>::infinity());
-        const std::size_t positions = bytes_.size();
-        for (const Vec3& v : mesh.vertices) {
-            const std::array p{static_cast<float>(v.x - middle.x), static_cast<float>(v.y - middle.y),
-                               static_cast<float>(v.z - middle.z)};
-            for (std::size_t k = 0; k < 3; ++k) {
-                least[k] = std::min(least[k], p[k]);
-                most[k] = std::max(most[k], p[k]);
-            }
-            append(bytes_, p);
-        }
-        const std::size_t indices = bytes_.size();
-        for (const auto& triangle : mesh.triangles) append(bytes_, triangle);
-        const std::size_t view = views_.size();
-        views_.push_back(
-            {{"buffer", 0}, {"byteOffset", positions}, {"byteLength", indices - positions}, {"target", 34962}});
-        views_.push_back(
-            {{"buffer", 0}, {"byteOffset", indices}, {"byteLength", bytes_.size() - indices}, {"target", 34963}});
-        accessors_.push_back({{"bufferView", view},
-                              {"componentType", 5126},
-                              {"count", mesh.vertices.size()},
-                              {"type", "VEC3"},
-                              {"min", least},
-                              {"max", most}});
-        accessors_.push_back({{"bufferView", view + 1},
-                              {"componentType", 5125},
-                              {"count", 3 * mesh.triangles.size()},
-                              {"type", "SCALAR"}});
-        const Json primitive{
-            {"attributes", {{"POSITION", view}}}, {"indices", view + 1}, {"material", clashes ? 0 : 1}};
+        const auto& r = part.pose.rotation;
+        const Vec3 t = transform_point(part.pose, place.middle);
         nodes_.push_back(
-            {{"name", part.name}, {"mesh", meshes_.size()}, {"translation", {middle.x, middle.y, middle.z}}});
-        meshes_.push_back({{"primitives", Json::array({primitive})}});
+            {{"name", part.name},
+             {"mesh", *mesh},
+             {"matrix", {r[0], r[3], r[6], 0, r[1], r[4], r[7], 0, r[2], r[5], r[8], 0, t.x, t.y, t.z, 1}}});
     }
 
     void mark(const std::string& name, const Clash& clash) {
@@ -114,6 +93,53 @@ public:
     }
 
 private:
+    struct Place {
+        std::size_t accessor = 0;                         ///< of the positions; the next is that of the corners
+        Vec3 middle;                                      ///< of the box, the part's frame
+        std::array<std::optional<std::size_t>, 2> mesh{}; ///< that clashes, and that does not
+    };
+
+    Place write(const Mesh& mesh) {
+        Vec3 low = mesh.vertices.front(), high = low;
+        for (const Vec3& v : mesh.vertices) {
+            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+        }
+        const Vec3 middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
+        std::array<float, 3> least, most;
+        least.fill(std::numeric_limits<float>::infinity());
+        most.fill(-std::numeric_limits<float>::infinity());
+        const std::size_t positions = bytes_.size();
+        for (const Vec3& v : mesh.vertices) {
+            const std::array p{static_cast<float>(v.x - middle.x), static_cast<float>(v.y - middle.y),
+                               static_cast<float>(v.z - middle.z)};
+            for (std::size_t k = 0; k < 3; ++k) {
+                least[k] = std::min(least[k], p[k]);
+                most[k] = std::max(most[k], p[k]);
+            }
+            append(bytes_, p);
+        }
+        const std::size_t indices = bytes_.size(), view = views_.size();
+        for (const auto& triangle : mesh.triangles) append(bytes_, triangle);
+        const auto add_view = [&](std::size_t from, std::size_t to, int target) {
+            views_.push_back({{"buffer", 0}, {"byteOffset", from}, {"byteLength", to - from}, {"target", target}});
+        };
+        add_view(positions, indices, 34962);
+        add_view(indices, bytes_.size(), 34963);
+        accessors_.push_back({{"bufferView", view},
+                              {"componentType", 5126},
+                              {"count", mesh.vertices.size()},
+                              {"type", "VEC3"},
+                              {"min", least},
+                              {"max", most}});
+        accessors_.push_back({{"bufferView", view + 1},
+                              {"componentType", 5125},
+                              {"count", 3 * mesh.triangles.size()},
+                              {"type", "SCALAR"}});
+        return {view, middle, {}};
+    }
+
+    std::map<const Mesh*, Place> places_;
     std::string bytes_;
     Json views_ = Json::array(), accessors_ = Json::array(), meshes_ = Json::array(), nodes_ = Json::array();
 };

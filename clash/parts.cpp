@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace raycontact::clash {
 
@@ -18,9 +19,11 @@ struct Box {
     std::size_t part;
 };
 
-Box box_of(const Mesh& mesh, std::size_t part) {
-    Box box{mesh.vertices.front(), mesh.vertices.front(), part};
-    for (const Vec3& v : mesh.vertices) {
+Box box_of(const AssemblyPart& placed, std::size_t part) {
+    const Vec3 first = transform_point(placed.pose, placed.mesh->vertices.front());
+    Box box{first, first, part};
+    for (const Vec3& vertex : placed.mesh->vertices) {
+        const Vec3 v = transform_point(placed.pose, vertex);
         box.low = {std::min(box.low.x, v.x), std::min(box.low.y, v.y), std::min(box.low.z, v.z)};
         box.high = {std::max(box.high.x, v.x), std::max(box.high.y, v.y), std::max(box.high.z, v.z)};
     }
@@ -44,11 +47,7 @@ void tell_apart(std::vector<Part>& parts) {
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
     std::vector<Part> parts;
     for (const std::filesystem::path& file : files)
-        for (Mesh& mesh : load_mesh_parts(file)) {
-            Part& part = parts.emplace_back();
-            part.name = mesh.name;
-            part.mesh = std::move(mesh);
-        }
+        for (AssemblyPart& part : load_assembly(file)) parts.push_back({std::move(part), nullptr, {}});
     tell_apart(parts);
     return parts;
 }
@@ -56,7 +55,7 @@ std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
 // Sorted by their lower x, so a box meets only those that begin before it ends.
 std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
     std::vector<Box> boxes;
-    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i].mesh, i));
+    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], i));
     std::sort(boxes.begin(), boxes.end(), [](const Box& p, const Box& q) { return p.low.x < q.low.x; });
     std::vector<PartPair> pairs;
     for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -72,22 +71,33 @@ std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
 
 void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, std::uint32_t threads,
                  const std::function<void(std::size_t, std::size_t)>& progress, const std::function<bool()>& stop) {
-    std::vector<std::size_t> wanted;
-    for (const auto& [a, b] : pairs) wanted.insert(wanted.end(), {a, b});
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::map<const Mesh*, std::vector<std::size_t>> users;
+    std::vector<const Mesh*> wanted; // in the parts' order
+    std::vector<char> seen(parts.size(), 0);
+    for (const auto& [a, b] : pairs)
+        for (const std::size_t i : {a, b}) {
+            if (std::exchange(seen[i], 1) != 0) continue;
+            std::vector<std::size_t>& of_mesh = users[parts[i].mesh.get()];
+            if (of_mesh.empty()) wanted.push_back(parts[i].mesh.get());
+            of_mesh.push_back(i);
+        }
     std::mutex mutex;
     std::size_t done = 0;
     for_each_beside(
         wanted.size(), threads,
         [&](std::size_t i) {
-            Part& part = parts[wanted[i]];
+            std::shared_ptr<const Shape> shape;
+            std::string fault;
             try {
-                part.shape = Shape::make(part.mesh);
+                shape = Shape::make(*wanted[i]);
             } catch (const InputError& error) {
-                part.fault = error.what();
+                fault = error.what();
             }
             const std::lock_guard lock(mutex);
+            for (const std::size_t part : users.at(wanted[i])) {
+                parts[part].shape = shape;
+                parts[part].fault = fault;
+            }
             progress(++done, wanted.size());
         },
         stop);

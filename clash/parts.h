@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/assembly.h>
 #include <raycontact/shape.h>
 
 #include <filesystem>
@@ -12,15 +13,14 @@
 namespace raycontact::clash {
 
 /// One part of an assembly, where its file places it.
-struct Part {
-    std::string name; ///< of its node or file; a number is added where several have the same
-    Mesh mesh;
-    std::shared_ptr<const Shape> shape; ///< null: not made, as no box of another part touches its own
-    std::string fault;                  ///< why it cannot be tested; empty: it can
+struct Part : AssemblyPart {
+    std::shared_ptr<const Shape>
+        shape;         ///< shared as the mesh; null: not made, as no box of another part touches its own
+    std::string fault; ///< why it cannot be tested; empty: it can
 };
 
-/// The parts of all files, in their order: of a glTF file each node that holds a mesh, of any other file its mesh.
-/// Throws InputError as load_mesh().
+/// The parts of all files, in their order (load_assembly). Where several have the same name, a number is added. Throws
+/// InputError as load_mesh().
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files);
 
 /// Two parts whose boxes touch, by their numbers; the first is the lower.
@@ -29,8 +29,8 @@ struct PartPair {
 };
 std::vector<PartPair> touching_boxes(const std::vector<Part>& parts);
 
-/// Makes the shapes of all parts in these pairs. A part that cannot have one gets a fault. progress is told, from any
-/// thread but from one at a time, how many are made.
+/// Makes the shapes of all parts in these pairs, one for each mesh. A part that cannot have one gets a fault. progress
+/// is told, from any thread but from one at a time, how many are made.
 void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, std::uint32_t threads,
                  const std::function<void(std::size_t done, std::size_t total)>& progress,
                  const std::function<bool()>& stop);

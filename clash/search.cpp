@@ -44,7 +44,7 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
     for (const auto& [a, b] : asked) used.insert(used.end(), {a, b});
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
-    for (const std::size_t part : used) bodies.emplace(part, scene.add(parts[part].shape));
+    for (const std::size_t part : used) bodies.emplace(part, scene.add(parts[part].shape, parts[part].pose));
 
     std::vector<Clash> clashes;
     constexpr std::size_t at_once = 256;
@@ -62,7 +62,8 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
                 found[i] = clash_of(some[i], scene.contacts(list[i].first, list[i].second));
                 meets[i] = found[i].contacts > 0;
                 if (meets[i]) return;
-                const auto shared = common_point(*parts[some[i].a].shape, {}, *parts[some[i].b].shape, {});
+                const Part &a = parts[some[i].a], &b = parts[some[i].b];
+                const auto shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
                 if (shared) found[i].point = *shared;
                 meets[i] = shared.has_value();
             },

@@ -26,11 +26,6 @@ struct Mesh {
 /// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
 Mesh load_mesh(const std::filesystem::path& file);
 
-/// The parts of an assembly: of a glTF file each node of its scene that places a mesh, in node order and where the file
-/// places it, named as the node ("nodes[3]" where it has no name); of any other file its one mesh. Nodes without
-/// triangles are left out. Throws InputError as load_mesh().
-std::vector<Mesh> load_mesh_parts(const std::filesystem::path& file);
-
 /// What a mesh is, after the repairs it names.
 struct MeshReport {
     std::uint64_t vertices = 0;       ///< distinct positions in use by a triangle

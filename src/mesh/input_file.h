@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/assembly.h>
 #include <raycontact/mesh.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
-std::vector<Mesh> read_gltf_parts(const InputFile& file); ///< by node; their names are set
+std::vector<AssemblyPart> read_gltf_parts(const InputFile& file);
 
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>

@@ -5,6 +5,7 @@
 #include "mesh/input_file.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,13 +40,17 @@ Mesh load_mesh(const std::filesystem::path& path) {
     file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
 }
 
-std::vector<Mesh> load_mesh_parts(const std::filesystem::path& path) {
+std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path) {
     const std::string ending = ending_of(path);
-    if (ending != ".gltf" && ending != ".glb") return {load_mesh(path)};
+    if (ending != ".gltf" && ending != ".glb") {
+        auto mesh = std::make_shared<const Mesh>(load_mesh(path));
+        std::string name = mesh->name;
+        return {{std::move(name), std::move(mesh), {}}};
+    }
     const InputFile file = InputFile::read(path);
-    std::vector<Mesh> parts = read_gltf_parts(file);
+    std::vector<AssemblyPart> parts = read_gltf_parts(file);
     if (parts.empty()) check_mesh({}, file.shown);
-    for (const Mesh& part : parts) check_mesh(part, file.shown + ": " + part.name);
+    for (const AssemblyPart& part : parts) check_mesh(*part.mesh, file.shown + ": " + part.name);
     return parts;
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/input_file.h"
 #include "mesh/vector.h"
 
+#include <raycontact/assembly.h>
 #include <raycontact/error.h>
 
 #include <nlohmann/json.hpp>
@@ -12,8 +13,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <deque>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -114,7 +117,8 @@ public:
         }
     }
 
-    Mesh read() {
+    /// What both ways of reading begin with.
+    void begin() {
         for (const json& entry : list(root_, "extensionsRequired")) {
             const std::string extension = text_of({entry, "extensionsRequired"});
             if (extension == draco) fail_of_compression("Draco");
@@ -126,58 +130,97 @@ public:
         }
         read_buffers();
         place_nodes();
-        constexpr std::size_t most_primitives = 1u << 22; // empty ones cost time, too
-        std::size_t placed = 0;
-        for (std::size_t n = 0; n < nodes_.size(); ++n) {
-            const Item node = item("nodes", n);
-            const std::optional<Item> named = member(node, "mesh");
-            if (!named) continue;
-            const Item mesh = item("meshes", whole(*named));
-            if (!nodes_[n].in_scene) continue;
-            const json& primitives = list(mesh, "primitives");
-            placed += primitives.size();
-            if (placed > most_primitives) file_.fail("places too many primitives; split or reduce it");
-            parts_.push_back({name_of(node), mesh_.vertices.size(), mesh_.triangles.size()});
-            for (std::size_t i = 0; i < primitives.size(); ++i) {
-                const std::string name = mesh.name + ".primitives[" + std::to_string(i) + "]";
-                read_primitive({primitives[i], name}, node.name, nodes_[n].placement);
-            }
-        }
+    }
+
+    Mesh read() {
+        for_each_placed_mesh([&](const Item& node, std::size_t, const Item& mesh, const Placement& placement) {
+            read_mesh(mesh, node.name, placement);
+        });
         return std::move(mesh_);
     }
 
     /// Each node that places a mesh by itself, but for those without triangles.
-    std::vector<Mesh> read_parts() {
-        const Mesh whole = read();
-        parts_.push_back({"", whole.vertices.size(), whole.triangles.size()});
-        std::vector<Mesh> parts;
-        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
-            const Part &from = parts_[i], &to = parts_[i + 1];
-            if (from.triangle == to.triangle) continue;
-            Mesh& mesh = parts.emplace_back();
-            mesh.name = from.name;
-            mesh.vertices.assign(whole.vertices.begin() + static_cast<std::ptrdiff_t>(from.vertex),
-                                 whole.vertices.begin() + static_cast<std::ptrdiff_t>(to.vertex));
-            for (std::size_t t = from.triangle; t < to.triangle; ++t) {
-                mesh.triangles.push_back(whole.triangles[t]);
-                for (std::uint32_t& corner : mesh.triangles.back()) corner -= static_cast<std::uint32_t>(from.vertex);
+    std::vector<AssemblyPart> read_parts() {
+        std::map<std::pair<std::size_t, std::string>, std::shared_ptr<const Mesh>> known;
+        std::vector<AssemblyPart> parts;
+        for_each_placed_mesh([&](const Item& node, std::size_t number, const Item& mesh, const Placement& placement) {
+            if (!is_finite(placement.origin)) fail(node, "is placed where no number is finite");
+            const auto [pose, own] = split(placement);
+            auto& made = known[{number, key_of(own)}];
+            if (!made) {
+                read_mesh(mesh, node.name, own);
+                before_ += mesh_.vertices.size() + mesh_.triangles.size();
+                mesh_.name = name_of(node);
+                made = std::make_shared<const Mesh>(std::exchange(mesh_, {}));
             }
-        }
+            if (!made->triangles.empty()) parts.push_back({name_of(node), made, pose});
+        });
         return parts;
     }
 
 private:
-    /// Where the vertices and triangles of a node begin in the whole mesh.
-    struct Part {
-        std::string name;
-        std::size_t vertex, triangle;
-    };
     struct Node {
         std::vector<std::size_t> children;
         bool waits = false; ///< for its parent to be placed
         bool in_scene = false;
         Placement placement; ///< in its parent, then in the scene
     };
+
+    /// Calls visit(node, number of its mesh, mesh, placement) in node order.
+    template <class Visit>
+    void for_each_placed_mesh(Visit&& visit) {
+        begin();
+        constexpr std::size_t most_primitives = 1u << 22; // empty ones cost time, too
+        std::size_t placed = 0;
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            const Item node = item("nodes", n);
+            const std::optional<Item> named = member(node, "mesh");
+            if (!named) continue;
+            const std::size_t number = whole(*named);
+            const Item mesh = item("meshes", number);
+            if (!nodes_[n].in_scene) continue;
+            placed += list(mesh, "primitives").size();
+            if (placed > most_primitives) file_.fail("places too many primitives; split or reduce it");
+            visit(node, number, mesh, nodes_[n].placement);
+        }
+    }
+
+    void read_mesh(const Item& mesh, const std::string& node, const Placement& placement) {
+        const json& primitives = list(mesh, "primitives");
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            const std::string name = mesh.name + ".primitives[" + std::to_string(i) + "]";
+            read_primitive({primitives[i], name}, node, placement);
+        }
+    }
+
+    /// A pose, and what is left to be done to the mesh first: a scale where the placement turns and scales alike in all
+    /// directions, else all but its translation.
+    static std::pair<Pose, Placement> split(const Placement& placement) {
+        Pose pose;
+        pose.translation = placement.origin;
+        const auto& [x, y, z, origin] = placement;
+        const double size = std::cbrt(dot(x, cross(y, z)));
+        // Files have such numbers in float32.
+        constexpr double alike = 1e-5;
+        const auto is_one = [&](double square) { return std::fabs(square / (size * size) - 1) < alike; };
+        const auto is_none = [&](double product) { return std::fabs(product / (size * size)) < alike; };
+        if (!(size > 0) || !is_one(dot(x, x)) || !is_one(dot(y, y)) || !is_one(dot(z, z)) || !is_none(dot(x, y))
+            || !is_none(dot(y, z)) || !is_none(dot(z, x)))
+            return {pose, {x, y, z, {}}};
+        // Scales that differ by rounding alone are one: a ten-millionth is lost in float32.
+        const double unit = std::pow(10.0, std::floor(std::log10(size)) - 7), scale = std::round(size / unit) * unit;
+        const Vec3 &u = (1 / size) * x, &v = (1 / size) * y, &w = (1 / size) * z;
+        pose = pose_from_matrix(
+            std::array{u.x, v.x, w.x, origin.x, u.y, v.y, w.y, origin.y, u.z, v.z, w.z, origin.z, 0.0, 0.0, 0.0, 1.0});
+        return {pose, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {}}};
+    }
+
+    static std::string key_of(const Placement& placement) {
+        std::string key;
+        for (const Vec3& v : {placement.x, placement.y, placement.z})
+            key.append(reinterpret_cast<const char*>(&v), sizeof v);
+        return key;
+    }
 
     static constexpr std::string_view draco = "KHR_draco_mesh_compression";
     static constexpr std::array<std::string_view, 2> meshopt{"EXT_meshopt_compression", "KHR_meshopt_compression"};
@@ -523,7 +566,7 @@ private:
     void check_growth(std::size_t more) const {
         constexpr std::size_t always = 1u << 20, for_a_byte = 4;
         const std::size_t most = std::max(always, for_a_byte * bytes_);
-        if (mesh_.vertices.size() + mesh_.triangles.size() + more > most) {
+        if (before_ + mesh_.vertices.size() + mesh_.triangles.size() + more > most) {
             file_.fail("places the same meshes so often that over " + std::to_string(most)
                        + " vertices and triangles come of its " + std::to_string(bytes_)
                        + " bytes; split it or reduce the meshes");
@@ -576,7 +619,7 @@ private:
     std::map<std::filesystem::path, std::string_view> files_; ///< that were read
     std::vector<std::string_view> buffers_;
     std::vector<Node> nodes_;
-    std::vector<Part> parts_;
+    std::size_t before_ = 0; ///< vertices and triangles of the meshes before this one, where they are read apart
     Mesh mesh_;
 };
 
@@ -603,7 +646,7 @@ Mesh read_gltf(const InputFile& file) {
     return told(file, [&] { return GltfReader(file).read(); });
 }
 
-std::vector<Mesh> read_gltf_parts(const InputFile& file) {
+std::vector<AssemblyPart> read_gltf_parts(const InputFile& file) {
     return told(file, [&] { return GltfReader(file).read_parts(); });
 }
 

@@ -28,9 +28,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         check_mesh(mesh, file.shown);
         if constexpr (std::string_view(RAYCONTACT_FUZZ_FILE).ends_with(".gltf")) {
             std::size_t triangles = 0;
-            for (const Mesh& part : read_gltf_parts(file)) {
-                check_mesh(part, part.name);
-                triangles += part.triangles.size();
+            for (const AssemblyPart& part : read_gltf_parts(file)) {
+                check_mesh(*part.mesh, part.name);
+                triangles += part.mesh->triangles.size();
             }
             if (triangles != mesh.triangles.size()) fuzz::fail("parts that are not the whole");
         }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/mesh.h>
+#include <raycontact/pose.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace raycontact {
+
+/// A part of an assembly. Parts that are the same mesh in several places share it.
+struct AssemblyPart {
+    std::string name;                 ///< of its node, "nodes[3]" where it has none; or of its file
+    std::shared_ptr<const Mesh> mesh; ///< metres, in the part's own frame, scaled as the file scales it
+    Pose pose;                        ///< of that frame in the assembly
+};
+
+/// Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh. Nodes
+/// without triangles are left out. Indices of a part's vertices and triangles begin at 0. Throws InputError as
+/// load_mesh().
+std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file);
+
+} // namespace raycontact
