@@ -176,7 +176,7 @@ TEST(StandIn, IsNearEverywhere) {
             const auto at = [&](double t) {
                 return Vec3{middle.x + t * to.x, middle.y + t * to.y, middle.z + t * to.z};
             };
-            for (int k = 0; k < 40; ++k) (c.distance(at((near + far) / 2)) < 0 ? near : far) = (near + far) / 2;
+            for (int k = 0; k < 30; ++k) (c.distance(at((near + far) / 2)) < 0 ? near : far) = (near + far) / 2;
             const Vec3 p = at(near); // on the true surface
             double above = -1e30;    // its height over the mesh's highest plane: outside, at most its distance
             double below = 1e30;
