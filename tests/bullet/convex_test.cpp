@@ -128,7 +128,8 @@ TEST(Convex, HeapOfEverythingStaysInItsPen) {
     int place = 0; // four in a layer, apart
     const auto next = [&] {
         const double x = place % 2 ? 0.9 : -0.9, y = place / 2 % 2 ? 0.9 : -0.9;
-        return at(x, y, 0.9 + 1.4 * (place++ / 4));
+        const int layer = place++ / 4;
+        return at(x, y, 0.9 + 1.4 * layer);
     };
     for (int layer = 0; layer < 3; ++layer)
         for (const Solid& solid : solids()) {

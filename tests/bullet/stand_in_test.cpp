@@ -35,7 +35,7 @@ Distance box_distance(double x, double y, double z) {
 }
 
 /// Of a solid of revolution about an axis whose half section is a convex polygon: signed distance in the half plane.
-Distance turned_distance(int axis, std::vector<std::array<double, 2>> section) {
+Distance turned_distance(int axis, const std::vector<std::array<double, 2>>& section) {
     return [=](const Vec3& p) {
         const double c[3] = {p.x, p.y, p.z};
         const double r = length(c[(axis + 1) % 3], c[(axis + 2) % 3]), z = c[axis];
