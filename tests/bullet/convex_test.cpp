@@ -102,6 +102,15 @@ TEST(Convex, MeshRestsOnRoundShapes) {
     expect_still(w, w.add_mesh(Shape::make(box_mesh(2, 2, 0.4)), 5, at(0, 0, 0.25)), 0.2, 0.005, "balls");
 }
 
+/// One that was dropped too fast comes up again.
+TEST(Convex, BallDeepInAMeshComesOut) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    const btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.1)), 1, at(0, 0, -0.3));
+    w.steps(300);
+    EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().z()), 0.1, 0.01);
+}
+
 TEST(Convex, CylinderRollsOnAMesh) {
     TestWorld w;
     w.add_mesh(Shape::make(box_mesh(30, 6, 1)), 0, at(12, 0, -0.5));
