@@ -102,6 +102,15 @@ TEST(Convex, MeshRestsOnRoundShapes) {
     expect_still(w, w.add_mesh(Shape::make(box_mesh(2, 2, 0.4)), 5, at(0, 0, 0.25)), 0.2, 0.005, "balls");
 }
 
+/// One that was dropped too fast comes up again.
+TEST(Convex, BallDeepInAMeshComesOut) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    const btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.1)), 1, at(0, 0, -0.3));
+    w.steps(300);
+    EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().z()), 0.1, 0.01);
+}
+
 TEST(Convex, CylinderRollsOnAMesh) {
     TestWorld w;
     w.add_mesh(Shape::make(box_mesh(30, 6, 1)), 0, at(12, 0, -0.5));
@@ -128,7 +137,8 @@ TEST(Convex, HeapOfEverythingStaysInItsPen) {
     int place = 0; // four in a layer, apart
     const auto next = [&] {
         const double x = place % 2 ? 0.9 : -0.9, y = place / 2 % 2 ? 0.9 : -0.9;
-        return at(x, y, 0.9 + 1.4 * (place++ / 4));
+        const int layer = place++ / 4;
+        return at(x, y, 0.9 + 1.4 * layer);
     };
     for (int layer = 0; layer < 3; ++layer)
         for (const Solid& solid : solids()) {

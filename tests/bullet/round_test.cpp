@@ -129,6 +129,19 @@ TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
     EXPECT_NEAR(double(found[0].distance), -0.4, 1e-5);
     EXPECT_TRUE(contacts(box, ball, at(0, 0, 0.81)).empty());
     EXPECT_EQ(contacts(box, ball, at(0, 0, 0.81), 0.02).size(), 1u);
+    // However deep it is, alone or as the end of a capsule; but not in the air within the box of a mesh.
+    const btSphereShape marble(btScalar(0.05));
+    for (const double z : {0.4, 0.2, -0.2, -0.45}) {
+        const auto deep = contacts(box, marble, at(0.02, 0.01, z));
+        ASSERT_EQ(deep.size(), 1u) << z;
+        EXPECT_NEAR(double(deep[0].distance), -(0.5 - std::fabs(z) + 0.05), 1e-5) << z;
+        EXPECT_NEAR(double(deep[0].normal.z()), z > 0 ? 1 : -1, 1e-5) << z;
+    }
+    const bullet::Converted ring = converted(torus());
+    EXPECT_TRUE(contacts(ring, marble, at(0, 0, 0)).empty());
+    const auto capsule_in = contacts(box, btCapsuleShapeZ(btScalar(0.05), btScalar(0.9)), at(0, 0, 0.75));
+    ASSERT_EQ(capsule_in.size(), 1u); // its upper end is outside
+    EXPECT_NEAR(double(capsule_in[0].distance), -0.25, 1e-5);
     // The far side of a thin plate is not met.
     const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
     EXPECT_EQ(contacts(plate, ball, at(0, 0, 0.28)).size(), 1u);

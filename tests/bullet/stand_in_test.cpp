@@ -35,7 +35,7 @@ Distance box_distance(double x, double y, double z) {
 }
 
 /// Of a solid of revolution about an axis whose half section is a convex polygon: signed distance in the half plane.
-Distance turned_distance(int axis, std::vector<std::array<double, 2>> section) {
+Distance turned_distance(int axis, const std::vector<std::array<double, 2>>& section) {
     return [=](const Vec3& p) {
         const double c[3] = {p.x, p.y, p.z};
         const double r = length(c[(axis + 1) % 3], c[(axis + 2) % 3]), z = c[axis];
@@ -176,7 +176,7 @@ TEST(StandIn, IsNearEverywhere) {
             const auto at = [&](double t) {
                 return Vec3{middle.x + t * to.x, middle.y + t * to.y, middle.z + t * to.z};
             };
-            for (int k = 0; k < 40; ++k) (c.distance(at((near + far) / 2)) < 0 ? near : far) = (near + far) / 2;
+            for (int k = 0; k < 30; ++k) (c.distance(at((near + far) / 2)) < 0 ? near : far) = (near + far) / 2;
             const Vec3 p = at(near); // on the true surface
             double above = -1e30;    // its height over the mesh's highest plane: outside, at most its distance
             double below = 1e30;

@@ -204,6 +204,44 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
     }
 }
 
+/// Whether a line upwards from p crosses a closed mesh an odd number of times. Rounding can err where it meets an edge.
+bool seems_inside(const Converted& mesh, const btVector3& p) {
+    const Vec3 low = mesh.shape->box_min(), high = mesh.shape->box_max();
+    const double at[3] = {double(p.x()), double(p.y()), double(p.z())};
+    if (!mesh.shape->report().closed || at[0] < low.x || at[1] < low.y || at[2] < low.z || at[0] > high.x
+        || at[1] > high.y || at[2] > high.z)
+        return false;
+    bool inside = false;
+    mesh.tree->overlapping(p, btVector3(p.x(), p.y(), btScalar(high.z)), [&](std::uint32_t index) {
+        const auto& t = mesh.tree->triangle(index);
+        btVector3 corners[3];
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.tree->vertex(t[k]) - p;
+        btScalar area[3]; // of the triangles that p makes with the edges, seen from above
+        for (int k = 0; k < 3; ++k) {
+            const btVector3 &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
+            area[k] = a.x() * b.y() - a.y() * b.x();
+        }
+        const bool up = area[0] >= 0 && area[1] >= 0 && area[2] >= 0, down = area[0] < 0 && area[1] < 0 && area[2] < 0;
+        const btScalar sum = area[0] + area[1] + area[2];
+        if ((!up && !down) || sum == 0) return;
+        const btScalar height = (area[0] * corners[0].z() + area[1] * corners[1].z() + area[2] * corners[2].z()) / sum;
+        if (height > 0) inside = !inside;
+    });
+    return inside;
+}
+
+/// An end so deep inside that no surface is in its reach: the nearest way out, found by growing steps.
+void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, std::vector<Found>& out) {
+    // Aside by less than the limit, within which there is no surface: the middle of a face is often a cut's, too.
+    if (!seems_inside(mesh, centre + limit * btVector3(btScalar(0.137), btScalar(0.219), 0))) return;
+    const btScalar most = 4 * btScalar(mesh.shape->radius()) + limit;
+    while (out.empty() && limit < most) {
+        limit *= 2;
+        Neighbourhood(mesh, centre, centre, limit).of_end(centre, out);
+    }
+    std::erase_if(out, [](const Found& f) { return f.away > 0; });
+}
+
 } // namespace
 
 Round round_of(const btCollisionShape& shape) {
@@ -238,21 +276,30 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     out.clear();
     const btTransform to_mesh = mesh_pose.inverseTimes(round_pose);
     const btVector3 a = to_mesh(round.ends[0]), b = to_mesh(round.ends[1]);
-    const Neighbourhood neighbourhood(mesh, a, b, round.radius + reach);
+    const btScalar limit = round.radius + reach;
     static thread_local std::vector<Found> found;
-    const auto give = [&](int part) {
+    const auto give = [&](int part, const std::vector<Found>& all) {
         int number = 0;
-        for (const Found& f : found)
+        for (const Found& f : all)
             out.push_back({part + 3 * number++, mesh_pose(f.point), mesh_pose.getBasis() * f.normal,
                            f.away - round.radius, f.triangle});
     };
-    neighbourhood.of_end(a, found);
-    give(0);
-    if (round.balls == 1) return;
-    neighbourhood.of_end(b, found);
-    give(1);
-    neighbourhood.of_side(a, b, found);
-    give(2);
+    static thread_local std::vector<Found> first, second;
+    {
+        const Neighbourhood neighbourhood(mesh, a, b, limit);
+        neighbourhood.of_end(a, first);
+        second.clear();
+        found.clear();
+        if (round.balls > 1) {
+            neighbourhood.of_end(b, second);
+            neighbourhood.of_side(a, b, found);
+        }
+    }
+    if (first.empty()) deep_end(mesh, a, limit, first);
+    if (second.empty() && round.balls > 1) deep_end(mesh, b, limit, second);
+    give(0, first);
+    give(1, second);
+    give(2, found);
 }
 
 } // namespace raycontact::bullet

@@ -181,6 +181,7 @@ Mesh hull(const std::vector<Vec3>& points) {
 
 std::vector<Vec3> hull_points(const btConvexHullShape& shape) {
     std::vector<Vec3> points;
+    points.reserve(static_cast<std::size_t>(shape.getNumPoints()));
     for (int i = 0; i < shape.getNumPoints(); ++i) points.push_back(to_vec(shape.getScaledPoint(i)));
     return points;
 }
