@@ -22,7 +22,7 @@ using namespace rc::scenes;
 namespace {
 
 constexpr Finder finders[] = {Finder::convex, Finder::edges, Finder::vertices, Finder::gimpact};
-constexpr Ground grounds[] = {Ground::plane, Ground::slab, Ground::quad};
+constexpr Ground grounds[] = {Ground::plane, Ground::slab, Ground::box, Ground::quad};
 
 struct Options {
     double seconds = 5;

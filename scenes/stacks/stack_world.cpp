@@ -80,6 +80,8 @@ std::string_view to_string(Ground ground) {
         return "plane";
     case Ground::slab:
         return "slab";
+    case Ground::box:
+        return "box";
     case Ground::quad:
         return "quad";
     }
@@ -113,13 +115,17 @@ struct StackWorld::State {
 };
 
 void StackWorld::State::add_ground(Ground ground) {
+    Pose pose;
     if (ground == Ground::plane) {
         shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0)));
+    } else if (ground == Ground::box) {
+        shapes.push_back(std::make_unique<btBoxShape>(to_bullet(Vec3{ground_reach, ground_reach, 0.5})));
+        pose.translation.z = -0.5;
     } else {
         meshes.push_back(triangles_of(ground_mesh(ground)));
         shapes.push_back(std::make_unique<btBvhTriangleMeshShape>(meshes.back().get(), true));
     }
-    add_body(*shapes.back(), 0, btVector3(0, 0, 0), {});
+    add_body(*shapes.back(), 0, btVector3(0, 0, 0), pose);
 }
 
 void StackWorld::State::add_shape(const StackShape& shape, bool convex) {

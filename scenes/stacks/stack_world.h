@@ -20,6 +20,7 @@ enum class Finder {
 enum class Ground {
     plane, ///< btStaticPlaneShape
     slab,  ///< a mesh of 12 triangles, 1 m thick
+    box,   ///< btBoxShape of the slab's size
     quad,  ///< two triangles
 };
 inline constexpr double ground_reach = 10; ///< half its width, metres; the plane has none

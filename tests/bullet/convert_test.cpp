@@ -4,6 +4,7 @@
 #include <convert.h>
 #include <raycontact/error.h>
 
+#include <BulletCollision/CollisionShapes/btBox2dShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
@@ -117,9 +118,15 @@ TEST(Convert, BadMeshesAreNamed) {
     }
 }
 
-TEST(Convert, OtherShapesAreLeftToBullet) {
-    EXPECT_EQ(kind_of(btSphereShape(1)), Kind::other);
-    EXPECT_EQ(kind_of(btBoxShape(btVector3(1, 1, 1))), Kind::other);
+TEST(Convert, KindsOfShapes) {
+    EXPECT_EQ(kind_of(btSphereShape(1)), Kind::round);
+    EXPECT_EQ(kind_of(btCapsuleShape(1, 1)), Kind::round);
+    EXPECT_EQ(kind_of(btBoxShape(btVector3(1, 1, 1))), Kind::convex);
+    EXPECT_EQ(kind_of(btCylinderShape(btVector3(1, 1, 1))), Kind::convex);
+    EXPECT_EQ(kind_of(btConeShape(1, 1)), Kind::convex);
+    EXPECT_EQ(kind_of(btBox2dShape(btVector3(1, 1, 1))), Kind::other);
+    const btSphereShape ball(1);
+    EXPECT_EQ(kind_of(btUniformScalingShape(const_cast<btSphereShape*>(&ball), 2)), Kind::other);
     EXPECT_EQ(kind_of(btStaticPlaneShape(btVector3(0, 0, 1), 0)), Kind::plane);
 }
 

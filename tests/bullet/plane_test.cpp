@@ -24,9 +24,10 @@ TEST(Plane, FindsEveryVertexBelow) {
         btTransform plane_pose(btQuaternion(number(), number(), number(), number()).normalized(),
                                btVector3(number(), number(), number()));
         const btStaticPlaneShape plane(btVector3(number(), number(), number()).normalized(), number() / 2);
-        btVector3 normal;
+        const bullet::HalfSpace space = bullet::half_space(plane, plane_pose);
+        const btVector3& normal = space.normal;
         std::vector<bullet::PlaneContact> found;
-        bullet::plane_contacts(mesh, pose, plane, plane_pose, normal, found);
+        bullet::plane_contacts(mesh, pose, space, found);
         total += found.size();
 
         std::size_t next = 0;

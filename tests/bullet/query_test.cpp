@@ -81,14 +81,14 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     Settings settings;
     settings.threads = 1;
     bullet::ShapeCache shapes;
-    bullet::Queries queries(settings, shapes);
+    bullet::Queries queries(settings, shapes, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
     btPersistentManifold* manifold = w.dispatcher.getNewManifold(&low, &high);
     for (int i = 0; i < 100000; ++i) {
         btManifoldResult result(&a, &b);
         result.setPersistentManifold(manifold);
-        queries.run(a, b, result);
+        queries.run(a, b, w.world.getDispatchInfo(), result);
         ASSERT_EQ(queries.scene().contacts().size(), 4u) << i;
         ASSERT_LT(queries.scene().contacts().front().body_b, 4u) << i;
     }

@@ -148,7 +148,7 @@ TEST_P(Stacks, LongStandOnASteadySolver) {
     for (const Stack& stack : all_stacks()) expect_stands(stack, GetParam(), 5, steady);
 }
 
-INSTANTIATE_TEST_SUITE_P(On, Stacks, testing::Values(Ground::plane, Ground::slab, Ground::quad),
+INSTANTIATE_TEST_SUITE_P(On, Stacks, testing::Values(Ground::plane, Ground::slab, Ground::box, Ground::quad),
                          [](const auto& one) { return std::string(to_string(one.param)); });
 
 } // namespace

@@ -85,8 +85,9 @@ std::shared_ptr<const Shape> torus() {
     return shape;
 }
 
-TestWorld::TestWorld(const Settings& settings, const bullet::ManifoldSettings& manifolds)
-    : dispatcher(&configuration, settings, manifolds), world(&dispatcher, &broadphase, &solver, &configuration) {
+TestWorld::TestWorld(const Settings& settings, const bullet::ManifoldSettings& manifolds, bullet::ConvexShapes convex)
+    : dispatcher(&configuration, settings, manifolds, convex),
+      world(&dispatcher, &broadphase, &solver, &configuration) {
     world.setGravity(btVector3(0, 0, btScalar(-9.81)));
     world.getSolverInfo().m_linearSlop = btScalar(0.002);
 }

@@ -24,7 +24,8 @@ inline btTransform at(double x, double y, double z) {
 
 /// A Bullet world with our dispatcher in place of Bullet's: z up, metres, 60 steps a second.
 struct TestWorld {
-    explicit TestWorld(const Settings& settings = {}, const bullet::ManifoldSettings& manifolds = {});
+    explicit TestWorld(const Settings& settings = {}, const bullet::ManifoldSettings& manifolds = {},
+                       bullet::ConvexShapes convex = bullet::ConvexShapes::ours);
     ~TestWorld();
 
     /// Keeps the shape; mass 0 is static.

@@ -288,6 +288,43 @@ TEST_P(Nothing, is_known_of_the_outside_of_open_meshes) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+// What speeds up steps reaches the device's arrays between two steps, in the middle of a scene.
+TEST(Prepared, in_the_middle_of_a_scene) {
+    for (const Method method : {Method::standard, Method::certified}) {
+        std::string hashes[3];
+        for (int i = 0; i < 3; ++i) {
+            std::vector<std::shared_ptr<const Shape>> shapes;
+            for (const Mesh& mesh : {bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh()})
+                shapes.push_back(i == 0 ? prepared_shape(mesh) : Shape::make(mesh));
+            Settings settings;
+            settings.method = method;
+            settings.devices = i == 2 ? "cpu,opencl:0" : i == 1 ? "opencl:0" : "cpu";
+            Scene scene(settings);
+            Random random(8);
+            std::vector<Pose> poses;
+            for (BodyId k = 0; k < 10; ++k) {
+                poses.push_back(random.rotation());
+                poses.back().translation = random.in_ball();
+                scene.add(shapes[k % 3], poses.back());
+            }
+            ContactHash hash;
+            for (std::uint32_t step = 0; step < 12; ++step) {
+                if (step == 4) shapes[0]->prepare();
+                if (step == 8) scene.prepare();
+                for (BodyId k = 0; k < 10; ++k) {
+                    poses[k].translation = poses[k].translation + 0.01 * random.in_ball();
+                    scene.set_pose(k, poses[k]);
+                }
+                hash.add(step, scene.step());
+            }
+            EXPECT_GT(scene.contacts().size(), 20u);
+            hashes[i] = hash.hex();
+        }
+        EXPECT_EQ(hashes[0], hashes[1]) << to_string(method);
+        EXPECT_EQ(hashes[0], hashes[2]) << to_string(method);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(methods, Nothing,
                          testing::Values(Method::standard, Method::iterative, Method::predictive, Method::certified),
                          [](const auto& method) { return std::string(to_string(method.param)); });

@@ -12,6 +12,8 @@
 #include <raycontact/mesh.h>
 #include <raycontact/shape.h>
 
+#include <string_view>
+
 using namespace raycontact;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -24,6 +26,14 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         if (size == 0) return; // InputFile::read refuses it
         const Mesh mesh = RAYCONTACT_FUZZ_READER(file);
         check_mesh(mesh, file.shown);
+        if constexpr (std::string_view(RAYCONTACT_FUZZ_FILE).ends_with(".gltf")) {
+            std::size_t triangles = 0;
+            for (const Mesh& part : read_gltf_parts(file)) {
+                check_mesh(part, part.name);
+                triangles += part.triangles.size();
+            }
+            if (triangles != mesh.triangles.size()) fuzz::fail("parts that are not the whole");
+        }
         if (mesh.triangles.size() > 4000) return; // the fuzzer is to try many files, not large ones
         const PreparedMesh prepared = prepare_mesh(mesh);
         to_json(prepared.report);

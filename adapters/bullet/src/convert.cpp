@@ -3,9 +3,16 @@
 
 #include <raycontact/bullet/mesh_shape.h>
 #include <raycontact/error.h>
+#include <stand_in.h>
 
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
@@ -156,6 +163,12 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
     return hash ^ (hash >> 29);
 }
 
+std::uint64_t content_hash(const std::vector<btScalar>& numbers) {
+    std::uint64_t hash = numbers.size();
+    for (const btScalar n : numbers) hash = mix(hash, std::bit_cast<std::uint64_t>(double(n)));
+    return hash;
+}
+
 std::uint64_t content_hash(const Mesh& mesh) {
     std::uint64_t hash = mesh.vertices.size();
     for (const Vec3& v : mesh.vertices) {
@@ -163,6 +176,14 @@ std::uint64_t content_hash(const Mesh& mesh) {
     }
     for (const auto& t : mesh.triangles) hash = mix(mix(hash, t[0] | std::uint64_t{t[1]} << 32), t[2]);
     return hash;
+}
+
+/// A ball, or a capsule of two.
+bool is_round(const btMultiSphereShape& shape) {
+    const btVector3& scaling = shape.getLocalScaling();
+    if (!(scaling.x() > 0 && scaling.x() == scaling.y() && scaling.x() == scaling.z())) return false;
+    const int count = shape.getSphereCount();
+    return count == 1 || (count == 2 && shape.getSphereRadius(0) == shape.getSphereRadius(1));
 }
 
 } // namespace
@@ -183,9 +204,22 @@ Kind kind_of(const btCollisionShape& shape) {
         return Kind::plane;
     case TERRAIN_SHAPE_PROXYTYPE:
         return Kind::field;
+    case SPHERE_SHAPE_PROXYTYPE:
+    case CAPSULE_SHAPE_PROXYTYPE:
+        return Kind::round;
+    case MULTI_SPHERE_SHAPE_PROXYTYPE:
+        return is_round(static_cast<const btMultiSphereShape&>(shape)) ? Kind::round : Kind::convex;
     default:
-        return Kind::other;
+        return has_stand_in(shape) ? Kind::convex : Kind::other;
     }
+}
+
+unsigned kinds_in(const btCollisionShape& shape) {
+    if (!shape.isCompound()) return bit(kind_of(shape));
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    unsigned kinds = 0;
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) kinds |= kinds_in(*compound.getChildShape(i));
+    return kinds;
 }
 
 btVector3 scaling_of(const btCollisionShape& shape) {
@@ -209,13 +243,73 @@ btVector3 scaling_of(const btCollisionShape& shape) {
     }
 }
 
+Form form_of(const btCollisionShape& shape) {
+    Form form{shape.getShapeType(), btVector3(0, 0, 0), 0};
+    switch (shape.getShapeType()) {
+    case BOX_SHAPE_PROXYTYPE:
+        form.size = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
+        break;
+    case CYLINDER_SHAPE_PROXYTYPE: {
+        const auto& s = static_cast<const btCylinderShape&>(shape);
+        form.size = s.getHalfExtentsWithMargin();
+        form.count = s.getUpAxis();
+        break;
+    }
+    case CONE_SHAPE_PROXYTYPE: {
+        const auto& s = static_cast<const btConeShape&>(shape);
+        form.size.setValue(s.getRadius(), s.getHeight(), 0);
+        form.count = s.getConeUpIndex();
+        break;
+    }
+    case CONVEX_HULL_SHAPE_PROXYTYPE:
+        form.size = shape.getLocalScaling();
+        form.count = static_cast<const btConvexHullShape&>(shape).getNumPoints();
+        break;
+    case MULTI_SPHERE_SHAPE_PROXYTYPE:
+        form.size = shape.getLocalScaling();
+        form.count = static_cast<const btMultiSphereShape&>(shape).getSphereCount();
+        break;
+    case SPHERE_SHAPE_PROXYTYPE:
+    case CAPSULE_SHAPE_PROXYTYPE:
+        break; // read anew in every step
+    default:
+        form.size = scaling_of(shape);
+    }
+    form.size.setW(0);
+    return form;
+}
+
+// By its numbers: the stand-in is not made to find out whether it is there.
+Converted ShapeCache::get_convex(const btCollisionShape& shape) {
+    std::vector<btScalar> numbers = surface_numbers(shape);
+    const std::uint64_t hash = content_hash(numbers);
+    const auto [first, last] = entries_.equal_range(hash);
+    for (auto i = first; i != last; ++i) {
+        if (i->second.numbers == numbers) {
+            i->second.used = now_;
+            return i->second.converted;
+        }
+    }
+    Entry entry;
+    const Mesh mesh = stand_in(shape);
+    if (!mesh.triangles.empty()) {
+        entry.converted.shape = Shape::make(prepare_mesh(mesh, Repair::allowed));
+        entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
+    }
+    entry.numbers = std::move(numbers);
+    entry.used = now_;
+    return entries_.emplace(hash, std::move(entry))->second.converted;
+}
+
 Converted ShapeCache::get(const btCollisionShape& shape) {
+    if (has_stand_in(shape)) return get_convex(shape);
     if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
     Mesh mesh = extract(shape);
     const std::uint64_t hash = content_hash(mesh);
     const auto [first, last] = entries_.equal_range(hash);
     for (auto i = first; i != last; ++i) {
-        if (i->second.mesh.vertices == mesh.vertices && i->second.mesh.triangles == mesh.triangles) {
+        if (i->second.numbers.empty() && i->second.mesh.vertices == mesh.vertices
+            && i->second.mesh.triangles == mesh.triangles) {
             i->second.used = now_;
             return i->second.converted;
         }

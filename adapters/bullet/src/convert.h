@@ -4,16 +4,19 @@
 #include <mesh_tree.h>
 #include <raycontact/shape.h>
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace raycontact::bullet {
 
-/// A converted Bullet mesh: what RayContact and the plane test need of it.
+/// A converted Bullet mesh, or a convex shape's stand-in: what RayContact and the tests of planes and balls need of it.
+/// Without a shape where a convex shape is flat.
 struct Converted {
     std::shared_ptr<const Shape> shape;
     std::shared_ptr<const MeshTree> tree;
@@ -21,31 +24,53 @@ struct Converted {
 
 /// What RayContact sees in a shape that is not a compound.
 enum class Kind {
-    mesh,  ///< MeshShape, GImpact mesh or part, BVH triangle mesh, scaled or not
-    plane, ///< btStaticPlaneShape
-    field, ///< btHeightfieldTerrainShape
-    other, ///< left to Bullet
+    mesh,   ///< MeshShape, GImpact mesh or part, BVH triangle mesh, scaled or not
+    plane,  ///< btStaticPlaneShape
+    field,  ///< btHeightfieldTerrainShape
+    convex, ///< one for which a mesh can stand: box, cylinder, cone, hull, multi-sphere
+    round,  ///< ball or capsule, also as a multi-sphere of one ball, or of two equal ones
+    other,  ///< left to Bullet
 };
 Kind kind_of(const btCollisionShape& shape);
+/// The kinds of a shape and of all its children, a bit for each.
+unsigned kinds_in(const btCollisionShape& shape);
+constexpr unsigned bit(Kind kind) {
+    return 1u << static_cast<unsigned>(kind);
+}
 
-/// The effective scaling of a mesh or field: if it changes, the shape must be converted again.
+/// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
+
+/// What can be compared in every step: if it changes, the shape must be converted again.
+struct Form {
+    int type = INVALID_SHAPE_PROXYTYPE;
+    btVector3 size{0, 0, 0}; ///< scaling or dimensions
+    int count = 0;           ///< points of a hull, balls of a multi-sphere; the axis of others
+    friend bool operator==(const Form& a, const Form& b) {
+        return a.type == b.type && a.size == b.size && a.count == b.count;
+    }
+};
+Form form_of(const btCollisionShape& shape);
 
 /// Shapes by content, so bodies with equal meshes share one and no pointer can go stale. Throws InputError for an
 /// empty or damaged mesh interface.
 class ShapeCache {
 public:
-    /// `shape` is of kind mesh or field.
+    /// `shape` is of kind mesh, field or convex.
     Converted get(const btCollisionShape& shape);
     /// Call it once a dispatch: drops shapes that no body has used for a while.
     void sweep();
 
 private:
     struct Entry {
-        Mesh mesh; ///< compared in full: equal hashes do not mean equal meshes
+        // Compared in full: equal hashes do not mean equal contents.
+        Mesh mesh;                     ///< of a mesh or field
+        std::vector<btScalar> numbers; ///< of a convex shape
         Converted converted;
         std::uint64_t used = 0;
     };
+    Converted get_convex(const btCollisionShape& shape);
+
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
     std::uint64_t now_ = 0;
 };

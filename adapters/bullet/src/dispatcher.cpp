@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/dispatcher.h>
 
+#include <box_face.h>
 #include <pair.h>
 #include <plane.h>
 #include <query.h>
 #include <raycontact/error.h>
+#include <round.h>
+#include <work.h>
 #include <world_recorder.h>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace raycontact::bullet {
 
@@ -33,80 +37,74 @@ btScalar diagonal(const Leaf& leaf) {
     return btVector3(btScalar(b.x - a.x), btScalar(b.y - a.y), btScalar(b.z - a.z)).length();
 }
 
-/// Bullet has only its empty algorithm for two concave shapes.
-bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
-    const auto empty = [](const btCollisionShape& s) { return s.getShapeType() == EMPTY_SHAPE_PROXYTYPE; };
-    return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
-}
-
-/// What handles a pair of leaves; this does not depend on their positions.
-enum class Work { batch, plane, bullet, nothing };
-
-Work work_for(Kind a, Kind b, const btCollisionShape& shape_a, const btCollisionShape& shape_b) {
-    const bool mesh = a == Kind::mesh || b == Kind::mesh;
-    if (mesh && (a == Kind::plane || b == Kind::plane)) return Work::plane;
-    if (mesh && a != Kind::other && b != Kind::other) return Work::batch;
-    if (unsupported(shape_a, shape_b)) return Work::nothing;
-    return Work::bullet;
-}
+constexpr unsigned convex_kinds = bit(Kind::convex) | bit(Kind::round);
 
 /// Whether RayContact handles two shapes; for most pairs two type checks decide.
-bool for_us(const btCollisionShape& a, const btCollisionShape& b) {
-    if (a.isConvex() || b.isConvex()) return false;
-    const bool mesh_a = Objects::holds(a, Kind::mesh), mesh_b = Objects::holds(b, Kind::mesh);
-    const auto partner = [](const btCollisionShape& s) {
-        return Objects::holds(s, Kind::plane) || Objects::holds(s, Kind::field);
-    };
-    return (mesh_a && mesh_b) || (mesh_a && partner(b)) || (mesh_b && partner(a));
+bool for_us(const btCollisionShape& a, const btCollisionShape& b, ConvexShapes convex) {
+    if (a.isConvex() && b.isConvex()) return false;
+    unsigned partners = bit(Kind::mesh) | bit(Kind::plane) | bit(Kind::field);
+    if (convex == ConvexShapes::ours) partners |= convex_kinds;
+    const unsigned in_a = kinds_in(a), in_b = kinds_in(b);
+    return ((in_a & bit(Kind::mesh)) && (in_b & partners)) || ((in_b & bit(Kind::mesh)) && (in_a & partners));
+}
+
+bool is_whole(const btCollisionObjectWrapper& wrap) {
+    return wrap.getCollisionShape() == wrap.getCollisionObject()->getCollisionShape();
+}
+
+btTransform world_pose(const PairState& state, bool of_0, const Leaf& leaf) {
+    return (of_0 ? state.object0 : state.object1)->getWorldTransform() * leaf.local;
+}
+
+HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
+    const bool plane_is_0 = a.kind == Kind::plane;
+    const Leaf& plane = plane_is_0 ? a : b;
+    return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
 }
 
 } // namespace
 
 struct CollisionDispatcher::State {
-    State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m)
-        : dispatcher(d), manifolds(m), scene(settings), objects(scene), queries(settings, objects.shapes()),
-          create(queries) {}
+    State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m, ConvexShapes c)
+        : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c),
+          queries(settings, objects.shapes(), c, d) {}
 
     bool is_ours(btBroadphasePair& pair);
+    void visit(btBroadphasePair& pair, const btDispatcherInfo& info);
+    void ask(btBroadphasePair& pair, const btDispatcherInfo& info);
+    void drop_algorithm(btBroadphasePair& pair) const;
     void fetch_ahead(std::size_t i) const;
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
-    PairAlgorithm* make_algorithm(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
+    PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
-    void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    std::optional<HalfSpace> face_between(const PairState& state, const Leaf& a, const Leaf& b) const;
+    void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
+    void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
     void hand_out(std::span<const Contact> contacts);
 
     CollisionDispatcher& dispatcher;
     ManifoldSettings manifolds;
+    ConvexShapes convex;
     Scene scene;
     Objects objects;
     Queries queries;
-    QueryCreate create;
     DispatcherStats stats;
     std::uint64_t dispatch = 0;
+    bool asking = false;                 ///< a near callback is at work
     std::vector<btBroadphasePair*> ours; ///< of this dispatch
     std::vector<PairState*> work;        ///< this dispatch's pairs, in the broad phase's order
     std::vector<BatchEntry> batch;
     std::vector<std::pair<Slots, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs;
     std::vector<PlaneContact> below;
+    std::vector<RoundContact> near;
     std::unique_ptr<WorldRecorder> recorder; ///< null: nothing is recorded
 };
 
 CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
-                                         const ManifoldSettings& manifolds)
-    : btCollisionDispatcher(configuration), state_(std::make_unique<State>(*this, settings, manifolds)) {
-    const int meshes[] = {FAST_CONCAVE_MESH_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE,
-                          SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE, MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE,
-                          GIMPACT_SHAPE_PROXYTYPE};
-    for (const int a : meshes) {
-        for (const int b : meshes) registerClosestPointsCreateFunc(a, b, &state_->create);
-        for (const int b : {STATIC_PLANE_PROXYTYPE, TERRAIN_SHAPE_PROXYTYPE}) {
-            registerClosestPointsCreateFunc(a, b, &state_->create);
-            registerClosestPointsCreateFunc(b, a, &state_->create);
-        }
-    }
-}
+                                         const ManifoldSettings& manifolds, ConvexShapes convex)
+    : btCollisionDispatcher(configuration), state_(std::make_unique<State>(*this, settings, manifolds, convex)) {}
 
 CollisionDispatcher::~CollisionDispatcher() = default;
 
@@ -126,10 +124,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         const btDispatcherInfo& info;
         Visit(State& s_, const btDispatcherInfo& i) : state(s_), info(i) {}
         bool processOverlap(btBroadphasePair& pair) override {
-            if (!state.is_ours(pair)) {
-                ++state.stats.other_pairs;
-                state.dispatcher.getNearCallback()(pair, state.dispatcher, info);
-            }
+            state.visit(pair, info);
             return false;
         }
     } visit(s, info);
@@ -155,24 +150,64 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     }
 }
 
-// Also records the pair if it is ours.
+void CollisionDispatcher::State::drop_algorithm(btBroadphasePair& pair) const {
+    if (!pair.m_algorithm) return;
+    pair.m_algorithm->~btCollisionAlgorithm();
+    dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+    pair.m_algorithm = nullptr;
+}
+
 bool CollisionDispatcher::State::is_ours(btBroadphasePair& pair) {
     const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
     const btCollisionShape& shape_a = *a->getCollisionShape();
     const btCollisionShape& shape_b = *b->getCollisionShape();
-    if (!for_us(shape_a, shape_b)) {
-        const bool mesh = Objects::holds(shape_a, Kind::mesh) || Objects::holds(shape_b, Kind::mesh);
-        if (mesh && unsupported(shape_a, shape_b)) ++stats.unsupported;
-        if (PairAlgorithm::of(pair.m_algorithm)) { // its shape was replaced
-            pair.m_algorithm->~btCollisionAlgorithm();
-            dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
-            pair.m_algorithm = nullptr;
-        }
-        return false;
+    const bool ours_now = for_us(shape_a, shape_b, convex);
+    if (!ours_now && unsupported(shape_a, shape_b) && ((kinds_in(shape_a) | kinds_in(shape_b)) & bit(Kind::mesh)))
+        ++stats.unsupported;
+    return ours_now;
+}
+
+void CollisionDispatcher::State::visit(btBroadphasePair& pair, const btDispatcherInfo& info) {
+    if (is_ours(pair)) {
+        // Bullet's own callback would do what take() does for all of them, faster.
+        if (dispatcher.getNearCallback() == btCollisionDispatcher::defaultNearCallback)
+            ours.push_back(&pair);
+        else
+            ask(pair, info);
+        return;
     }
-    ours.push_back(&pair);
-    return true;
+    ++stats.other_pairs;
+    if (PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair); // a shape was replaced
+    dispatcher.getNearCallback()(pair, dispatcher, info);
+}
+
+void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherInfo& info) {
+    if (!PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair);
+    asking = true;
+    dispatcher.getNearCallback()(pair, dispatcher, info);
+    asking = false;
+    PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
+    if (!algorithm) return;
+    if (algorithm->take_wanted()) {
+        ours.push_back(&pair);
+        return;
+    }
+    // Not wanted because both sleep: they keep theirs. Otherwise the callback refused the pair.
+    const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+    const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+    if (algorithm->state() && dispatcher.needsCollision(a, b)) algorithm->state()->clear();
+}
+
+btCollisionAlgorithm* CollisionDispatcher::findAlgorithm(const btCollisionObjectWrapper* a,
+                                                         const btCollisionObjectWrapper* b,
+                                                         btPersistentManifold* manifold, ebtDispatcherQueryType type) {
+    if (!for_us(*a->getCollisionShape(), *b->getCollisionShape(), state_->convex))
+        return btCollisionDispatcher::findAlgorithm(a, b, manifold, type);
+    btCollisionAlgorithmConstructionInfo info(this, -1);
+    if (state_->asking && type == BT_CONTACT_POINT_ALGORITHMS && is_whole(*a) && is_whole(*b))
+        return new (allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info);
+    return new (allocateCollisionAlgorithm(sizeof(QueryAlgorithm))) QueryAlgorithm(info, state_->queries, *a, *b);
 }
 
 // Prefetches the state of some pairs ahead: it lies scattered in memory, and the solver has used the caches since.
@@ -180,8 +215,9 @@ void CollisionDispatcher::State::fetch_ahead(std::size_t i) const {
     constexpr std::size_t algorithms = 12, states = 6;
     if (i + algorithms < ours.size()) __builtin_prefetch(ours[i + algorithms]->m_algorithm);
     if (i + states >= ours.size()) return;
-    if (PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm)) {
-        const char* bytes = reinterpret_cast<const char*>(&coming->state());
+    PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm);
+    if (coming && coming->state()) {
+        const char* bytes = reinterpret_cast<const char*>(coming->state());
         for (std::size_t at = 0; at < sizeof(PairState); at += 64) __builtin_prefetch(bytes + at);
     }
 }
@@ -190,15 +226,9 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
     // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
-    if (!dispatcher.needsCollision(a, b) || (a->isStaticObject() && b->isStaticObject())) return;
-    PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
-    if (!algorithm) {
-        // A record made here has no pair yet; PairState, made next, acquires it.
-        objects.refresh(*a, dispatch);
-        objects.refresh(*b, dispatch);
-        algorithm = make_algorithm(pair, *a, *b);
-    }
-    PairState& state = algorithm->state();
+    const bool asked = dispatcher.getNearCallback() != btCollisionDispatcher::defaultNearCallback;
+    if ((!asked && !dispatcher.needsCollision(a, b)) || (a->isStaticObject() && b->isStaticObject())) return;
+    PairState& state = state_of(pair, *a, *b);
     objects.refresh(*a, state.record0, dispatch);
     objects.refresh(*b, state.record1, dispatch);
     state.check_versions(state.record0.version, state.record1.version);
@@ -207,18 +237,22 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     gather(state, state.record0, state.record1, info);
 }
 
-PairAlgorithm* CollisionDispatcher::State::make_algorithm(btBroadphasePair& pair, const btCollisionObject& a,
-                                                          const btCollisionObject& b) {
-    if (pair.m_algorithm) {
-        pair.m_algorithm->~btCollisionAlgorithm();
-        dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const btCollisionObject& a,
+                                                const btCollisionObject& b) {
+    PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
+    if (!algorithm) {
+        drop_algorithm(pair);
+        const btCollisionAlgorithmConstructionInfo info(&dispatcher, -1);
+        algorithm = new (dispatcher.allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info);
+        pair.m_algorithm = algorithm;
     }
-    btCollisionAlgorithmConstructionInfo info(&dispatcher, -1);
-    auto state = std::make_unique<PairState>(dispatcher, objects, &a, &b);
-    auto* made =
-        new (dispatcher.allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info, std::move(state));
-    pair.m_algorithm = made;
-    return made;
+    if (!algorithm->state()) {
+        // A record made here has no pair yet; PairState, made next, acquires it.
+        objects.refresh(a, dispatch);
+        objects.refresh(b, dispatch);
+        algorithm->set_state(std::make_unique<PairState>(dispatcher, objects, &a, &b));
+    }
+    return *algorithm->state();
 }
 
 void CollisionDispatcher::State::gather(PairState& state, const Object& a, const Object& b,
@@ -227,8 +261,12 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
         for (int j = 0; j < static_cast<int>(b.leaves.size()); ++j) {
             const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
-            switch (work_for(la.kind, lb.kind, *la.shape, *lb.shape)) {
+            switch (work_for(la, lb)) {
             case Work::batch: {
+                if (const auto face = face_between(state, la, lb)) {
+                    add_plane(state, i, j, la, lb, *face);
+                    break;
+                }
                 const bool swapped = slot_of(la.body) > slot_of(lb.body);
                 const Pair pair = swapped ? Pair{lb.body, la.body} : Pair{la.body, lb.body};
                 const btScalar reach = manifolds.patch_reach * btMin(diagonal(la), diagonal(lb));
@@ -236,7 +274,10 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
                 break;
             }
             case Work::plane:
-                add_plane(state, i, j, la, lb);
+                add_plane(state, i, j, la, lb, plane_between(state, la, lb));
+                break;
+            case Work::round:
+                add_round(state, i, j, la, lb);
                 break;
             case Work::bullet:
                 state.run_child(i, j, la, lb, info);
@@ -249,15 +290,26 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+// The batch alone knows other directions, and what is coming.
+std::optional<HalfSpace> CollisionDispatcher::State::face_between(const PairState& state, const Leaf& a,
+                                                                  const Leaf& b) const {
+    const bool box_is_0 = a.kind == Kind::convex;
+    const Leaf& box = box_is_0 ? a : b;
+    const Leaf& mesh = box_is_0 ? b : a;
+    const Settings& settings = scene.settings();
+    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.continuous || settings.direction != Direction::reprojected)
+        return std::nullopt;
+    return only_face(mesh.converted, world_pose(state, !box_is_0, mesh), static_cast<const btBoxShape&>(*box.shape),
+                     world_pose(state, box_is_0, box));
+}
+
+void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b,
+                                           const HalfSpace& space) {
+    ++stats.plane_pairs;
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
-    const Leaf& plane = mesh_is_0 ? b : a;
-    const btTransform pose0 = state.object0->getWorldTransform() * a.local;
-    const btTransform pose1 = state.object1->getWorldTransform() * b.local;
-    btVector3 normal;
-    plane_contacts(mesh.converted, mesh_is_0 ? pose0 : pose1, static_cast<const btStaticPlaneShape&>(*plane.shape),
-                   mesh_is_0 ? pose1 : pose0, normal, below);
+    const btVector3& normal = space.normal;
+    plane_contacts(mesh.converted, world_pose(state, mesh_is_0, mesh), space, below);
     for (const PlaneContact& c : below) {
         const btVector3 on_plane = c.point + normal * c.depth;
         Candidate candidate;
@@ -268,6 +320,32 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
         candidate.normal = mesh_is_0 ? normal : -normal;
         candidate.distance = -c.depth;
         candidate.reach = diagonal(mesh);
+        state.candidates.push_back(candidate);
+    }
+}
+
+void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+    ++stats.round_pairs;
+    const bool mesh_is_0 = a.kind == Kind::mesh;
+    const Leaf& mesh = mesh_is_0 ? a : b;
+    const Leaf& ball = mesh_is_0 ? b : a;
+    const btTransform pose0 = world_pose(state, true, a);
+    const btTransform pose1 = world_pose(state, false, b);
+    const Round round = round_of(*ball.shape);
+    // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
+    const btScalar reach =
+        btMin(gContactBreakingThreshold, ball.shape->getContactBreakingThreshold(gContactBreakingThreshold));
+    round_contacts(mesh.converted, mesh_is_0 ? pose0 : pose1, round, mesh_is_0 ? pose1 : pose0, reach, near);
+    for (const RoundContact& c : near) {
+        const btVector3 on_ball = c.point + c.normal * c.distance;
+        Candidate candidate;
+        candidate.key = {leaf0, leaf1, mesh_is_0 ? 1 : 0, c.place};
+        candidate.triangle = static_cast<int>(mesh.converted.shape->triangle_index()[c.triangle]);
+        candidate.on0 = mesh_is_0 ? c.point : on_ball;
+        candidate.on1 = mesh_is_0 ? on_ball : c.point;
+        candidate.normal = mesh_is_0 ? -c.normal : c.normal;
+        candidate.distance = c.distance;
+        candidate.reach = btMin(diagonal(mesh), 2 * round.radius + (round.ends[1] - round.ends[0]).length());
         state.candidates.push_back(candidate);
     }
 }
@@ -317,7 +395,8 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
         if (leaf.body != Leaf::no_body) return leaf.body;
     }
     state_->objects.pin(object, false);
-    throw InputError("CollisionDispatcher::add_body: the object has no triangle mesh; only meshes need to be added");
+    throw InputError("CollisionDispatcher::add_body: the object has no mesh, nor a shape that one stands for; only "
+                     "these need to be added");
 }
 
 void CollisionDispatcher::record(const std::filesystem::path& file, const RecorderOptions& options) {

@@ -1,42 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <objects.h>
 
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransformUtil.h>
 
 namespace raycontact::bullet {
-
-namespace {
-
-struct Flat {
-    const btCollisionShape* shape;
-    btTransform local;
-};
-
-void flatten(const btCollisionShape& shape, const btTransform& local, std::vector<Flat>& out) {
-    if (!shape.isCompound()) {
-        out.push_back({&shape, local});
-        return;
-    }
-    const auto& compound = static_cast<const btCompoundShape&>(shape);
-    for (int i = 0; i < compound.getNumChildShapes(); ++i)
-        flatten(*compound.getChildShape(i), local * compound.getChildTransform(i), out);
-}
-
-bool unchanged(const Object& record, const std::vector<Flat>& flat) {
-    if (record.stale || record.leaves.size() != flat.size()) return false;
-    for (std::size_t i = 0; i < flat.size(); ++i) {
-        const Leaf& leaf = record.leaves[i];
-        if (leaf.shape != flat[i].shape || !(leaf.local == flat[i].local) || leaf.kind != kind_of(*leaf.shape))
-            return false;
-        if ((leaf.kind == Kind::mesh || leaf.kind == Kind::field) && leaf.scaling != scaling_of(*leaf.shape))
-            return false;
-    }
-    return true;
-}
-
-} // namespace
 
 Pose to_pose(const btTransform& transform) {
     Pose pose;
@@ -48,13 +16,25 @@ Pose to_pose(const btTransform& transform) {
     return pose;
 }
 
-bool Objects::holds(const btCollisionShape& shape, Kind kind) {
-    if (!shape.isCompound()) return kind_of(shape) == kind;
-    const auto& compound = static_cast<const btCompoundShape&>(shape);
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-        if (holds(*compound.getChildShape(i), kind)) return true;
-    }
-    return false;
+Kind Objects::kind_for_us(const btCollisionShape& shape) const {
+    const Kind kind = kind_of(shape);
+    const bool left = convex_ == ConvexShapes::bullet && (kind == Kind::convex || kind == Kind::round);
+    return left ? Kind::other : kind;
+}
+
+bool Objects::unchanged(const btCollisionObject& object, const Object& record) const {
+    if (record.stale || record.version == 0) return false;
+    std::size_t count = 0;
+    bool same = true;
+    each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
+              [&](const btCollisionShape& shape, const btTransform& local) {
+                  same = same && count < record.leaves.size();
+                  if (!same) return;
+                  const Leaf& leaf = record.leaves[count++];
+                  same = leaf.shape == &shape && leaf.local == local && leaf.kind == kind_for_us(shape)
+                         && (!in_scene(leaf.kind) || leaf.form == form_of(shape));
+              });
+    return same && count == record.leaves.size();
 }
 
 Object* Objects::find(const btCollisionObject& object) {
@@ -64,9 +44,7 @@ Object* Objects::find(const btCollisionObject& object) {
 
 Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
-    std::vector<Flat> flat;
-    flatten(*object.getCollisionShape(), btTransform::getIdentity(), flat);
-    if (record.version == 0 || !unchanged(record, flat)) make_leaves(object, record);
+    if (!unchanged(object, record)) make_leaves(object, record);
     for (const Leaf& leaf : record.leaves) {
         if (leaf.body != Leaf::no_body) scene_.set_pose(leaf.body, to_pose(object.getWorldTransform() * leaf.local));
     }
@@ -90,21 +68,21 @@ void Objects::expect(const btCollisionObject& object, const Object& record) {
 
 void Objects::make_leaves(const btCollisionObject& object, Object& record) {
     drop_bodies(record);
-    std::vector<Flat> flat;
-    flatten(*object.getCollisionShape(), btTransform::getIdentity(), flat);
-    for (const Flat& f : flat) {
-        Leaf leaf;
-        leaf.shape = f.shape;
-        leaf.local = f.local;
-        leaf.kind = kind_of(*f.shape);
-        leaf.scaling.setValue(1, 1, 1);
-        if (leaf.kind == Kind::mesh || leaf.kind == Kind::field) {
-            leaf.scaling = scaling_of(*f.shape);
-            leaf.converted = shapes_.get(*f.shape);
-            leaf.body = scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
-        }
-        record.leaves.push_back(leaf);
-    }
+    each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
+              [&](const btCollisionShape& shape, const btTransform& local) {
+                  Leaf leaf;
+                  leaf.shape = &shape;
+                  leaf.local = local;
+                  leaf.kind = kind_for_us(shape);
+                  if (in_scene(leaf.kind)) {
+                      leaf.form = form_of(shape);
+                      leaf.converted = shapes_.get(shape);
+                      if (leaf.converted.shape)
+                          leaf.body =
+                              scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
+                  }
+                  record.leaves.push_back(leaf);
+              });
     record.version = ++versions_;
     record.stale = false;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <convert.h>
+#include <raycontact/bullet/dispatcher.h>
 #include <raycontact/scene.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <cstdint>
 #include <memory>
@@ -16,11 +18,11 @@ namespace raycontact::bullet {
 /// One shape of an object that is not a compound; an object without compounds has one leaf.
 struct Leaf {
     const btCollisionShape* shape = nullptr;
-    btTransform local; ///< leaf frame in the object's frame
-    btVector3 scaling; ///< at conversion
+    btTransform local = btTransform::getIdentity(); ///< leaf frame in the object's frame
+    Form form;                                      ///< at conversion
     Kind kind = Kind::other;
-    Converted converted;   ///< mesh or field
-    BodyId body = no_body; ///< in the scene; mesh or field
+    Converted converted;   ///< mesh, field or convex
+    BodyId body = no_body; ///< in the scene; of the same kinds
     static constexpr BodyId no_body = ~BodyId{0};
 };
 
@@ -34,10 +36,27 @@ struct Object {
     bool stale = false;        ///< refresh() was called
 };
 
+/// Whether leaves of this kind are bodies of the scene.
+constexpr bool in_scene(Kind kind) {
+    return kind == Kind::mesh || kind == Kind::field || kind == Kind::convex;
+}
+
+/// Calls visit(shape, local) for each leaf, depth first; `local` in the frame of the whole.
+template <class Visit>
+void each_leaf(const btCollisionShape& shape, const btTransform& local, Visit&& visit) {
+    if (!shape.isCompound()) {
+        visit(shape, local);
+        return;
+    }
+    const auto& compound = static_cast<const btCompoundShape&>(shape);
+    for (int i = 0; i < compound.getNumChildShapes(); ++i)
+        each_leaf(*compound.getChildShape(i), local * compound.getChildTransform(i), visit);
+}
+
 /// The objects in use and their bodies in the scene. Never iterated, so no address decides an order.
 class Objects {
 public:
-    explicit Objects(Scene& scene) : scene_(scene) {}
+    Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex) {}
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
     /// poses to the scene once per `dispatch`.
@@ -63,15 +82,15 @@ public:
 
     ShapeCache& shapes() { return shapes_; }
 
-    /// Whether the object contains a mesh, directly or in a compound.
-    static bool holds(const btCollisionShape& shape, Kind kind);
-
 private:
+    Kind kind_for_us(const btCollisionShape& shape) const;
+    bool unchanged(const btCollisionObject& object, const Object& record) const;
     void make_leaves(const btCollisionObject& object, Object& record);
     void drop_bodies(Object& record);
     void expect(const btCollisionObject& object, const Object& record);
 
     Scene& scene_;
+    ConvexShapes convex_;
     ShapeCache shapes_;
     std::unordered_map<const btCollisionObject*, Object> records_;
     std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()

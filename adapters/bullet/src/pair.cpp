@@ -15,11 +15,16 @@ PairState::PairState(btCollisionDispatcher& dispatcher, Objects& objects, const 
       dispatcher_(dispatcher), objects_(objects) {}
 
 PairState::~PairState() {
-    for (const ChildPair& child : children_) drop_child(child);
     // The objects may be gone from the world, but Bullet cleans pairs before it forgets them.
-    patches.clear();
+    clear();
     objects_.release(object0);
     objects_.release(object1);
+}
+
+void PairState::clear() {
+    for (const ChildPair& child : children_) drop_child(child);
+    children_.clear();
+    patches.clear();
 }
 
 void PairState::drop_child(const ChildPair& child) {
@@ -62,7 +67,9 @@ void PairState::run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, co
     if (found != children_.end()) {
         algorithm = found->algorithm;
     } else {
-        algorithm = dispatcher_.findAlgorithm(&wrap0, &wrap1, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+        // Bullet's own: our findAlgorithm is for whole objects.
+        algorithm =
+            dispatcher_.btCollisionDispatcher::findAlgorithm(&wrap0, &wrap1, nullptr, BT_CONTACT_POINT_ALGORITHMS);
         children_.push_back({leaf0, leaf1, algorithm});
     }
     btManifoldResult result(&wrap0, &wrap1);

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -33,6 +34,8 @@ public:
     /// Drops what was kept for old leaves if an object's leaves have changed.
     void check_versions(std::uint64_t version0, std::uint64_t version1);
     void all_manifolds(btManifoldArray& out) const;
+    /// No contacts from now on, until the next update.
+    void clear();
 
     const btCollisionObject* object0;
     const btCollisionObject* object1;
@@ -53,27 +56,35 @@ private:
 /// pool of algorithms, which does not check sizes.
 class PairAlgorithm final : public btCollisionAlgorithm {
 public:
-    PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, std::unique_ptr<PairState> state)
-        : btCollisionAlgorithm(info), state_(std::move(state)) {}
+    /// Without a state: the dispatcher gives it one when it takes the pair.
+    explicit PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info) : btCollisionAlgorithm(info) {}
 
-    PairState& state() { return *state_; }
+    PairState* state() { return state_.get(); }
+    void set_state(std::unique_ptr<PairState> state) { state_ = std::move(state); }
+    /// Whether processCollision was called since the last time.
+    bool take_wanted() { return std::exchange(wanted_, false); }
     /// Null for Bullet's own. Called for every pair in every step, so without dynamic_cast, which takes longer.
     static PairAlgorithm* of(btCollisionAlgorithm* algorithm) {
         return algorithm && typeid(*algorithm) == typeid(PairAlgorithm) ? static_cast<PairAlgorithm*>(algorithm)
                                                                         : nullptr;
     }
 
-    /// The dispatcher works in a batch; nothing is left to do for one pair.
+    /// The dispatcher works in a batch, later: this is how a near callback says that the pair belongs to it.
     void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
-                          btManifoldResult*) override {}
+                          btManifoldResult*) override {
+        wanted_ = true;
+    }
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                    btManifoldResult*) override {
         return btScalar(1);
     }
-    void getAllContactManifolds(btManifoldArray& out) override { state_->all_manifolds(out); }
+    void getAllContactManifolds(btManifoldArray& out) override {
+        if (state_) state_->all_manifolds(out);
+    }
 
 private:
     std::unique_ptr<PairState> state_;
+    bool wanted_ = false;
 };
 
 } // namespace raycontact::bullet

@@ -297,6 +297,10 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
             if (absent_steps(m.getContactPoint(i)) == 0) call_added(m.getContactPoint(i), object0_, object1_);
         }
         if (was_empty && gContactStartedCallback) gContactStartedCallback(patch.manifold);
+        // Bullet calls it when it refreshes a manifold, in every step for every point, the last one first.
+        for (int i = m.getNumContacts() - 1; gContactProcessedCallback && i >= 0; --i)
+            gContactProcessedCallback(m.getContactPoint(i), const_cast<btCollisionObject*>(m.getBody0()),
+                                      const_cast<btCollisionObject*>(m.getBody1()));
         stats.points += static_cast<std::uint64_t>(m.getNumContacts());
         ++stats.manifolds;
         manifolds_.push_back(patch.manifold);

@@ -7,14 +7,21 @@
 
 namespace raycontact::bullet {
 
-void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const btStaticPlaneShape& plane,
-                    const btTransform& plane_pose, btVector3& normal, std::vector<PlaneContact>& out) {
+HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose) {
+    HalfSpace space;
+    space.normal = (plane_pose.getBasis() * plane.getPlaneNormal()).normalized();
+    const btVector3 &n = space.normal, &o = plane_pose.getOrigin();
+    space.height = double(n.x()) * double(o.x()) + double(n.y()) * double(o.y()) + double(n.z()) * double(o.z())
+                   + double(plane.getPlaneConstant());
+    return space;
+}
+
+void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space,
+                    std::vector<PlaneContact>& out) {
     out.clear();
-    normal = (plane_pose.getBasis() * plane.getPlaneNormal()).normalized();
+    const btVector3& normal = space.normal;
     const double nx = double(normal.x()), ny = double(normal.y()), nz = double(normal.z());
-    const btVector3& origin = plane_pose.getOrigin();
-    const double height =
-        nx * double(origin.x()) + ny * double(origin.y()) + nz * double(origin.z()) + double(plane.getPlaneConstant());
+    const double height = space.height;
 
     // The tree prunes in the mesh's frame, with slack; the depth is computed in double, in the world.
     const btVector3 local = normal * mesh_pose.getBasis(); // row vector: the inverse rotation

@@ -18,8 +18,15 @@ struct PlaneContact {
     btScalar depth;       ///< > 0, along the plane's normal, metres
 };
 
-/// Every vertex of the mesh below the plane, ascending; `normal` becomes the plane's unit normal in the world frame.
-void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const btStaticPlaneShape& plane,
-                    const btTransform& plane_pose, btVector3& normal, std::vector<PlaneContact>& out);
+/// All points p with normal . p <= height. World frame.
+struct HalfSpace {
+    btVector3 normal; ///< unit
+    double height = 0;
+};
+HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose);
+
+/// Every vertex of the mesh within the half space, ascending.
+void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space,
+                    std::vector<PlaneContact>& out);
 
 } // namespace raycontact::bullet

@@ -2,9 +2,10 @@
 #include <query.h>
 
 #include <plane.h>
+#include <round.h>
+#include <work.h>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include <array>
 
@@ -22,36 +23,144 @@ void surface_points(const Contact& c, btVector3& on_a, btVector3& on_b) {
     on_b = c.vertex_body == VertexBody::a ? btVector3(vertex - across) : vertex;
 }
 
-void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btManifoldResult& result) {
-    const Kind kind_a = kind_of(*a.getCollisionShape()), kind_b = kind_of(*b.getCollisionShape());
-    if (kind_a == Kind::plane || kind_b == Kind::plane) {
-        const bool a_is_mesh = kind_b == Kind::plane;
-        const btCollisionObjectWrapper& mesh = a_is_mesh ? a : b;
-        const btCollisionObjectWrapper& plane = a_is_mesh ? b : a;
-        if (kind_of(*mesh.getCollisionShape()) != Kind::mesh) return;
-        btVector3 normal;
-        std::vector<PlaneContact> found;
-        plane_contacts(shapes_.get(*mesh.getCollisionShape()), mesh.getWorldTransform(),
-                       static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape()), plane.getWorldTransform(),
-                       normal, found);
-        for (const PlaneContact& c : found) {
-            if (a_is_mesh)
-                result.addContactPoint(normal, c.point + normal * c.depth, -c.depth);
-            else
-                result.addContactPoint(-normal, c.point, -c.depth);
+std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) const {
+    std::vector<Placed> leaves;
+    each_leaf(*wrap.getCollisionShape(), wrap.getWorldTransform(),
+              [&](const btCollisionShape& shape, const btTransform& pose) {
+                  Placed placed{{}, pose, static_cast<int>(leaves.size())};
+                  placed.leaf.shape = &shape;
+                  placed.leaf.kind = kind_of(shape);
+                  const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
+                  if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
+                  leaves.push_back(placed);
+              });
+    return leaves;
+}
+
+void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btDispatcherInfo& info,
+                  btManifoldResult& result) {
+    std::vector<Placed> leaves_a = leaves_of(a), leaves_b = leaves_of(b);
+    btPersistentManifold* const manifold = result.getPersistentManifold();
+    const btScalar apart = result.m_closestPointDistanceThreshold;
+    for (Placed& one : leaves_a) {
+        btVector3 low, high;
+        one.leaf.shape->getAabb(one.pose, low, high);
+        const btVector3 around(apart, apart, apart);
+        for (Placed& two : leaves_b) {
+            btVector3 low_b, high_b;
+            two.leaf.shape->getAabb(two.pose, low_b, high_b);
+            if (!TestAabbAgainstAabb2(low - around, high + around, low_b, high_b)) continue;
+            run_pair(one, two, a, b, info, result);
+            result.setPersistentManifold(manifold); // Bullet's algorithms put in theirs, which is gone
         }
-        return;
     }
-    const BodyId body_a = scene_.add(shapes_.get(*a.getCollisionShape()).shape, to_pose(a.getWorldTransform()));
-    const BodyId body_b = scene_.add(shapes_.get(*b.getCollisionShape()).shape, to_pose(b.getWorldTransform()));
+}
+
+void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
+                       const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info,
+                       btManifoldResult& result) {
+    const auto convert = [&](Placed& placed) {
+        if (in_scene(placed.leaf.kind) && !placed.leaf.converted.shape)
+            placed.leaf.converted = shapes_.get(*placed.leaf.shape);
+    };
+    if (a.leaf.kind == Kind::mesh || b.leaf.kind == Kind::mesh) {
+        convert(a);
+        convert(b);
+    }
+    const bool convex = a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex;
+    switch (work_for(a.leaf, b.leaf)) {
+    case Work::plane:
+        run_plane(a, b, result);
+        break;
+    case Work::round:
+        run_round(a, b, result);
+        break;
+    case Work::batch:
+        if (convex && result.m_closestPointDistanceThreshold > 0)
+            run_bullet(a, b, whole_a, whole_b, info, result);
+        else
+            run_batch(a, b, result);
+        break;
+    case Work::bullet:
+        run_bullet(a, b, whole_a, whole_b, info, result);
+        break;
+    case Work::nothing:
+        break;
+    }
+}
+
+void Queries::run_plane(const Placed& a, const Placed& b, btManifoldResult& result) {
+    const bool a_is_mesh = b.leaf.kind == Kind::plane;
+    const Placed& mesh = a_is_mesh ? a : b;
+    const Placed& plane = a_is_mesh ? b : a;
+    const HalfSpace space = half_space(static_cast<const btStaticPlaneShape&>(*plane.leaf.shape), plane.pose);
+    const btVector3& normal = space.normal;
+    std::vector<PlaneContact> found;
+    plane_contacts(mesh.leaf.converted, mesh.pose, space, found);
+    for (const PlaneContact& c : found) {
+        const int vertex = static_cast<int>(mesh.leaf.converted.shape->vertex_index()[c.vertex]);
+        result.setShapeIdentifiersA(a.index, a_is_mesh ? vertex : 0);
+        result.setShapeIdentifiersB(b.index, a_is_mesh ? 0 : vertex);
+        if (a_is_mesh)
+            result.addContactPoint(normal, c.point + normal * c.depth, -c.depth);
+        else
+            result.addContactPoint(-normal, c.point, -c.depth);
+    }
+}
+
+void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& result) {
+    const bool a_is_mesh = a.leaf.kind == Kind::mesh;
+    const Placed& mesh = a_is_mesh ? a : b;
+    const Placed& ball = a_is_mesh ? b : a;
+    std::vector<RoundContact> found;
+    round_contacts(mesh.leaf.converted, mesh.pose, round_of(*ball.leaf.shape), ball.pose,
+                   result.m_closestPointDistanceThreshold, found);
+    for (const RoundContact& c : found) {
+        const int triangle = static_cast<int>(mesh.leaf.converted.shape->triangle_index()[c.triangle]);
+        result.setShapeIdentifiersA(a.index, a_is_mesh ? triangle : c.place);
+        result.setShapeIdentifiersB(b.index, a_is_mesh ? c.place : triangle);
+        if (a_is_mesh)
+            result.addContactPoint(-c.normal, c.point + c.normal * c.distance, c.distance);
+        else
+            result.addContactPoint(c.normal, c.point, c.distance);
+    }
+}
+
+void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& result) {
+    const BodyId body_a = scene_.add(a.leaf.converted.shape, to_pose(a.pose));
+    const BodyId body_b = scene_.add(b.leaf.converted.shape, to_pose(b.pose));
     const std::array pairs{Pair{body_a, body_b}};
     for (const Contact& c : scene_.step(pairs)) {
         btVector3 on_a, on_b;
         surface_points(c, on_a, on_b);
+        const int source = static_cast<int>(c.vertex), target = static_cast<int>(c.triangle);
+        const bool of_a = c.vertex_body == VertexBody::a;
+        result.setShapeIdentifiersA(a.index, of_a ? source : target);
+        result.setShapeIdentifiersB(b.index, of_a ? target : source);
         result.addContactPoint(-normal_of(c), on_b, btScalar(-c.depth));
     }
     scene_.remove(body_a);
     scene_.remove(body_b);
+}
+
+void Queries::run_bullet(const Placed& a, const Placed& b, const btCollisionObjectWrapper& whole_a,
+                         const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info,
+                         btManifoldResult& result) {
+    const btCollisionObjectWrapper wrap_a(&whole_a, a.leaf.shape, whole_a.getCollisionObject(), a.pose, -1, a.index);
+    const btCollisionObjectWrapper wrap_b(&whole_b, b.leaf.shape, whole_b.getCollisionObject(), b.pose, -1, b.index);
+    btCollisionAlgorithm* algorithm =
+        dispatcher_.btCollisionDispatcher::findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CLOSEST_POINT_ALGORITHMS);
+    const btCollisionObjectWrapper* const own_a = result.getBody0Wrap();
+    const btCollisionObjectWrapper* const own_b = result.getBody1Wrap();
+    result.setBody0Wrap(&wrap_a);
+    result.setBody1Wrap(&wrap_b);
+    result.setShapeIdentifiersA(-1, a.index);
+    result.setShapeIdentifiersB(-1, b.index);
+    algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
+    result.setBody0Wrap(own_a);
+    result.setBody1Wrap(own_b);
+    algorithm->~btCollisionAlgorithm();
+    dispatcher_.freeCollisionAlgorithm(algorithm);
 }
 
 } // namespace raycontact::bullet

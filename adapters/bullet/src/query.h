@@ -4,24 +4,45 @@
 #include <objects.h>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include <vector>
 
 namespace raycontact::bullet {
 
-/// What contactTest and contactPairTest need where Bullet has no algorithm: meshes against meshes, planes, fields.
+/// What contactTest and contactPairTest need: the contacts of two objects of which RayContact handles a pair of leaves.
 class Queries {
 public:
-    Queries(const Settings& settings, ShapeCache& shapes) : scene_(settings), shapes_(shapes) {}
+    Queries(const Settings& settings, ShapeCache& shapes, ConvexShapes convex, btCollisionDispatcher& dispatcher)
+        : scene_(settings), shapes_(shapes), convex_(convex), dispatcher_(dispatcher) {}
 
-    /// Every contact between two leaves, given to `result`.
-    void run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btManifoldResult& result);
-    const Scene& scene() const { return scene_; } ///< with the contacts of the last call, its bodies gone
+    /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
+    /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
+    void run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btDispatcherInfo& info,
+             btManifoldResult& result);
+    const Scene& scene() const { return scene_; } ///< with the contacts of the last pair of meshes, its bodies gone
 
 private:
+    struct Placed {
+        Leaf leaf;
+        btTransform pose; ///< world
+        int index;
+    };
+    std::vector<Placed> leaves_of(const btCollisionObjectWrapper& wrap) const;
+    void run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
+                  const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
+    void run_plane(const Placed& a, const Placed& b, btManifoldResult& result);
+    void run_round(const Placed& a, const Placed& b, btManifoldResult& result);
+    void run_batch(const Placed& a, const Placed& b, btManifoldResult& result);
+    void run_bullet(const Placed& a, const Placed& b, const btCollisionObjectWrapper& whole_a,
+                    const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
+
     Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
     ShapeCache& shapes_;
+    ConvexShapes convex_;
+    btCollisionDispatcher& dispatcher_;
 };
 
 /// Owns an empty manifold: Bullet reads from a result's manifold which body comes first.
@@ -35,10 +56,10 @@ public:
     QueryAlgorithm(const QueryAlgorithm&) = delete;
     QueryAlgorithm& operator=(const QueryAlgorithm&) = delete;
 
-    void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
-                          btManifoldResult* result) override {
+    void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                          const btDispatcherInfo& info, btManifoldResult* result) override {
         result->setPersistentManifold(manifold_);
-        queries_.run(*a, *b, *result);
+        queries_.run(*a, *b, info, *result);
     }
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                    btManifoldResult*) override {
@@ -49,17 +70,6 @@ public:
 private:
     Queries& queries_;
     btPersistentManifold* manifold_;
-};
-
-struct QueryCreate final : btCollisionAlgorithmCreateFunc {
-    explicit QueryCreate(Queries& q) : queries(q) {}
-    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
-                                                   const btCollisionObjectWrapper* a,
-                                                   const btCollisionObjectWrapper* b) override {
-        void* place = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(QueryAlgorithm));
-        return new (place) QueryAlgorithm(info, queries, *a, *b);
-    }
-    Queries& queries;
 };
 
 /// To Bullet's terms: on0 and on1 for a contact between a (body 0) and b (body 1).

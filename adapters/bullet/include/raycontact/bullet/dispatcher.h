@@ -24,13 +24,23 @@ struct ManifoldSettings {
     int keep_steps = 8;
 };
 
+/// Who finds the contacts of a mesh with Bullet's convex shapes. Pairs of convex shapes are Bullet's in any case.
+enum class ConvexShapes {
+    /// RayContact: balls and capsules in closed form; boxes, cylinders, cones, hulls and multi-spheres as meshes made
+    /// once for each shape. Other convex shapes are left to Bullet.
+    ours,
+    bullet, ///< Bullet's own algorithms, a triangle at a time, with their margins
+};
+
 /// What the last dispatch did.
 struct DispatcherStats {
     std::uint64_t pairs = 0;          ///< pairs of objects that RayContact handled
-    std::uint64_t mesh_pairs = 0;     ///< pairs of meshes in its batch (a compound gives several)
+    std::uint64_t mesh_pairs = 0;     ///< pairs of meshes, or their like, in its batch (a compound gives several)
+    std::uint64_t plane_pairs = 0;    ///< pairs of a mesh and a plane, or a box's face that it lies wholly over
+    std::uint64_t round_pairs = 0;    ///< pairs of a mesh and a ball or capsule
     std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
-    std::uint64_t contacts = 0;       ///< mesh and plane contacts found, and those to come
+    std::uint64_t contacts = 0;       ///< contacts found, those to come, and of balls and capsules those that are near
     std::uint64_t points = 0;         ///< kept as manifold points
     std::uint64_t points_matched = 0; ///< of those, points that were there in the step before (same key)
     std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
@@ -42,7 +52,9 @@ struct DispatcherStats {
 struct PointKey {
     int child0 = 0, child1 = 0; ///< index of the leaf shape, depth first, when a body is a compound; else 0
     int vertex_body = 0;        ///< 0: the feature belongs to the manifold's body 0; 1: to its body 1
-    int vertex = 0;             ///< index in its file, mesh interface or shape; of an edge as Contact::vertex
+    /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of an edge as Contact::vertex. A
+    /// ball's or capsule's: any number that stays.
+    int vertex = 0;
     Feature feature = Feature::vertex;
     std::uint32_t crossing = 0; ///< as Contact::crossing, but a manifold point has room for ten bits: key_crossing()
     friend bool operator==(const PointKey&, const PointKey&) = default;
@@ -54,19 +66,26 @@ std::uint32_t key_crossing(std::uint32_t crossing);
 
 /// Use it in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
 /// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, also inside compounds) go to RayContact in one batch a step;
-/// meshes against planes and height fields are handled here as well; Bullet's near callback gets the rest. Call
-/// refresh() for a mesh that was changed in place. Not thread-safe, like Bullet's.
+/// meshes against planes, height fields and convex shapes are handled here as well, Bullet handles the rest. A near
+/// callback of your own is asked about every pair; the batch has those for which it calls defaultNearCallback, or
+/// findAlgorithm and processCollision. Call refresh() for a mesh or hull that was changed in place. Not thread-safe,
+/// like Bullet's.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use. Direction `weighted` gives Bullet the
     /// points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1). scene() has the weights.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
-                                 const ManifoldSettings& manifolds = {});
+                                 const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
     ~CollisionDispatcher() override;
 
     /// Throws InputError naming the body when a pose is not finite, or a mesh cannot be converted.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
+
+    /// Bullet's near callbacks and queries ask here. For a pair that is ours: in a dispatch an algorithm that puts it
+    /// into the batch, otherwise (contactTest and contactPairTest) one that finds its contacts at once.
+    btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                        btPersistentManifold* manifold, ebtDispatcherQueryType type) override;
 
     /// Optional: gives the object's meshes their slots in scene() at once and keeps them even when no pair needs them,
     /// so slots follow the caller's order. Returns the id of its first mesh. The object must be removed by remove_body

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <box_face.h>
+
+#include <LinearMath/btAabbUtil2.h>
+
+namespace raycontact::bullet {
+
+namespace {
+
+btVector3 to_bullet(const Vec3& v) {
+    return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+}
+
+/// The face that a box in the other box's frame lies over: twice the axis, plus one for the upper side; -1 for none.
+int face_under(const btVector3& low, const btVector3& high, const btVector3& half) {
+    int face = -1;
+    for (int k = 0; k < 3; ++k) {
+        // Beyond both faces, or neither, says nothing; the middle keeps the way out plain.
+        const bool above = high[k] > half[k], below = low[k] < -half[k];
+        if (!above && !below) continue;
+        if (face >= 0 || (above && below) || (above ? low[k] < 0 : high[k] > 0)) return -1;
+        face = 2 * k + (above ? 1 : 0);
+    }
+    return face;
+}
+
+} // namespace
+
+std::optional<HalfSpace> only_face(const Converted& mesh, const btTransform& mesh_pose, const btBoxShape& box,
+                                   const btTransform& box_pose) {
+    const btVector3 half = box.getHalfExtentsWithMargin().absolute();
+    const btTransform relative = box_pose.inverseTimes(mesh_pose);
+    // Rims count as near from a little farther off: these frames are rounded.
+    const btScalar slack = btScalar(1e-5) * (half[half.maxAxis()] + relative.getOrigin().length());
+    btVector3 low, high;
+    btTransformAabb(to_bullet(mesh.shape->box_min()), to_bullet(mesh.shape->box_max()), slack, relative, low, high);
+    int face = face_under(low, high, half);
+    if (face < 0) {
+        // The vertices' own box is smaller and takes longer.
+        const btVector3 size = high - low;
+        bool near_rim = false;
+        for (int k = 0; k < 3; ++k) near_rim = near_rim || size[k] > 2 * half[k];
+        if (near_rim) return std::nullopt;
+        mesh.tree->bounds(relative, low, high);
+        const btVector3 around(slack, slack, slack);
+        face = face_under(low - around, high + around, half);
+    }
+    if (face < 0) return std::nullopt;
+    const int axis = face / 2;
+    btVector3 normal = box_pose.getBasis().getColumn(axis).normalized();
+    if (face % 2 == 0) normal = -normal;
+    const btVector3& o = box_pose.getOrigin();
+    HalfSpace space;
+    space.normal = normal;
+    space.height = double(normal.x()) * double(o.x()) + double(normal.y()) * double(o.y())
+                   + double(normal.z()) * double(o.z()) + double(half[axis]);
+    return space;
+}
+
+} // namespace raycontact::bullet

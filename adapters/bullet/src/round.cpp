@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <round.h>
+
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace raycontact::bullet {
+
+namespace {
+
+/// The point of a triangle that is nearest to another point.
+struct Nearest {
+    btVector3 point;
+    btScalar away2{}; ///< squared distance
+    unsigned on = 7;  ///< the corners that span what it lies on: bits 0 to 2
+};
+
+/// After Ericson, Real-Time Collision Detection, 5.1.5.
+Nearest nearest(const btVector3& a, const btVector3& b, const btVector3& c, const btVector3& p) {
+    const auto found = [&](const btVector3& q, unsigned on) { return Nearest{q, (q - p).length2(), on}; };
+    const btVector3 ab = b - a, ac = c - a, ap = p - a;
+    const btScalar d1 = ab.dot(ap), d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return found(a, 1);
+    const btVector3 bp = p - b;
+    const btScalar d3 = ab.dot(bp), d4 = ac.dot(bp);
+    if (d3 >= 0 && d4 <= d3) return found(b, 2);
+    const btScalar vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return found(a + ab * (d1 / (d1 - d3)), 3);
+    const btVector3 cp = p - c;
+    const btScalar d5 = ab.dot(cp), d6 = ac.dot(cp);
+    if (d6 >= 0 && d5 <= d6) return found(c, 4);
+    const btScalar vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return found(a + ac * (d2 / (d2 - d6)), 5);
+    const btScalar va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return found(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 6);
+    const btScalar sum = va + vb + vc;
+    return found(a + ab * (vb / sum) + ac * (vc / sum), 7);
+}
+
+/// Normals by which two faces count as one.
+constexpr btScalar flat = btScalar(1 - 1e-6);
+/// Squared lengths, in squared reaches, that count as equal.
+constexpr btScalar hair2 = btScalar(1e-7);
+
+struct Found {
+    btVector3 point, normal;
+    btScalar away{}; ///< of the centre; negative inside
+    std::uint32_t triangle = 0;
+};
+
+/// The triangles near a ball or capsule. Mesh frame.
+class Neighbourhood {
+public:
+    Neighbourhood(const Converted& mesh, const btVector3& a, const btVector3& b, btScalar limit)
+        : mesh_(mesh), limit2_(limit * limit) {
+        btVector3 low = a, high = a;
+        low.setMin(b);
+        high.setMax(b);
+        const btVector3 around(limit, limit, limit);
+        triangles_.clear();
+        mesh.tree->overlapping(low - around, high + around, [&](std::uint32_t t) { triangles_.push_back(t); });
+        std::sort(triangles_.begin(), triangles_.end());
+        fans_.clear();
+        for (const std::uint32_t t : triangles_)
+            for (const std::uint32_t v : mesh.tree->triangle(t)) fans_.emplace_back(v, t);
+        std::sort(fans_.begin(), fans_.end());
+    }
+
+    void of_end(const btVector3& centre, std::vector<Found>& out) const;
+    void of_side(const btVector3& a, const btVector3& b, std::vector<Found>& out) const;
+
+private:
+    const btVector3& corner(std::uint32_t t, int k) const {
+        return mesh_.tree->vertex(mesh_.tree->triangle(t)[static_cast<std::size_t>(k)]);
+    }
+    btVector3 face_normal(std::uint32_t t) const {
+        return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
+    }
+    Nearest nearest_on(std::uint32_t t, const btVector3& p) const {
+        return nearest(corner(t, 0), corner(t, 1), corner(t, 2), p);
+    }
+    /// Calls visit(triangle) for those around a triangle's corner or edge (`on`, bits as Nearest::on), itself included.
+    template <class Visit>
+    void around(std::uint32_t t, unsigned on, Visit&& visit) const {
+        const auto& ids = mesh_.tree->triangle(t);
+        std::size_t first = 0;
+        while (!(on >> first & 1)) ++first;
+        const auto begin = std::lower_bound(fans_.begin(), fans_.end(), std::pair{ids[first], std::uint32_t{0}});
+        for (auto i = begin; i != fans_.end() && i->first == ids[first]; ++i) {
+            const auto& other = mesh_.tree->triangle(i->second);
+            bool holds = true;
+            for (std::size_t k = 0; k < 3; ++k)
+                holds = holds && (!(on >> k & 1) || std::find(other.begin(), other.end(), ids[k]) != other.end());
+            if (holds) visit(i->second);
+        }
+    }
+    /// Whether no triangle around comes nearer to p than at this place.
+    bool is_least(std::uint32_t t, unsigned on, const btVector3& p, btScalar away2) const {
+        bool least = true;
+        around(t, on,
+               [&](std::uint32_t other) { least = least && nearest_on(other, p).away2 >= away2 - hair2 * limit2_; });
+        return least;
+    }
+    /// Out of the mesh at a corner or edge; any length. Decides what is inside (Baerentzen and Aanaes 2005).
+    btVector3 outwards(std::uint32_t t, unsigned on) const {
+        if (on == 7) return face_normal(t);
+        if ((on & (on - 1)) == 0) {
+            const std::size_t k = on == 1 ? 0 : on == 2 ? 1 : 2;
+            const Vec3& n = mesh_.shape->vertex_normals()[mesh_.tree->triangle(t)[k]];
+            return btVector3(btScalar(n.x), btScalar(n.y), btScalar(n.z));
+        }
+        btVector3 sum(0, 0, 0);
+        around(t, on, [&](std::uint32_t other) { sum += face_normal(other); });
+        return sum;
+    }
+    bool is_flat(std::uint32_t t, unsigned on) const {
+        const btVector3 normal = face_normal(t);
+        bool same = true;
+        int count = 0;
+        around(t, on, [&](std::uint32_t other) {
+            ++count;
+            same = same && face_normal(other).dot(normal) > flat;
+        });
+        return same && count > 1;
+    }
+    void add(std::vector<Found>& out, const Found& found) const {
+        const bool known = std::any_of(out.begin(), out.end(), [&](const Found& f) {
+            return (f.point - found.point).length2() < 10 * hair2 * limit2_ && f.away * found.away > 0;
+        });
+        if (!known) out.push_back(found);
+    }
+    Found make(std::uint32_t t, unsigned on, const btVector3& p, const btVector3& centre, btScalar away2) const {
+        Found found;
+        found.point = p;
+        found.triangle = t;
+        const btVector3 out = outwards(t, on);
+        const btScalar away = btSqrt(away2);
+        const bool inside = out.dot(centre - p) < 0;
+        found.away = inside ? -away : away;
+        // On the surface itself the line from it to the centre has no direction.
+        if (away2 <= hair2 * limit2_)
+            found.normal = face_normal(t);
+        else
+            found.normal = (inside ? p - centre : centre - p) / away;
+        return found;
+    }
+
+    const Converted& mesh_;
+    btScalar limit2_;
+    // Kept from call to call for their memory.
+    static thread_local std::vector<std::uint32_t> triangles_;                      ///< ascending
+    static thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> fans_; ///< corners, and triangles there
+};
+
+thread_local std::vector<std::uint32_t> Neighbourhood::triangles_;
+thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> Neighbourhood::fans_;
+
+void Neighbourhood::of_end(const btVector3& centre, std::vector<Found>& out) const {
+    out.clear();
+    std::size_t top = 0;
+    for (const std::uint32_t t : triangles_) {
+        const Nearest n = nearest_on(t, centre);
+        if (n.away2 >= limit2_ || (n.on != 7 && !is_least(t, n.on, centre, n.away2))) continue;
+        add(out, make(t, n.on, n.point, centre, n.away2));
+    }
+    if (out.empty()) return;
+    for (std::size_t i = 1; i < out.size(); ++i)
+        if (btFabs(out[i].away) < btFabs(out[top].away)) top = i;
+    if (out[top].away < 0)
+        out = {out[top]};
+    else // faces seen from behind belong to the far side of something thin
+        std::erase_if(out, [](const Found& f) { return f.away < 0; });
+}
+
+void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<Found>& out) const {
+    out.clear();
+    const btVector3 along = b - a;
+    const btScalar length2 = along.length2();
+    const auto consider = [&](std::uint32_t t, unsigned on, const btVector3& p, btScalar at) {
+        if (!(at > 0 && at < 1)) return; // the ends see it
+        const btVector3 centre = a + along * at;
+        const btScalar away2 = (p - centre).length2();
+        if (away2 >= limit2_ || is_flat(t, on) || !is_least(t, on, centre, away2)) return;
+        const Found found = make(t, on, p, centre, away2);
+        if (found.away > 0) add(out, found);
+    };
+    for (const std::uint32_t t : triangles_) {
+        for (int k = 0; k < 3; ++k) {
+            const btVector3 &p = corner(t, k), &q = corner(t, (k + 1) % 3);
+            const unsigned corner_bit = 1u << k, edge_bits = corner_bit | 1u << (k + 1) % 3;
+            consider(t, corner_bit, p, (p - a).dot(along) / length2);
+            const btVector3 edge = q - p, between = a - p;
+            const btScalar e2 = edge.length2(), mixed = along.dot(edge);
+            const btScalar square = length2 * e2 - mixed * mixed;
+            if (square <= btScalar(1e-6) * length2 * e2) continue; // parallel: corners and ends see it
+            const btScalar at = (mixed * edge.dot(between) - e2 * along.dot(between)) / square;
+            const btScalar on_edge = (length2 * edge.dot(between) - mixed * along.dot(between)) / square;
+            if (on_edge > 0 && on_edge < 1) consider(t, edge_bits, p + edge * on_edge, at);
+        }
+    }
+}
+
+} // namespace
+
+Round round_of(const btCollisionShape& shape) {
+    Round round;
+    round.ends[0].setZero();
+    round.ends[1].setZero();
+    if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
+        round.radius = static_cast<const btSphereShape&>(shape).getRadius();
+        return round;
+    }
+    if (shape.getShapeType() == MULTI_SPHERE_SHAPE_PROXYTYPE) {
+        const auto& balls = static_cast<const btMultiSphereShape&>(shape);
+        const btScalar scaling = balls.getLocalScaling().x();
+        round.balls = balls.getSphereCount();
+        round.radius = balls.getSphereRadius(0) * scaling;
+        round.ends[0] = balls.getSpherePosition(0) * scaling;
+        round.ends[1] = balls.getSpherePosition(round.balls - 1) * scaling;
+        return round;
+    }
+    const auto& capsule = static_cast<const btCapsuleShape&>(shape);
+    round.radius = capsule.getRadius();
+    if (capsule.getHalfHeight() > 0) {
+        round.balls = 2;
+        round.ends[0][capsule.getUpAxis()] = -capsule.getHalfHeight();
+        round.ends[1][capsule.getUpAxis()] = capsule.getHalfHeight();
+    }
+    return round;
+}
+
+void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const Round& round,
+                    const btTransform& round_pose, btScalar reach, std::vector<RoundContact>& out) {
+    out.clear();
+    const btTransform to_mesh = mesh_pose.inverseTimes(round_pose);
+    const btVector3 a = to_mesh(round.ends[0]), b = to_mesh(round.ends[1]);
+    const Neighbourhood neighbourhood(mesh, a, b, round.radius + reach);
+    static thread_local std::vector<Found> found;
+    const auto give = [&](int part) {
+        int number = 0;
+        for (const Found& f : found)
+            out.push_back({part + 3 * number++, mesh_pose(f.point), mesh_pose.getBasis() * f.normal,
+                           f.away - round.radius, f.triangle});
+    };
+    neighbourhood.of_end(a, found);
+    give(0);
+    if (round.balls == 1) return;
+    neighbourhood.of_end(b, found);
+    give(1);
+    neighbourhood.of_side(a, b, found);
+    give(2);
+}
+
+} // namespace raycontact::bullet

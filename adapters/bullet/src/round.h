@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <convert.h>
+
+#include <LinearMath/btTransform.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// A ball, or a capsule: all points within a radius of a segment. In the shape's frame.
+struct Round {
+    btVector3 ends[2];
+    int balls = 1; ///< 1: both ends are the same
+    btScalar radius{};
+};
+
+/// `shape` is of kind round.
+Round round_of(const btCollisionShape& shape);
+
+/// Where a ball or capsule is nearest to a mesh. World frame.
+struct RoundContact {
+    int place = 0;              ///< names it from step to step: which end, or the side; of several the how manyth
+    btVector3 point;            ///< on the mesh
+    btVector3 normal;           ///< unit, out of the mesh
+    btScalar distance{};        ///< negative: the depth
+    std::uint32_t triangle = 0; ///< of the shape
+};
+
+/// Places where the distance of an end from the mesh, or that of a capsule's side from the mesh's edges and corners, is
+/// a local minimum of at most `reach` from the surface. An end with its centre inside has one contact, the nearest way
+/// out. In closed form: a ball rolls without facets.
+void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const Round& round,
+                    const btTransform& round_pose, btScalar reach, std::vector<RoundContact>& out);
+
+} // namespace raycontact::bullet

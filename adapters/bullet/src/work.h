@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <objects.h>
+
+namespace raycontact::bullet {
+
+/// What handles a pair of leaves; this does not depend on their positions.
+enum class Work { batch, plane, round, bullet, nothing };
+
+/// Bullet has only its empty algorithm for two concave shapes.
+inline bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
+    const auto empty = [](const btCollisionShape& s) { return s.getShapeType() == EMPTY_SHAPE_PROXYTYPE; };
+    return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
+}
+
+inline Work work_for(const Leaf& a, const Leaf& b) {
+    // A flat hull has no mesh to stand for it.
+    const auto kind = [](const Leaf& leaf) {
+        return leaf.kind == Kind::convex && !leaf.converted.shape ? Kind::other : leaf.kind;
+    };
+    const Kind one = kind(a), two = kind(b);
+    const auto either = [&](Kind k) { return one == k || two == k; };
+    if (either(Kind::mesh)) {
+        if (either(Kind::plane)) return Work::plane;
+        if (either(Kind::round)) return Work::round;
+        if (!either(Kind::other)) return Work::batch;
+    }
+    return unsupported(*a.shape, *b.shape) ? Work::nothing : Work::bullet;
+}
+
+} // namespace raycontact::bullet

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Balls and capsules against meshes, in closed form: against brute force, and rolling.
+#include "test_world.h"
+
+#include <objects.h>
+#include <round.h>
+#include <scenes/models/model.h>
+#include <scenes/random.h>
+
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace raycontact::test {
+namespace {
+
+bullet::Converted converted(const std::shared_ptr<const Shape>& shape) {
+    return {shape, std::make_shared<bullet::MeshTree>(*shape)};
+}
+
+std::vector<bullet::RoundContact> contacts(const bullet::Converted& mesh, const btCollisionShape& shape,
+                                           const btTransform& pose, double reach = 0) {
+    std::vector<bullet::RoundContact> found;
+    bullet::round_contacts(mesh, at(0, 0, 0), bullet::round_of(shape), pose, btScalar(reach), found);
+    return found;
+}
+
+/// Distance of a point from the mesh's surface, by many points of every triangle.
+double away(const Shape& shape, const btVector3& p) {
+    double least = 1e30;
+    for (const auto& t : shape.triangles()) {
+        const Vec3 &a = shape.vertices()[t[0]], &b = shape.vertices()[t[1]], &c = shape.vertices()[t[2]];
+        constexpr int parts = 24;
+        for (int i = 0; i <= parts; ++i)
+            for (int k = 0; i + k <= parts; ++k) {
+                const double u = double(i) / parts, v = double(k) / parts, w = 1 - u - v;
+                least = std::min(least, std::hypot(w * a.x + u * b.x + v * c.x - double(p.x()),
+                                                   w * a.y + u * b.y + v * c.y - double(p.y()),
+                                                   w * a.z + u * b.z + v * c.z - double(p.z())));
+            }
+    }
+    return least;
+}
+
+TEST(Round, DeepestIsTheDistanceFromTheSurface) {
+    const auto shape = Shape::make(scenes::scene_model("torus", 200).mesh);
+    const bullet::Converted mesh = converted(shape);
+    scenes::Random random(5);
+    const btSphereShape ball(btScalar(0.15));
+    int touching = 0;
+    for (int i = 0; i < 300; ++i) {
+        const btVector3 centre(btScalar(0.8 * random.symmetric()), btScalar(0.8 * random.symmetric()),
+                               btScalar(0.3 * random.symmetric()));
+        const auto found = contacts(mesh, ball, btTransform(btQuaternion::getIdentity(), centre));
+        const double expected = away(*shape, centre);
+        if (expected > 0.15 + 0.01) {
+            EXPECT_TRUE(found.empty()) << i;
+            continue;
+        }
+        if (expected > 0.15 - 0.01) continue; // the reference is of points
+        ASSERT_FALSE(found.empty()) << i;
+        ++touching;
+        double least = 1e30;
+        for (const auto& c : found) {
+            least = std::min(least, std::fabs(double(c.distance + ball.getRadius())));
+            EXPECT_NEAR(double(c.normal.length()), 1, 1e-4);
+            EXPECT_LT(double((c.point + c.normal * (c.distance + ball.getRadius()) - centre).length()), 1e-4);
+            EXPECT_LT(away(*shape, c.point), 0.01);
+        }
+        EXPECT_NEAR(least, expected, 0.005) << i;
+    }
+    EXPECT_GT(touching, 50);
+}
+
+TEST(Round, OnAFlatFloorThereIsOneContact) {
+    const btSphereShape ball(btScalar(0.3));
+    // Cut into many triangles; the ball rests on faces, edges and corners of them.
+    Mesh sheet;
+    for (std::uint32_t i = 0; i <= 20; ++i)
+        for (std::uint32_t k = 0; k <= 20; ++k) sheet.vertices.push_back({0.1 * i - 1, 0.1 * k - 1, 0});
+    for (std::uint32_t i = 0; i < 20; ++i)
+        for (std::uint32_t k = 0; k < 20; ++k) {
+            const std::uint32_t v = 21 * i + k;
+            sheet.triangles.push_back({v, v + 21, v + 22});
+            sheet.triangles.push_back({v, v + 22, v + 1});
+        }
+    const bullet::Converted floor = converted(Shape::make(sheet));
+    for (int i = 0; i < 100; ++i) {
+        const auto found = contacts(floor, ball, at(-0.2 + 0.004 * i, 0.001 * i, 0.29));
+        ASSERT_EQ(found.size(), 1u) << i;
+        EXPECT_NEAR(double(found[0].distance), -0.01, 1e-5);
+        EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+    }
+}
+
+TEST(Round, CapsuleOnAFloorARimAndACorner) {
+    const bullet::Converted floor = converted(Shape::make(box_mesh(4, 4, 1)));
+    const btCapsuleShapeX capsule(btScalar(0.2), 1);
+    auto found = contacts(floor, capsule, at(0, 0, 0.69));
+    ASSERT_EQ(found.size(), 2u); // both ends
+    for (const auto& c : found) {
+        EXPECT_NEAR(double(c.distance), -0.01, 1e-5);
+        EXPECT_NEAR(std::fabs(double(c.point.x())), 0.5, 1e-5);
+    }
+    found = contacts(floor, capsule, at(2.2, 0, 0.69)); // one end beyond the rim: the rim carries its side
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_NEAR(double(found[1].point.x()), 2, 1e-5);
+    EXPECT_NEAR(double(found[1].normal.z()), 1, 1e-5);
+    EXPECT_NEAR(double(found[1].distance), -0.01, 1e-5);
+    // Its side on a corner of the box that points up: turned, the box has its corner at (0, 0, sqrt 3 / 2).
+    const bullet::Converted box = converted(Shape::make(box_mesh(1, 1, 1)));
+    btTransform tip = at(0, 0, 0);
+    tip.setRotation(shortestArcQuat(btVector3(1, 1, 1).normalized(), btVector3(0, 0, 1)));
+    std::vector<bullet::RoundContact> on_tip;
+    bullet::round_contacts(box, tip, bullet::round_of(capsule), at(0.1, 0, std::sqrt(3) / 2 + 0.19), 0, on_tip);
+    ASSERT_EQ(on_tip.size(), 1u);
+    EXPECT_NEAR(double(on_tip[0].distance), -0.01, 1e-4);
+    EXPECT_NEAR(double(on_tip[0].normal.z()), 1, 1e-4);
+}
+
+TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
+    const bullet::Converted box = converted(Shape::make(box_mesh(1, 1, 1)));
+    const btSphereShape ball(btScalar(0.3));
+    const auto found = contacts(box, ball, at(0.1, 0, 0.4));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+    EXPECT_NEAR(double(found[0].distance), -0.4, 1e-5);
+    EXPECT_TRUE(contacts(box, ball, at(0, 0, 0.81)).empty());
+    EXPECT_EQ(contacts(box, ball, at(0, 0, 0.81), 0.02).size(), 1u);
+    // The far side of a thin plate is not met.
+    const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
+    EXPECT_EQ(contacts(plate, ball, at(0, 0, 0.28)).size(), 1u);
+}
+
+/// Rolls without sliding along x for 10 m; gives the way sideways and the speed that is left.
+void roll(TestWorld& w, btRigidBody& ball, double radius, double& aside, double& speed) {
+    ball.setLinearVelocity(btVector3(2, 0, 0));
+    ball.setAngularVelocity(btVector3(0, btScalar(2 / radius), 0));
+    const btVector3 from = ball.getWorldTransform().getOrigin();
+    for (int i = 0; i < 900 && ball.getWorldTransform().getOrigin().x() - from.x() < 10; ++i) w.steps(1);
+    const btVector3 way = ball.getWorldTransform().getOrigin() - from;
+    EXPECT_GE(double(way.x()), 10);
+    EXPECT_LT(std::fabs(double(way.z())), 0.01);
+    aside = std::fabs(double(way.y()));
+    speed = double(ball.getLinearVelocity().x());
+}
+
+TEST(Round, BallRollsStraightOnEveryFloor) {
+    btTriangleMesh sheet;
+    for (int i = 0; i < 60; ++i)
+        for (int k = 0; k < 12; ++k) {
+            // Uneven triangles: no edge runs along the way.
+            const auto corner = [&](int a, int b) {
+                return btVector3(btScalar(0.23 * a + 0.05 * b - 1), btScalar(0.21 * b + 0.03 * a - 2), 0);
+            };
+            sheet.addTriangle(corner(i, k), corner(i + 1, k), corner(i + 1, k + 1), true);
+            sheet.addTriangle(corner(i, k), corner(i + 1, k + 1), corner(i, k + 1), true);
+        }
+    const btVector3 middle(0, 0, 0);
+    const btScalar radius = btScalar(0.3);
+    for (const bool slab : {true, false}) {
+        for (const bool moved : {false, true}) { // a multi-sphere of one ball is a ball
+            TestWorld w;
+            if (slab)
+                w.add_mesh(Shape::make(box_mesh(30, 6, 1)), 0, at(12, 0, -0.5));
+            else
+                w.add(std::make_unique<btBvhTriangleMeshShape>(&sheet, true), 0, at(0, 0, 0));
+            std::unique_ptr<btCollisionShape> shape = std::make_unique<btSphereShape>(radius);
+            if (moved) shape = std::make_unique<btMultiSphereShape>(&middle, &radius, 1);
+            btRigidBody& ball = w.add(std::move(shape), 1, at(0, 0, 0.3));
+            double aside = 1, speed = 0;
+            roll(w, ball, double(radius), aside, speed);
+            EXPECT_LT(aside, 0.001) << slab << moved;
+            EXPECT_NEAR(speed, 2, 0.02) << slab << moved;
+            EXPECT_EQ(w.dispatcher.stats().round_pairs, 1u);
+        }
+    }
+}
+
+} // namespace
+} // namespace raycontact::test
