@@ -28,7 +28,7 @@ namespace {
 using namespace raycontact;
 using Json = nlohmann::ordered_json;
 
-struct CollideOptions {
+struct CollideCommand {
     std::string a, b, pairs_file;
     std::vector<double> at, turn; ///< of b
     bool json = false;
@@ -151,7 +151,7 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
 }
 
 /// Turned about x, then y, then z, all through its origin, and then moved.
-Pose pose_of(const CollideOptions& options) {
+Pose pose_of(const CollideCommand& options) {
     Pose pose;
     for (std::size_t k = 0; k < options.turn.size(); ++k) {
         const double angle = options.turn[k] * std::numbers::pi / 180;
@@ -172,7 +172,7 @@ Pose pose_of(const CollideOptions& options) {
     return pose;
 }
 
-std::vector<QueryPair> query_of(const CollideOptions& options) {
+std::vector<QueryPair> query_of(const CollideCommand& options) {
     if (!options.pairs_file.empty()) return read_pairs_file(options.pairs_file);
     if (options.a.empty() || options.b.empty()) {
         throw InputError("collide: give two mesh files, or --pairs with a pairs file");
@@ -184,7 +184,7 @@ std::vector<QueryPair> query_of(const CollideOptions& options) {
     return {pair};
 }
 
-void collide(const CollideOptions& options) {
+void collide(const CollideCommand& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
     ShapeCache shapes(options.nested.value_or(Nesting::as_wound));
@@ -204,7 +204,7 @@ void collide(const CollideOptions& options) {
 
 void add_collide(CLI::App& app) {
     CLI::App* command = app.add_subcommand("collide", "Find the contacts of two meshes, or of many pairs at once");
-    auto options = std::make_shared<CollideOptions>();
+    auto options = std::make_shared<CollideCommand>();
     CLI::Option* a = command->add_option("A", options->a, "the first mesh file");
     CLI::Option* b = command->add_option("B", options->b, "the second mesh file");
     command
