@@ -125,8 +125,7 @@ std::string coloured_glb(const std::vector<Part>& parts, const std::vector<Clash
     for (const Clash& clash : clashes) clashing[clash.a] = clashing[clash.b] = 1;
     Writer writer;
     for (std::size_t i = 0; i < parts.size(); ++i) writer.add(parts[i], clashing[i] != 0);
-    for (const Clash& clash : clashes)
-        if (clash.contacts > 0) writer.mark(parts[clash.a].name + " x " + parts[clash.b].name, clash);
+    for (const Clash& clash : clashes) writer.mark(parts[clash.a].name + " x " + parts[clash.b].name, clash);
     return writer.glb();
 }
 

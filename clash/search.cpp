@@ -60,8 +60,11 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
             some.size(), options.threads,
             [&](std::size_t i) {
                 found[i] = clash_of(some[i], scene.contacts(list[i].first, list[i].second));
-                meets[i] =
-                    found[i].contacts > 0 || intersects(*parts[some[i].a].shape, {}, *parts[some[i].b].shape, {});
+                meets[i] = found[i].contacts > 0;
+                if (meets[i]) return;
+                const auto shared = common_point(*parts[some[i].a].shape, {}, *parts[some[i].b].shape, {});
+                if (shared) found[i].point = *shared;
+                meets[i] = shared.has_value();
             },
             options.stop);
         for (std::size_t i = 0; i < some.size(); ++i)

@@ -11,8 +11,8 @@ namespace raycontact::clash {
 struct Clash {
     std::size_t a = 0, b = 0; ///< numbers of the parts, a < b
     double depth = 0;         ///< of the deepest contact, metres; 0: they touch, or no rule of contact applies
-    Vec3 point;               ///< between the witness points of that contact; of a touch, none
-    Vec3 normal;              ///< of that contact, unit, from a to b
+    Vec3 point;               ///< between the witness points of that contact; else one that they share (common_point)
+    Vec3 normal;              ///< of that contact, unit, from a to b; else 0
     std::size_t contacts = 0;
 };
 

@@ -21,6 +21,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -55,37 +56,37 @@ struct Result {
     }
 };
 
-Json json_of(const Result& result) {
-    Json list = Json::array();
-    for (const clash::Clash& c : result.clashes) {
-        Json entry{
-            {"a", result.parts[c.a].name}, {"b", result.parts[c.b].name}, {"depth", c.depth}, {"contacts", c.contacts}};
-        entry["point"] = c.contacts > 0 ? Json{c.point.x, c.point.y, c.point.z} : Json();
-        entry["normal"] = c.contacts > 0 ? Json{c.normal.x, c.normal.y, c.normal.z} : Json();
-        list.push_back(std::move(entry));
-    }
-    Json unchecked = Json::array();
-    for (const clash::Part& part : result.parts)
-        if (!part.fault.empty()) unchecked.push_back({{"part", part.name}, {"why", part.fault}});
-    return {{"parts", result.parts.size()},   {"pairs", result.pairs},       {"clashes", std::move(list)},
-            {"ignored", result.ignored},      {"open_parts", result.open()}, {"unchecked", std::move(unchecked)},
-            {"cut_short", stop_signal() != 0}};
-}
-
-std::string text_of(const Result& result) {
+/// One line a clash.
+std::string json_lines(const Result& result) {
     std::string text;
     for (const clash::Clash& c : result.clashes) {
-        const std::string names = fmt::format("{}  x  {}", result.parts[c.a].name, result.parts[c.b].name);
-        if (c.contacts == 0)
-            text += fmt::format("{:>12}  {}\n", "touching", names);
-        else
-            text += fmt::format("{:>10.4g} m  {}  at {:.6g}, {:.6g}, {:.6g}\n", c.depth, names, c.point.x, c.point.y,
-                                c.point.z);
+        Json line{{"a", result.parts[c.a].name},
+                  {"b", result.parts[c.b].name},
+                  {"depth", c.depth},
+                  {"point", {c.point.x, c.point.y, c.point.z}},
+                  {"contacts", c.contacts}};
+        line["normal"] = c.contacts > 0 ? Json{c.normal.x, c.normal.y, c.normal.z} : Json();
+        text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     }
-    text += fmt::format("{} clash{} among {} parts ({} pairs of touching boxes)", result.clashes.size(),
-                        result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs);
+    return text;
+}
+
+std::string table(const Result& result) {
+    std::string text;
+    for (const clash::Clash& c : result.clashes) {
+        const std::string depth = c.contacts > 0 ? fmt::format("{:.4g} m", c.depth) : "touching";
+        text += fmt::format("{:>12}  {}  x  {}  at {:.6g}, {:.6g}, {:.6g}\n", depth, result.parts[c.a].name,
+                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z);
+    }
+    return text;
+}
+
+std::string summary(const Result& result) {
+    std::string text = fmt::format("{} clash{} among {} parts ({} pairs of touching boxes)", result.clashes.size(),
+                                   result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs);
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
     if (result.open() > 0) text += fmt::format("; {} parts are open: nothing is inside of them", result.open());
+    if (result.faults() > 0) text += fmt::format("; {} parts were not checked", result.faults());
     if (stop_signal() != 0) text += fmt::format("; cut short by {}", stop_name());
     return text + "\n";
 }
@@ -123,14 +124,19 @@ void run_clash(const ClashOptions& options) {
     std::optional<output::OutFile> out;
     if (!options.out.empty()) out.emplace(options.out);
     const Result result = search(options);
-    std::cout << (options.json ? json_of(result).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"
-                               : text_of(result))
-              << std::flush;
+    if (options.json) {
+        std::cout << json_lines(result) << std::flush;
+        std::cerr << summary(result);
+    } else {
+        std::cout << table(result) << summary(result) << std::flush;
+    }
     if (out) {
         out->write(clash::coloured_glb(result.parts, result.clashes));
         out->keep(stop_signal() != 0);
     }
-    if (options.check && stop_signal() == 0 && (!result.clashes.empty() || result.faults() > 0)) throw EndWith{found};
+    if (!options.check || stop_signal() != 0) return;
+    if (!result.clashes.empty()) throw EndWith{found};
+    if (result.faults() > 0) throw std::runtime_error("--check: not all parts could be checked");
 }
 
 } // namespace
@@ -145,8 +151,8 @@ void add_clash(CLI::App& app) {
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
-    command->add_flag("--json", options->json, "print one JSON object on stdout");
-    command->add_flag("--check", options->check, "exit status 3 where parts clash, or cannot be tested");
+    command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
+    command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(
         "A clash has the depth of its deepest contact and a point there; parts that share a point and have no\n"
         "contact touch. Parts stay where their files place them.\n"

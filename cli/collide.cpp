@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/collide.h"
 
+#include "cli/cavities_option.h"
 #include "cli/coarse.h"
 #include "cli/common_options.h"
-#include "cli/nested_option.h"
 #include "cli/pairs_file.h"
 
 #include <raycontact/collide.h>
@@ -219,7 +219,7 @@ void add_collide(CLI::App& app) {
     three("--at", options->at, "move B there, metres");
     three("--turn", options->turn, "turn B first, degrees: about the axes x, then y, then z, through its origin");
     command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
-    add_nested_option(*command, options->nested);
+    add_cavities_option(*command, options->nested);
     add_common_options(*command, options->settings);
     command->callback([options] { collide(*options); });
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/mesh.h"
 
+#include "cli/cavities_option.h"
 #include "cli/complain.h"
-#include "cli/nested_option.h"
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
@@ -108,7 +108,7 @@ void add_mesh(CLI::App& app) {
     command->add_flag("--json", options->json, "print one JSON object a file and line on stdout");
     CLI::Option* as_is =
         command->add_flag("--as-is", options->as_is, "report the mesh as the file gives it, repair nothing");
-    add_nested_option(*command, options->nested)->excludes(as_is);
+    add_cavities_option(*command, options->nested)->excludes(as_is);
     command->add_flag("--strict", options->strict, "exit status 2 if a mesh is not good for contacts");
     command->callback([options] { check_meshes(*options); });
 }

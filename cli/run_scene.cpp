@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_scene.h"
 
-#include "cli/nested_option.h"
+#include "cli/cavities_option.h"
 #include "cli/number_option.h"
 #include "cli/scene_file.h"
 
@@ -46,7 +46,7 @@ void refuse_mesh_options(const RunScene& given) {
     if (given.size) throw InputError("--size" + only);
     if (given.density) throw InputError("--density" + only);
     if (given.ground) throw InputError("--ground" + only);
-    if (given.nested) throw InputError("--nested" + only);
+    if (given.nested) throw InputError("--cavities" + only);
 }
 
 template <class Options>
@@ -97,7 +97,7 @@ SceneDescription from_meshes(const RunScene& given, const Settings& settings) {
     if (given.size) scene.arguments += fmt::format(" --size {}", *given.size);
     if (given.ground) scene.arguments += " --ground " + shell_word(*given.ground);
     if (given.density) scene.arguments += fmt::format(" --density {}", *given.density);
-    if (given.nested) scene.arguments += fmt::format(" --nested {}", word_of(*given.nested));
+    if (given.nested) scene.arguments += fmt::format(" --cavities {}", cavities_word(*given.nested));
     return scene;
 }
 
@@ -119,7 +119,7 @@ void add_scene_options(CLI::App& command, RunScene& scene) {
                     "with --mesh: a mesh that stands still where its file places it, or plane: an endless one, z = 0, "
                     "whose contacts are not counted; else a slab")
         ->type_name("FILE|plane");
-    add_nested_option(command, scene.nested);
+    add_cavities_option(command, scene.nested);
     add_number(command, "--density", scene.density, "with --mesh: kilograms a cubic metre", 0.0,
                std::numeric_limits<double>::max())
         ->type_name("D")

@@ -22,8 +22,8 @@ struct RunScene {
     std::optional<raycontact::Nesting> nested;
 };
 
-/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground, --density and --nested; `scene` is filled while the
-/// command line is read and must outlive it.
+/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground, --density and --cavities; `scene` is filled while
+/// the command line is read and must outlive it.
 void add_scene_options(CLI::App& command, RunScene& scene);
 
 /// Throws InputError naming the option, or the file and the field.

@@ -9,6 +9,7 @@
 #include <raycontact/shape.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace raycontact {
@@ -30,5 +31,9 @@ std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b,
 /// closed. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance decides. Ends at the first
 /// triangles that meet; copies nothing. Safe to call from several threads. Throws InputError as collide().
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+
+/// A point that both share, world frame, metres, to rounding: where two triangles meet, or a vertex of the one inside
+/// the other. Nothing if intersects() is false.
+std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 } // namespace raycontact

@@ -80,7 +80,7 @@ Verdict verdict_of(const MeshReport& report) {
         faults.emplace_back("inside out", "its triangles face inward; turn them over");
     else if (faults.empty() && !report.outward)
         faults.emplace_back("nested", "a part in a part is a solid of its own, and the closest face decides what is "
-                                      "inside; make it a cavity (--nested cavities) or a mesh of its own");
+                                      "inside; make it a cavity (--cavities make) or a mesh of its own");
     if (faults.empty()) return {true, "good for contacts"};
     std::string text = faults[0].first + ": " + faults[0].second;
     for (std::size_t i = 1; i < faults.size(); ++i) text += (i == 1 ? "; also " : ", ") + faults[i].first;

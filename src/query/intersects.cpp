@@ -15,6 +15,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 
 namespace raycontact {
@@ -26,6 +28,42 @@ using Corners = std::array<Vec3, 3>;
 // Far more than the rounding of a box that is turned, in parts of its farthest coordinate.
 constexpr double rounding = 1e-12;
 
+// How far a point of a triangle's plane is outside of the triangle, roughly; 0 inside.
+double off_triangle(const Vec3& p, const Corners& t) {
+    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 along = t[(k + 1) % 3] - t[k];
+        off = std::max(off, -dot(cross(along, p - t[k]), normal) / (length(along) * length(normal)));
+    }
+    return off;
+}
+
+// Where two triangles that meet do so, to rounding: where an edge of one passes the other, or, in a common plane, a
+// corner of one or the middle of what their boxes share.
+Vec3 meeting_point(const Corners& p, const Corners& q) {
+    const Box a = box_of(p), b = box_of(q);
+    Vec3 best = 0.5 * (most(a.low, b.low) + least(a.high, b.high));
+    double least_off = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const Corners& edges, const Corners& t) {
+        const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &from = edges[k], &to = edges[(k + 1) % 3];
+            const double before = dot(normal, from - t[0]), after = dot(normal, to - t[0]);
+            if (before * after > 0) continue;
+            const double part = before == after ? 0 : before / (before - after);
+            const Vec3 at = from + part * (to - from);
+            const double off = off_triangle(at, t);
+            if (off >= least_off) continue;
+            least_off = off;
+            best = at;
+        }
+    };
+    consider(p, q);
+    consider(q, p);
+    return best;
+}
+
 // Descends both trees at once; a's triangles are placed in the centred frame of b.
 class SurfaceTest {
 public:
@@ -33,7 +71,8 @@ public:
         for (std::size_t k = 0; k < 9; ++k) size_[k] = std::fabs(pose_.rotation[k]);
     }
 
-    bool meet() const { return meet(0, 0); }
+    /// Nothing if they do not meet; else a point where they do, in b's centred frame.
+    std::optional<Vec3> meet() { return meet(0, 0) ? std::optional(where_) : std::nullopt; }
     Vec3 placed(const Vec3& p) const { return snapped(transform_point(pose_, p)); }
 
 private:
@@ -62,7 +101,7 @@ private:
         return lanes;
     }
 
-    bool meet(std::uint32_t a, std::uint32_t b) const {
+    bool meet(std::uint32_t a, std::uint32_t b) {
         const kernels::Node& node = a_.nodes[a];
         for (int lane = 0; lane < NODE_LANES; ++lane) {
             const std::uint32_t child = node.child[lane];
@@ -75,7 +114,7 @@ private:
     }
 
     // A node of a against the children of a node of b.
-    bool node_meets(std::uint32_t a, const Box& box, std::uint32_t b) const {
+    bool node_meets(std::uint32_t a, const Box& box, std::uint32_t b) {
         const kernels::Node& node = b_.nodes[b];
         for (std::uint32_t lanes = touching(box, node); lanes != 0; lanes &= lanes - 1) {
             const std::uint32_t child = node.child[std::countr_zero(lanes)];
@@ -85,7 +124,7 @@ private:
     }
 
     // All below a node of a against one block of b.
-    bool meet_leaf(std::uint32_t a, std::uint32_t block) const {
+    bool meet_leaf(std::uint32_t a, std::uint32_t block) {
         const Box box = box_of_block(block);
         const kernels::Node& node = a_.nodes[a];
         for (int lane = 0; lane < NODE_LANES; ++lane) {
@@ -97,7 +136,7 @@ private:
     }
 
     // A block of a against all below a node of b.
-    bool block_meets(std::uint32_t block, const Box& box, std::uint32_t b) const {
+    bool block_meets(std::uint32_t block, const Box& box, std::uint32_t b) {
         const kernels::Node& node = b_.nodes[b];
         for (std::uint32_t lanes = touching(box, node); lanes != 0; lanes &= lanes - 1) {
             const std::uint32_t child = node.child[std::countr_zero(lanes)];
@@ -113,7 +152,7 @@ private:
         return box;
     }
 
-    bool blocks_meet(std::uint32_t a, std::uint32_t b) const {
+    bool blocks_meet(std::uint32_t a, std::uint32_t b) {
         const Box box = box_of_block(b);
         for (const std::uint32_t s : a_.triangle_blocks[a].triangle) {
             if (s == NONE) continue;
@@ -123,7 +162,9 @@ private:
             for (const std::uint32_t t : b_.triangle_blocks[b].triangle) {
                 if (t == NONE) continue;
                 const Corners q{snapped(b_.corner(t, 0)), snapped(b_.corner(t, 1)), snapped(b_.corner(t, 2))};
-                if (own.touches(box_of(q)) && triangles_meet(p, q)) return true;
+                if (!own.touches(box_of(q)) || !triangles_meet(p, q)) continue;
+                where_ = meeting_point(p, q);
+                return true;
             }
         }
         return false;
@@ -132,27 +173,36 @@ private:
     const ShapeData &a_, &b_;
     Pose pose_;
     std::array<double, 9> size_{}; ///< of the rotation's entries
+    Vec3 where_;
 };
 
-// Their surfaces do not meet, so each component lies inside as a whole or not at all.
-bool has_component_inside(const ShapeData& source, const Pose& source_in_target, const ShapeData& target) {
-    if (!target.mesh.report.closed) return false;
-    return std::any_of(source.component_vertices.begin(), source.component_vertices.end(), [&](std::uint32_t v) {
-        return winding_number(target, transform_point(source_in_target, source.point(v))) != 0;
-    });
+// Their surfaces do not meet, so each component lies inside as a whole or not at all. A vertex of one that does.
+std::optional<Vec3> vertex_inside(const ShapeData& source, const Pose& source_in_target, const ShapeData& target) {
+    if (!target.mesh.report.closed) return std::nullopt;
+    for (const std::uint32_t v : source.component_vertices) {
+        const Vec3 p = transform_point(source_in_target, source.point(v));
+        if (winding_number(target, p) != 0) return p;
+    }
+    return std::nullopt;
 }
 
 } // namespace
 
-bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
     const FloatEnvironment environment;
-    if (const char* fault = pose_fault(pose_a)) throw InputError(std::string("intersects, pose_a: ") + fault);
-    if (const char* fault = pose_fault(pose_b)) throw InputError(std::string("intersects, pose_b: ") + fault);
+    if (const char* fault = pose_fault(pose_a)) throw InputError(std::string("pose of the first mesh: ") + fault);
+    if (const char* fault = pose_fault(pose_b)) throw InputError(std::string("pose of the second mesh: ") + fault);
     const Pose centred_a = centred_pose(a, pose_a), centred_b = centred_pose(b, pose_b);
     const Pose a_in_b = relative_pose(centred_b, centred_a);
-    if (SurfaceTest(a.data(), b.data(), a_in_b).meet()) return true;
-    return has_component_inside(a.data(), a_in_b, b.data())
-           || has_component_inside(b.data(), relative_pose(centred_a, centred_b), a.data());
+    if (const auto point = SurfaceTest(a.data(), b.data(), a_in_b).meet()) return transform_point(centred_b, *point);
+    if (const auto point = vertex_inside(a.data(), a_in_b, b.data())) return transform_point(centred_b, *point);
+    if (const auto point = vertex_inside(b.data(), relative_pose(centred_a, centred_b), a.data()))
+        return transform_point(centred_a, *point);
+    return std::nullopt;
+}
+
+bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+    return common_point(a, pose_a, b, pose_b).has_value();
 }
 
 } // namespace raycontact

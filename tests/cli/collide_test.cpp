@@ -60,14 +60,15 @@ TEST_F(Collide, TwoCorners) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
     const auto lines = json_lines(result.out);
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "contacts"}));
+    EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "intersecting", "contacts"}));
     EXPECT_EQ(lines[0]["pair"], 0);
     EXPECT_EQ(lines[0]["colliding"], true);
     const json& contacts = lines[0]["contacts"];
     ASSERT_EQ(contacts.size(), 2u);
     for (const json& contact : contacts) {
-        EXPECT_EQ(keys_of(contact), (std::set<std::string>{"feature", "vertex_body", "vertex", "triangle", "point",
-                                                           "normal", "depth", "ray_length", "weight", "key"}));
+        EXPECT_EQ(keys_of(contact),
+                  (std::set<std::string>{"feature", "vertex_body", "vertex", "triangle", "point", "point_a", "point_b",
+                                         "normal", "depth", "ray_length", "weight", "key"}));
         // Either corner is 0.2, 0.3, 0.4 from the faces of the other; the ray runs along the diagonal to the first.
         EXPECT_NEAR(contact["depth"].get<double>(), 0.2, 1e-6);
         EXPECT_NEAR(contact["ray_length"].get<double>(), 0.2 * std::sqrt(3.0), 1e-6);
@@ -303,12 +304,15 @@ TEST_F(CollideByHand, SaysWhatItIs) {
 }
 
 TEST_F(CollideByHand, TurnsAboutXThenYThenZ) {
-    // A cube turned by 45 degrees about z reaches to 0.707 along x.
-    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "0,0,45"}).out.find("intersecting, "), std::string::npos);
-    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,0,0"}).out.find("apart"), std::string::npos);
-    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,0,90"}).out.find("apart"), std::string::npos)
-        << "the edge that was up and down after x is so after z";
-    EXPECT_NE(run({"--at", "1.2,0,0", "--turn", "45,90,0"}).out.find("intersecting, "), std::string::npos);
+    // A cube turned by 45 degrees about z or y reaches to 0.707 along x, about x to 0.5.
+    const auto at = [&](const char* turn) { return run({"--at", "1.15,0,0", "--turn", turn}).out; };
+    EXPECT_NE(at("0,0,45").find("intersecting, "), std::string::npos);
+    EXPECT_NE(at("0,45,0").find("intersecting, "), std::string::npos);
+    EXPECT_NE(at("45,0,0").find("apart"), std::string::npos);
+    // First about x, and then about z or y: the long diagonal that lay along z now lies along x, or where it was.
+    EXPECT_NE(at("45,90,0").find("intersecting, "), std::string::npos);
+    EXPECT_NE(at("45,0,180").find("apart"), std::string::npos);
+    EXPECT_NE(at("90,0,45").find("intersecting, "), std::string::npos);
     const auto quarter = json_lines(run({"--at", "1,0,0", "--turn", "90,180,-270", "--json"}).out);
     ASSERT_EQ(quarter.size(), 1u);
     EXPECT_EQ(quarter[0]["intersecting"], true) << "quarter turns are exact: the faces still touch";
@@ -328,7 +332,7 @@ TEST_F(CollideByHand, WitnessPoints) {
 TEST_F(CollideByHand, RefusesHalfAPose) {
     expect_refused(run({"--at", "1,2"}), "--at");
     expect_refused(run({"--turn", "1,2,x"}), "--turn");
-    expect_refused(run({"--at", "1,2,inf"}), "pose");
+    expect_refused(run({"--at", "1,2,inf"}), "not a finite number");
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// raycontact mesh: several files, a verdict for each, --strict, --nested; the other commands' --nested.
+// raycontact mesh: several files, a verdict for each, --strict, --cavities; the other commands' --cavities.
 #include "expect.h"
 
 namespace {
@@ -117,26 +117,25 @@ TEST_F(MeshCommand, PartsInPartsAreMadeCavitiesOrSolidsWhenAskedFor) {
         return json_lines(result.out).at(0);
     };
     EXPECT_DOUBLE_EQ(report({})["volume"], 65);
-    EXPECT_DOUBLE_EQ(report({"--nested", "as-wound"})["volume"], 65);
-    EXPECT_DOUBLE_EQ(report({"--nested", "cavities"})["volume"], 63);
-    EXPECT_EQ(report({"--nested", "cavities"})["good"], true);
-    EXPECT_DOUBLE_EQ(report({"--nested", "solids"})["volume"], 65);
-    expect_refused(run({"mesh", "nested.obj", "--nested", "caves"}), "--nested: 'caves' is unknown");
-    expect_refused(run({"mesh", "nested.obj", "--nested", "cavities", "--as-is"}), "--nested");
+    EXPECT_DOUBLE_EQ(report({"--cavities", "make"})["volume"], 63);
+    EXPECT_EQ(report({"--cavities", "make"})["good"], true);
+    EXPECT_DOUBLE_EQ(report({"--cavities", "undo"})["volume"], 65);
+    expect_refused(run({"mesh", "nested.obj", "--cavities", "caves"}), "--cavities: 'caves' is unknown");
+    expect_refused(run({"mesh", "nested.obj", "--cavities", "make", "--as-is"}), "--cavities");
 }
 
 TEST_F(MeshCommand, CollideAndRunTakeTheSameWord) {
     folder_.write("small.obj", cube_at(1.25, 0.5, 0)); // in the inner part of nested.obj
     const auto contacts = [&](const char* word) {
-        const auto result = run({"collide", "small.obj", "nested.obj", "--json", "--nested", word});
+        const auto result = run({"collide", "small.obj", "nested.obj", "--json", "--cavities", word});
         EXPECT_EQ(result.status, 0) << result.err;
         return json_lines(result.out).at(0)["contacts"].size();
     };
-    EXPECT_EQ(contacts("cavities"), 0u);
-    EXPECT_GT(contacts("as-wound"), 0u);
-    expect_refused(run({"collide", "cube.obj", "cube.obj", "--nested", "no"}), "--nested");
-    expect_refused(run({"run", "avalanche", "--nested", "solids"}), "--nested");
-    EXPECT_EQ(run({"run", "--mesh", "nested.obj", "--nested", "cavities", "--steps", "2", "--bodies", "2"}).status, 0);
+    EXPECT_EQ(contacts("make"), 0u);
+    EXPECT_GT(contacts("undo"), 0u);
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--cavities", "no"}), "--cavities");
+    expect_refused(run({"run", "avalanche", "--cavities", "undo"}), "--cavities");
+    EXPECT_EQ(run({"run", "--mesh", "nested.obj", "--cavities", "make", "--steps", "2", "--bodies", "2"}).status, 0);
 }
 
 } // namespace

@@ -416,6 +416,10 @@ void CollisionDispatcher::refresh(const btCollisionObject& object) {
     if (Object* record = state_->objects.find(object)) record->stale = true;
 }
 
+void CollisionDispatcher::prepare() {
+    state_->scene.prepare();
+}
+
 const Scene& CollisionDispatcher::scene() const {
     return state_->scene;
 }

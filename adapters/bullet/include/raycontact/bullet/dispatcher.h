@@ -95,6 +95,10 @@ public:
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
+    /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a
+    /// mesh is prepared beside the dispatches once it meets others a second time.
+    void prepare();
+
     /// The batch: contacts(), pairs() and stats() of the last dispatch.
     const Scene& scene() const;
     const DispatcherStats& stats() const;

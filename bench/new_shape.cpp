@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it takes to begin with a new mesh: Bullet's own btBvhTriangleMeshShape, a raycontact::Shape, the first Bullet
+// step with it, what is made beside later steps, and one query of two copies. Milliseconds, medians, by turns.
+// Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
+#include <raycontact/bullet/dispatcher.h>
+#include <raycontact/bullet/mesh_shape.h>
+#include <raycontact/collide.h>
+#include <scenes/models/model.h>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <vector>
+
+namespace rc = raycontact;
+
+namespace {
+
+template <class Work>
+double milliseconds_of(Work&& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+/// A mesh as Bullet takes it.
+struct BulletMesh {
+    std::vector<float> vertices;
+    std::vector<int> indices;
+    btTriangleIndexVertexArray array;
+
+    explicit BulletMesh(const rc::Mesh& mesh) {
+        for (const rc::Vec3& v : mesh.vertices)
+            for (const double c : {v.x, v.y, v.z}) vertices.push_back(static_cast<float>(c));
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle) indices.push_back(static_cast<int>(corner));
+        btIndexedMesh part;
+        part.m_numTriangles = static_cast<int>(mesh.triangles.size());
+        part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(indices.data());
+        part.m_triangleIndexStride = 3 * sizeof(int);
+        part.m_numVertices = static_cast<int>(mesh.vertices.size());
+        part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices.data());
+        part.m_vertexStride = 3 * sizeof(float);
+        part.m_vertexType = PHY_FLOAT;
+        array.addIndexedMesh(part, PHY_INTEGER);
+    }
+};
+
+/// Two objects of Bullet's own mesh shape, a little in each other; the first dispatch converts the shape.
+double first_dispatch(btBvhTriangleMeshShape& shape, double size) {
+    btDefaultCollisionConfiguration configuration;
+    rc::bullet::CollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
+    btCollisionObject ground, moving;
+    for (btCollisionObject* object : {&ground, &moving}) object->setCollisionShape(&shape);
+    ground.setCollisionFlags(0);
+    moving.setCollisionFlags(0);
+    moving.getWorldTransform().setOrigin(btVector3(btScalar(0.99 * size), 0, 0));
+    world.addCollisionObject(&ground);
+    world.addCollisionObject(&moving);
+    const double ms = milliseconds_of([&] { world.performDiscreteCollisionDetection(); });
+    if (dispatcher.stats().mesh_pairs != 1) throw std::runtime_error("the two meshes were not tested");
+    world.removeCollisionObject(&moving);
+    world.removeCollisionObject(&ground);
+    return ms;
+}
+
+void measure(std::uint32_t triangles, int rounds) {
+    const rc::Mesh mesh = rc::scenes::scene_model("sphere", triangles).mesh;
+    BulletMesh bullet(mesh);
+    std::vector<double> own, make, dispatch, prepare, query;
+    for (int i = 0; i < rounds; ++i) {
+        std::unique_ptr<btBvhTriangleMeshShape> shape;
+        own.push_back(milliseconds_of([&] { shape = std::make_unique<btBvhTriangleMeshShape>(&bullet.array, true); }));
+        std::shared_ptr<const rc::Shape> made;
+        make.push_back(milliseconds_of([&] { made = rc::Shape::make(mesh); }));
+        const double size = made->box_max().x - made->box_min().x;
+        dispatch.push_back(first_dispatch(*shape, size));
+        query.push_back(milliseconds_of([&] {
+            const auto a = rc::Shape::make(mesh), b = rc::Shape::make(mesh);
+            if (rc::collide(*a, {}, *b, {.translation = {0.99 * size, 0, 0}}, {.threads = 0}).empty())
+                throw std::runtime_error("the two meshes have no contact");
+        }));
+        prepare.push_back(milliseconds_of([&] { made->prepare(); }));
+    }
+    std::printf("%9zu  %10.1f  %10.1f %5.2f  %10.1f %5.2f  %10.1f  %10.1f\n", mesh.triangles.size(), median(own),
+                median(make), median(make) / median(own), median(dispatch), median(dispatch) / median(own),
+                median(query), median(prepare));
+    std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    int rounds = 5;
+    if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0)
+        rounds = std::max(1, std::atoi(argv[2]));
+    else if (argc > 1)
+        throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N]");
+    std::printf("triangles  Bullet BVH  Shape::make      first dispatch   two and a query  prepare()   (ms)\n");
+    for (const std::uint32_t triangles : {902u, 20000u, 82000u, 327680u}) measure(triangles, rounds);
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "raycontact_bench_new_shape: %s\n", error.what());
+    return 1;
+}
