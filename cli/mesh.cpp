@@ -64,6 +64,9 @@ void check_meshes(const MeshOptions& options) {
     std::string first_bad;
     for (const std::string& file : options.files) {
         const std::string shown = on_one_line(file);
+        const auto add_verdict = [&](const std::string& text) {
+            verdicts.append(shown).append(": ").append(text).append("\n");
+        };
         try {
             const MeshReport report = prepare_mesh(load_mesh(file), options.as_is ? Repair::as_is : Repair::allowed,
                                                    options.nested.value_or(Nesting::as_wound))
@@ -73,7 +76,7 @@ void check_meshes(const MeshOptions& options) {
                 print_json(file, report, verdict);
             else
                 std::cout << (several ? shown + "\n" : "") << to_text(report) << (several ? "\n" : "");
-            verdicts += shown + ": " + verdict.text + "\n";
+            add_verdict(verdict.text);
             if (verdict.good) continue;
             ++bad;
             if (first_bad.empty()) first_bad = shown;
@@ -82,7 +85,7 @@ void check_meshes(const MeshOptions& options) {
             complaints.emplace_back(error.what());
             const std::string verdict = "refused: " + without_name(complaints.back(), shown);
             if (options.json) print_json({{"file", file}, {"good", false}, {"verdict", verdict}});
-            verdicts += shown + ": " + verdict + "\n";
+            add_verdict(verdict);
         }
     }
     if (!options.json) std::cout << verdicts;

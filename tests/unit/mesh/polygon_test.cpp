@@ -24,7 +24,7 @@ namespace {
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 struct Point {
     std::int64_t x, y;
-    auto operator<=>(const Point&) const = default;
+    auto operator<=>(const Point&) const = default; // NOLINT(modernize-use-nullptr): of clang-tidy 14
 };
 using Ring = std::vector<Point>;
 
