@@ -198,9 +198,9 @@ TEST(Sweep, EveryThresholdAndTheChosenOne) {
     EXPECT_FALSE(rows[5].fraction.has_value());
     EXPECT_LT(rows[4].sums.pairs_full, rows[1].sums.pairs_full); // a larger threshold looks less often
     EXPECT_NEAR(rows[0].size, 1, 0.01);
-    const std::vector<Verdict> found = verdicts(rows);
+    const std::vector<bench::Verdict> found = verdicts(rows);
     ASSERT_EQ(found.size(), 3u);
-    for (const Verdict& v : found) {
+    for (const bench::Verdict& v : found) {
         EXPECT_LE(v.fastest->us, v.rightest->us);
         EXPECT_LE(v.rightest->wrong.total(), v.fastest->wrong.total());
         EXPECT_TRUE(v.fastest->fraction && v.rightest->fraction && !v.chosen->fraction);
