@@ -215,7 +215,9 @@ struct Scene::State {
         if (slots.end() >= bodies.size()) return;
         bodies.resize(slots.end());
         notes.resize(slots.end());
-        if (bodies.capacity() > 4 * bodies.size() + 1024) bodies.shrink_to_fit();
+        if (bodies.capacity() <= 4 * bodies.size() + 1024) return;
+        bodies.shrink_to_fit();
+        notes.shrink_to_fit();
     }
 
     NarrowPhase narrow;

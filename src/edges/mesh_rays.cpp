@@ -13,8 +13,8 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // Each level of the tree leaves at most fifteen children waiting.
 constexpr std::size_t most_waiting = NODE_LEVELS * NODE_LANES;
 
-const edges::Walks& walks() {
-    static const edges::Walks& widest = *edges::usable_walks().front();
+const trees::Walks& walks() {
+    static const trees::Walks& widest = *trees::usable_walks().front();
     return widest;
 }
 
@@ -27,7 +27,10 @@ MeshHit closest_hit(const ShapeData& mesh, const Vec3& origin, const Vec3& direc
                                 least,
                                 most,
                                 mesh.header.tolerance,
-                                mesh.reach});
+                                mesh.reach,
+                                false,
+                                nullptr,
+                                0});
 }
 
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/walks.h"
 #include "mesh/vector.h"
 #include "shape/shape_data.h"
+#include "shape/tree_walks.h"
 
 #include <limits>
 

@@ -17,7 +17,7 @@ void add(void* list, const TrianglePair* pairs, std::uint32_t count) {
 void find_near_triangles(const SourceMesh& first_to_second, double margin, std::vector<TrianglePair>& found) {
     const SourceMesh& placed = first_to_second;
     const ShapeData &first = placed.source, &second = placed.target;
-    edges::TwoTrees trees{};
+    trees::TwoTrees trees{};
     trees.first = {first.nodes.data(), first.triangle_blocks.data(), first.block_bounds.data()};
     trees.second = {second.nodes.data(), second.triangle_blocks.data(), second.block_bounds.data()};
     for (std::size_t i = 0; i < 9; ++i) trees.rotation[i] = static_cast<float>(placed.pose.rotation[i]);
@@ -31,7 +31,7 @@ void find_near_triangles(const SourceMesh& first_to_second, double margin, std::
     trees.room = static_cast<std::uint32_t>(pairs.size());
     trees.list = &found;
     trees.flush = &add;
-    edges::usable_walks().front()->near_triangles(trees);
+    trees::usable_walks().front()->near_triangles(trees);
 }
 
 } // namespace raycontact

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "edges/source_mesh.h"
-#include "edges/walks.h"
+#include "shape/tree_walks.h"
 
 #include <vector>
 

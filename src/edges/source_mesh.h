@@ -15,16 +15,15 @@ struct SourceMesh {
     const ShapeData& source;
     const ShapeData& target;
     const Accelerators* target_accelerators; ///< null: it has none
-    Pose pose;   ///< of the source's centred frame in the target's
-    double size; ///< of the smaller body's box, its diagonal, metres
-    double hair; ///< metres
-    float span;  ///< metres; only edges whose edge_span() is longer are asked
+    Pose pose;                               ///< of the source's centred frame in the target's
+    double size;                             ///< of the smaller body's box, its diagonal, metres
+    double hair;                             ///< metres
+    float span;                              ///< metres; only edges whose edge_span() is longer are asked
 
     /// in_contact: a vertex of either body is. Then edges between small faces are not asked.
     SourceMesh(const PlacedBody& from, const PlacedBody& to, bool in_contact)
-        : source(from.shape->data()), target(to.shape->data()),
-          target_accelerators(to.shape->accelerators()), pose(relative_pose(to.centred, from.centred)),
-          size(smaller_size(from, to)), hair(1e-7 * size),
+        : source(from.shape->data()), target(to.shape->data()), target_accelerators(to.shape->accelerators()),
+          pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), hair(1e-7 * size),
           span(in_contact ? static_cast<float>(small_face * size) : 0) {}
 
     Vec3 turned(const Vec3& v) const {

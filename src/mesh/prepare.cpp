@@ -86,8 +86,9 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
-/// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told.
-void mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh, Nesting nesting) {
+/// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
+/// whether any triangle was turned.
+bool mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -112,6 +113,7 @@ void mend_windings(PreparedMesh& prepared, const Patches& patches, const Triangl
             "turned " + counted(turned_whole, "component") + " of " + std::to_string(patches.list.size())
             + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
     }
+    return triangles != before;
 }
 
 /// Few triangles are done before other threads wake.
@@ -145,8 +147,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
-        mend_windings(prepared, patches, bvh, nesting);
-        edges = sorted_half_edges(prepared.triangles);
+        if (mend_windings(prepared, patches, bvh, nesting)) edges = sorted_half_edges(prepared.triangles);
     }
     prepared.report.file_vertices = mesh.vertices.size();
     prepared.report.file_triangles = mesh.triangles.size();

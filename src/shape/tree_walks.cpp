@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiled once for each instruction set, as the kernels are. Nothing here calls an inline function of another header:
 // the linker keeps one copy of those, and it may be one that this processor cannot run.
-#include "edges/walks.h"
+#include "shape/tree_walks.h"
 
-namespace raycontact::edges::walks::RAYCONTACT_ISA {
+namespace raycontact::trees::walks::RAYCONTACT_ISA {
 using kernels::uint;
 #include "device/cpu/instruction_set.h"
 
@@ -81,6 +81,12 @@ DEVICE double meet(const kernels::TriangleBlock& block, int k, const Ray& ray, b
     return at > ray.least && at <= ray.most ? at : never;
 }
 
+DEVICE bool is_skipped(const Ray& ray, uint face) {
+    for (uint i = 0; i < ray.skipped_count; ++i)
+        if (ray.skipped[i] == face) return true;
+    return false;
+}
+
 MeshHit closest_hit(const Tree& tree, const Ray& ray) {
     float from[3], along[3], inverse[3];
     double apart = ray.reach;
@@ -110,6 +116,7 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
                 const int k = __builtin_ctz(on);
                 bool from_inside;
                 const double at = meet(block, k, ray, from_inside);
+                if ((ray.from_inside && !from_inside) || is_skipped(ray, block.triangle[k])) continue;
                 if (at == never || at > hit.distance || (at == hit.distance && block.triangle[k] >= hit.face)) continue;
                 hit = {at, block.triangle[k], from_inside};
             }
@@ -339,15 +346,15 @@ void near_triangles(TwoTrees& trees) {
 }
 
 } // namespace
-} // namespace raycontact::edges::walks::RAYCONTACT_ISA
+} // namespace raycontact::trees::walks::RAYCONTACT_ISA
 
 #define RAYCONTACT_STRING_(x) #x
 #define RAYCONTACT_STRING(x) RAYCONTACT_STRING_(x)
 
-namespace raycontact::edges {
+namespace raycontact::trees {
 
 extern const Walks RAYCONTACT_ISA;
 const Walks RAYCONTACT_ISA = {RAYCONTACT_STRING(RAYCONTACT_ISA), &walks::RAYCONTACT_ISA::closest_hit,
                               &walks::RAYCONTACT_ISA::near_triangles};
 
-} // namespace raycontact::edges
+} // namespace raycontact::trees

@@ -20,7 +20,7 @@ struct TrianglePair {
     std::uint32_t first, second;
 };
 
-namespace edges {
+namespace trees {
 
 /// A mesh's tree, without anything that code for one instruction set must not share with another.
 struct Tree {
@@ -34,6 +34,9 @@ struct Ray {
     double least, most;             ///< hits with least < distance <= most count
     double tolerance;               ///< metres that boxes are looked beyond `most`
     double reach;                   ///< of the mesh: largest distance of a vertex from its centre
+    bool from_inside;               ///< faces met from outside do not count
+    const std::uint32_t* skipped;   ///< faces that do not count
+    std::uint32_t skipped_count;
 };
 
 /// Two trees, the pose of the first in the frame of the second, and where the pairs go.
@@ -51,7 +54,7 @@ struct TwoTrees {
 /// The walks over the trees that take most of the time, compiled for one instruction set. All give the same bits.
 struct Walks {
     const char* instruction_set;
-    /// The closest face; of equal ones the lowest.
+    /// The closest face that counts; of equal ones the lowest.
     MeshHit (*closest_hit)(const Tree&, const Ray&);
     void (*near_triangles)(TwoTrees&);
 };
@@ -59,5 +62,5 @@ struct Walks {
 /// Those that this processor can run, the widest first.
 std::span<const Walks* const> usable_walks();
 
-} // namespace edges
+} // namespace trees
 } // namespace raycontact

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/kernel_table.h"
-#include "edges/walks.h"
+#include "shape/tree_walks.h"
 
 #include <vector>
 
-namespace raycontact::edges {
+namespace raycontact::trees {
 
 extern const Walks baseline;
 #ifdef RAYCONTACT_X86
@@ -26,4 +26,4 @@ std::span<const Walks* const> usable_walks() {
     return usable;
 }
 
-} // namespace raycontact::edges
+} // namespace raycontact::trees
