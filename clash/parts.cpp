@@ -89,7 +89,7 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
             std::shared_ptr<const Shape> shape;
             std::string fault;
             try {
-                shape = Shape::make(*wanted[i]);
+                shape = Shape::make(prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology));
             } catch (const InputError& error) {
                 fault = error.what();
             }

@@ -59,7 +59,7 @@ private:
                     throw InputError(body.file.string() + fmt::format(": too large to be scaled by {}", body.scale));
                 }
             }
-            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_));
+            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_, Check::topology));
         } catch (const InputError& error) {
             throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
         }

@@ -81,13 +81,21 @@ Vec3 get_vector(ByteSource& from) {
     return v;
 }
 
-enum Flag : std::uint32_t { closed = 1, manifold = 2, oriented = 4, self_intersecting = 8, outward = 16 };
+enum Flag : std::uint32_t {
+    closed = 1,
+    manifold = 2,
+    oriented = 4,
+    self_intersecting = 8,
+    outward = 16,
+    unchecked = 32
+};
 
 void put(Bytes& to, const MeshReport& r) {
     for (const std::uint64_t n : {r.vertices, r.triangles, r.file_vertices, r.file_triangles, r.components})
         recording::put(to, n);
     recording::put(to, (r.closed ? closed : 0u) | (r.manifold ? manifold : 0u) | (r.oriented ? oriented : 0u)
-                           | (r.self_intersecting ? self_intersecting : 0u) | (r.outward ? outward : 0u));
+                           | (r.self_intersecting ? self_intersecting : 0u) | (r.outward ? outward : 0u)
+                           | (r.checked ? 0u : unchecked));
     recording::put(to, r.volume);
     recording::put(to, r.area);
     put(to, r.box_min);
@@ -106,6 +114,7 @@ MeshReport get_report(ByteSource& from) {
     r.oriented = flags & oriented;
     r.self_intersecting = flags & self_intersecting;
     r.outward = flags & outward;
+    r.checked = !(flags & unchecked);
     r.volume = from.get_double();
     r.area = from.get_double();
     r.box_min = get_vector(from);
@@ -127,7 +136,7 @@ void check_claims(PreparedMesh& mesh) {
     }
     if ((said.closed && !found.closed) || (said.manifold && !found.manifold) || (said.oriented && !found.oriented))
         throw Damage("is not as closed, manifold or oriented as its report says");
-    said.self_intersecting = said.self_intersecting || found.self_intersecting;
+    if (said.checked) said.self_intersecting = said.self_intersecting || found.self_intersecting;
     said.outward = said.outward && found.outward;
     said.border_edges = found.border_edges; // not recorded
 }

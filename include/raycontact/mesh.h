@@ -36,6 +36,7 @@ struct MeshReport {
     std::uint64_t border_edges = 0;   ///< edges met an odd number of times; 0: closed
     bool manifold = false;            ///< no edge has more than two triangles, no vertex more than one fan
     bool oriented = false;            ///< across every shared edge the two triangles wind the same way
+    bool checked = true;              ///< false after Check::topology: self_intersecting and outward are not known
     bool self_intersecting = false;   ///< two triangles meet elsewhere than in their shared vertices or edge
     bool outward = false;             ///< closed and oriented, winding number 0 outside and 1 inside everywhere
     std::uint64_t components = 0;     ///< connected over shared vertices
@@ -61,6 +62,14 @@ enum class Nesting {
     solids,   ///< all outward, each a solid of its own: undoes cavities
 };
 
+/// How much of a mesh prepare_mesh looks at.
+enum class Check {
+    full,
+    /// Neither self-intersections nor which way the whole winds, a third of what it takes to make a shape: for one that
+    /// is needed at once. Shape::prepare() looks for them, since the grids that it makes need them.
+    topology,
+};
+
 /// A mesh ready to become a shape: welded by exact position, checked, with the way back to the file's indices.
 struct PreparedMesh {
     std::string name;
@@ -72,7 +81,8 @@ struct PreparedMesh {
 };
 
 /// Welds, checks and, where allowed, repairs. Throws InputError when no triangle with an area is left.
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound);
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound,
+                          Check check = Check::full);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
 /// itself.

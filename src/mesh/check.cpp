@@ -102,17 +102,11 @@ void check_size(std::span<const Vec3> vertices, const std::string& name) {
                      + " m that rays need; scale the mesh");
 }
 
-void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
-                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh, Executor& executor) {
+void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
     MeshReport& report = prepared.report;
     report.vertices = prepared.vertices.size();
     report.triangles = prepared.triangles.size();
     fill_topology(report, prepared.triangles, edges);
-    report.self_intersecting = bvh.any_pair(executor, [&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
-        return triangles_meet(snapped_vertices, prepared.triangles[i], prepared.triangles[k]);
-    });
-    if (report.closed && report.oriented && !report.self_intersecting)
-        report.outward = winds_outward(prepared, patches, bvh);
     report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
     LongSum area;
     for (const auto& [a, b, c] : prepared.triangles) {
@@ -123,6 +117,17 @@ void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const
     const Box box = box_of(prepared.vertices);
     report.box_min = box.low;
     report.box_max = box.high;
+}
+
+void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<const Vec3> snapped_vertices,
+                   const TriangleBvh& bvh, Executor& executor) {
+    MeshReport& report = prepared.report;
+    report.self_intersecting = bvh.any_pair(executor, [&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
+        return triangles_meet(snapped_vertices, prepared.triangles[i], prepared.triangles[k]);
+    });
+    report.outward =
+        report.closed && report.oriented && !report.self_intersecting && winds_outward(prepared, patches, bvh);
+    report.checked = true;
 }
 
 } // namespace raycontact

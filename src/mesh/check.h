@@ -18,9 +18,15 @@ constexpr double greatest_coordinate = 1e9, least_size = 1e-6;
 /// Throws InputError, which calls the mesh `name`, where its box is smaller or reaches further.
 void check_size(std::span<const Vec3> vertices, const std::string& name);
 
-/// Fills the report, except its repairs and the counts of the file. The hierarchy is over snapped vertices.
-void fill_report(PreparedMesh& prepared, const Patches& patches, std::span<const HalfEdge> edges,
-                 std::span<const Vec3> snapped_vertices, const TriangleBvh& bvh, Executor& executor);
+/// Fills the report, except its repairs, the counts of the file, and what check_surface() fills.
+void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges);
+
+/// Fills self_intersecting and outward. After fill_report(). The hierarchy is over snapped vertices.
+void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<const Vec3> snapped_vertices,
+                   const TriangleBvh& bvh, Executor& executor);
+
+/// Whether a closed and oriented mesh does not intersect itself and winds outward. Few triangles: on one thread.
+bool is_outward(const PreparedMesh& mesh, Executor& executor);
 
 /// What the report of a mesh should say; the counts of its file and its repairs are taken over. Its coordinates must be
 /// those that prepare_mesh() takes. Throws InputError where no triangle has an area.

@@ -126,8 +126,7 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
 
 } // namespace
 
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh,
-                                  Nesting nesting) {
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, LazyBvh& bvh, Nesting nesting) {
     const std::size_t count = patches.list.size();
     const Vec3 near = box_of(mesh.vertices).middle();
     std::vector<LongSum> volumes(count), sizes(count);
@@ -143,7 +142,7 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
         if (!patches.list[p].closed || !(std::fabs(volume) > 1e-12 * sizes[p].value())) continue;
-        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh) : 0; };
+        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh.made()) : 0; };
         switch (nesting) {
         case Nesting::as_wound:
             turn[p] = volume < 0 && around() == 0 ? 1 : 0;

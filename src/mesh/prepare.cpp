@@ -39,10 +39,10 @@ std::vector<Vec3> all_snapped(std::span<const Vec3> vertices) {
     return exact;
 }
 
-std::vector<std::uint32_t> triangles_with_area(const PreparedMesh& mesh, std::span<const Vec3> exact) {
+std::vector<std::uint32_t> triangles_with_area(std::span<const Triangle> triangles, std::span<const Vec3> exact) {
     std::vector<std::uint32_t> with_area;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        if (!is_degenerate(mesh.triangles[i], exact)) with_area.push_back(i);
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        if (!is_degenerate(triangles[i], exact)) with_area.push_back(i);
     return with_area;
 }
 
@@ -88,7 +88,7 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
 
 /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
 /// whether any triangle was turned.
-bool mend_windings(PreparedMesh& prepared, const Patches& patches, const TriangleBvh& bvh, Nesting nesting) {
+bool mend_windings(PreparedMesh& prepared, const Patches& patches, LazyBvh& bvh, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -123,7 +123,7 @@ Executor executor_for(std::size_t triangles) {
 
 } // namespace
 
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Check check) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
@@ -140,10 +140,10 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
 
     Executor executor = executor_for(prepared.triangles.size());
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
-    std::vector<std::uint32_t> with_area = triangles_with_area(prepared, exact);
+    std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
-    const TriangleBvh bvh(exact, prepared.triangles, std::move(with_area), executor);
+    LazyBvh bvh(exact, prepared.triangles, std::move(with_area), executor);
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
@@ -151,22 +151,38 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting) {
     }
     prepared.report.file_vertices = mesh.vertices.size();
     prepared.report.file_triangles = mesh.triangles.size();
-    fill_report(prepared, patches, edges, exact, bvh, executor);
+    fill_report(prepared, edges);
+    prepared.report.checked = false;
+    if (check == Check::full) check_surface(prepared, patches, exact, bvh.made(), executor);
     return prepared;
 }
+
+namespace {
+
+void check_anew(PreparedMesh& mesh, std::span<const HalfEdge> edges, Executor& executor) {
+    const std::vector<Vec3> exact = all_snapped(mesh.vertices);
+    std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
+    if (with_area.empty()) throw InputError("no triangle has an area");
+    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area), executor);
+    check_surface(mesh, find_patches(mesh.triangles, edges), exact, bvh, executor);
+}
+
+} // namespace
 
 MeshReport measured_report(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
     Executor executor = executor_for(mesh.triangles.size());
-    const std::vector<Vec3> exact = all_snapped(mesh.vertices);
-    std::vector<std::uint32_t> with_area = triangles_with_area(mesh, exact);
-    if (with_area.empty()) throw InputError("no triangle has an area");
-    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area), executor);
-    const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
     PreparedMesh measured(mesh);
-    measured.report.outward = false; // as for a mesh whose report is not filled yet
-    fill_report(measured, find_patches(mesh.triangles, edges), edges, exact, bvh, executor);
+    const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
+    fill_report(measured, edges);
+    check_anew(measured, edges, executor);
     return measured.report;
+}
+
+bool is_outward(const PreparedMesh& mesh, Executor& executor) {
+    PreparedMesh checked(mesh);
+    check_anew(checked, sorted_half_edges(mesh.triangles), executor);
+    return checked.report.outward;
 }
 
 } // namespace raycontact

@@ -8,7 +8,9 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -101,6 +103,26 @@ private:
     std::vector<std::uint32_t> order_;
     std::vector<Box> boxes_; ///< of the triangles, in that order
     std::vector<Node> nodes_;
+};
+
+/// Made when it is first asked for: most meshes need none to be mended.
+class LazyBvh {
+public:
+    LazyBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen,
+            Executor& executor)
+        : vertices_(vertices), triangles_(triangles), chosen_(std::move(chosen)), executor_(executor) {}
+
+    const TriangleBvh& made() {
+        if (!bvh_) bvh_.emplace(vertices_, triangles_, std::move(chosen_), executor_);
+        return *bvh_;
+    }
+
+private:
+    std::span<const Vec3> vertices_;
+    std::span<const Triangle> triangles_;
+    std::vector<std::uint32_t> chosen_;
+    Executor& executor_;
+    std::optional<TriangleBvh> bvh_;
 };
 
 } // namespace raycontact

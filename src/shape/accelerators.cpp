@@ -2,6 +2,7 @@
 #include "shape/accelerators.h"
 
 #include "executor/float_environment.h"
+#include "mesh/check.h"
 #include "shape/build.h"
 
 namespace raycontact {
@@ -16,6 +17,8 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     const FloatEnvironment environment;
     auto made = std::make_unique<Accelerators>();
     made->header = shape.header;
+    if (!shape.mesh.report.checked && shape.header.closed != 0)
+        made->header.outward = is_outward(shape.mesh, executor) ? 1 : 0;
     build_outside_grid(shape, *made, stop);
     if (stop.stop_requested()) return nullptr;
     build_clearance_grid(shape, *made, executor, stop);

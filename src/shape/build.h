@@ -12,7 +12,7 @@ namespace raycontact {
 std::vector<Vec3> face_normals(const ShapeData& shape);
 
 /// Angle-weighted unit normal of each vertex (Thuermer and Wuethrich 1998); zero where the faces around it cancel out.
-std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals);
+std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor);
 
 /// Each vertex's share of the surface, m^2: a third of the area of its triangles, summed in double and rounded once.
 std::vector<float> measure_areas(const ShapeData& shape);
@@ -24,7 +24,7 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 void find_components(ShapeData& shape);
 
 /// Fills block_bounds. Needs triangle_blocks and sharp edges.
-void find_block_bounds(ShapeData& shape);
+void find_block_bounds(ShapeData& shape, Executor& executor);
 
 /// Fills hair_moves; needs the vertices' normals.
 void find_hair_moves(ShapeData& shape);
@@ -42,7 +42,7 @@ std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> n
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
 /// a block, and clusters with the boxes of an implicit sixteen-wide tree above them.
-void build_clusters(ShapeData& shape);
+void build_clusters(ShapeData& shape, Executor& executor);
 
 /// Fills outside_cells and the grid of the header: a bit for each cubic cell of the box, set when the whole cell, grown
 /// by the rounding of a look-up, lies outside the mesh. A vertex there cannot be in contact, whatever its ray, since

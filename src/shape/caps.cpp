@@ -139,7 +139,7 @@ private:
 } // namespace
 
 void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
-    if (shape.header.outward == 0) return;
+    if (to.header.outward == 0) return;
     const std::vector<Vec3> normals = face_normals(shape);
     const Caps caps(shape, normals);
     std::atomic<std::size_t> with_cap = 0;

@@ -196,7 +196,7 @@ void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& ex
     Grid grid(shape);
     grid.measure(shape, executor, stop);
     if (stop.stop_requested()) return;
-    if (shape.header.outward != 0) grid.find_outside();
+    if (to.header.outward != 0) grid.find_outside();
     grid.write(to, executor);
 }
 

@@ -20,11 +20,8 @@ float coordinate(const ShapeData& shape, uint vertex, std::size_t k) {
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
 // tree groups neighbours.
-void order_by_place(const ShapeData& shape, std::span<uint> vertices) {
-    if (vertices.size() <= lanes) {
-        std::ranges::sort(vertices);
-        return;
-    }
+// Returns how many come first.
+std::size_t split_by_place(const ShapeData& shape, std::span<uint> vertices) {
     std::size_t longest = 0;
     float size = -1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -40,8 +37,37 @@ void order_by_place(const ShapeData& shape, std::span<uint> vertices) {
     const std::size_t units = (vertices.size() + unit - 1) / unit, left = unit * (units / 2);
     std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(left), {},
                              [&](uint v) { return std::pair(coordinate(shape, v, longest), v); });
-    order_by_place(shape, vertices.first(left));
-    order_by_place(shape, vertices.subspan(left));
+    return left;
+}
+
+void order_below(const ShapeData& shape, std::span<uint> vertices) {
+    if (vertices.size() <= lanes) {
+        std::ranges::sort(vertices);
+        return;
+    }
+    const std::size_t left = split_by_place(shape, vertices);
+    order_below(shape, vertices.first(left));
+    order_below(shape, vertices.subspan(left));
+}
+
+void order_by_place(const ShapeData& shape, std::span<uint> all, Executor& executor) {
+    constexpr std::size_t large = 1 << 13;
+    std::vector<std::span<uint>> open{all}, parts;
+    while (!open.empty()) { // large ones level by level, all of a level side by side
+        std::vector<std::span<uint>> halves(2 * open.size());
+        executor.run(static_cast<std::uint32_t>(open.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t left = open[i].size() > large ? split_by_place(shape, open[i]) : 0;
+                halves[2 * i] = open[i].first(left);
+                halves[2 * i + 1] = open[i].subspan(left);
+            }
+        });
+        open.clear();
+        for (const std::span<uint> half : halves) (half.size() > large ? open : parts).push_back(half);
+    }
+    executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) order_below(shape, parts[i]);
+    });
 }
 
 // Empty (NaN) until something is added.
@@ -55,11 +81,11 @@ struct Bounds {
 
 } // namespace
 
-void build_clusters(ShapeData& shape) {
+void build_clusters(ShapeData& shape, Executor& executor) {
     std::vector<uint> order;
     for (uint v = 0; v < shape.points.size(); ++v)
         if (shape.exit_distances[v] > 0) order.push_back(v);
-    order_by_place(shape, order);
+    order_by_place(shape, order, executor);
 
     std::vector<Bounds> below;
     for (std::size_t first = 0; first < order.size(); first += lanes) {

@@ -77,7 +77,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});
     find_sharp_edges(shape, normals);
     find_components(shape);
-    shape.vertex_normals = angle_weighted_normals(shape, normals);
+    shape.vertex_normals = angle_weighted_normals(shape, normals, executor);
     find_hair_moves(shape);
     shape.vertex_areas = measure_areas(shape);
     for (const Vec3& n : normals)
@@ -90,14 +90,14 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
-    find_block_bounds(shape);
+    find_block_bounds(shape, executor);
 
     shape.exit_distances = measure_exits(shape, normals, executor);
     float longest_exit = 0;
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) longest_exit = std::max(longest_exit, exit);
     shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
-    build_clusters(shape);
+    build_clusters(shape, executor);
     set_box_clearance(shape.header);
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));
 }

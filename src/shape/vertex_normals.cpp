@@ -14,14 +14,21 @@ std::vector<Vec3> face_normals(const ShapeData& shape) {
     return normals;
 }
 
-std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals) {
+std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor) {
+    // Angles take most of the time. Sums are made in the order of the triangles.
+    std::vector<std::array<double, 3>> angles(normals.size());
+    executor.run(static_cast<std::uint32_t>(normals.size()), 1024, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t t = begin; t < end; ++t)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Vec3 at = shape.corner(t, c);
+                angles[t][c] = angle_between(shape.corner(t, (c + 1) % 3) - at, shape.corner(t, (c + 2) % 3) - at);
+            }
+    });
     std::vector<Vec3> sums(shape.points.size());
     for (std::uint32_t t = 0; t < normals.size(); ++t)
         for (std::size_t c = 0; c < 3; ++c) {
-            const Vec3 at = shape.corner(t, c);
-            const Vec3 a = shape.corner(t, (c + 1) % 3) - at, b = shape.corner(t, (c + 2) % 3) - at;
             Vec3& sum = sums[shape.mesh.triangles[t][c]];
-            sum = sum + angle_between(a, b) * normals[t];
+            sum = sum + angles[t][c] * normals[t];
         }
     for (Vec3& n : sums) {
         // Faces that fold back on each other leave only rounding, which points anywhere.

@@ -293,7 +293,7 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
     Entry entry;
     const Mesh mesh = stand_in(shape);
     if (!mesh.triangles.empty()) {
-        entry.converted.shape = Shape::make(prepare_mesh(mesh, Repair::allowed));
+        entry.converted.shape = Shape::make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::topology));
         entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
     }
     entry.numbers = std::move(numbers);
@@ -317,7 +317,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     Entry entry;
     // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
-    entry.converted.shape = Shape::make(prepare_mesh(mesh, repair));
+    entry.converted.shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology));
     entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
     entry.mesh = std::move(mesh);
     entry.used = now_;
@@ -355,7 +355,7 @@ std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& sc
     plain.name = mesh.name;
     plain.vertices = mesh.vertices;
     plain.triangles = mesh.triangles;
-    const PreparedMesh checked = prepare_mesh(plain, Repair::as_is);
+    const PreparedMesh checked = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology);
     mesh.report = checked.report;
     return Shape::make(mesh);
 }
