@@ -24,12 +24,25 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     return()
 endif()
 
-# A stretch of one file as a raw string. Stretches stay well below the 65536 characters that a compiler must accept.
+# A stretch of one file as a raw string, or as several: Microsoft's compiler takes 16380 characters in one.
 function(add_piece text first_line file)
+    string(LENGTH "${text}" length)
+    while(length GREATER 16300)
+        string(SUBSTRING "${text}" 0 16300 begin)
+        string(FIND "${begin}" "\n" at REVERSE)
+        math(EXPR at "${at} + 1")
+        string(SUBSTRING "${text}" 0 ${at} begin)
+        string(SUBSTRING "${text}" ${at} -1 text)
+        string(APPEND pieces "    {\"${file}\", R\"raycontact(#line ${first_line} \"${file}\"\n${begin})raycontact\"},\n")
+        string(REGEX REPLACE "[^\n]" "" newlines "${begin}")
+        string(LENGTH "${newlines}" lines)
+        math(EXPR first_line "${first_line} + ${lines}")
+        string(LENGTH "${text}" length)
+    endwhile()
     if(NOT text STREQUAL "")
         string(APPEND pieces "    {\"${file}\", R\"raycontact(#line ${first_line} \"${file}\"\n${text})raycontact\"},\n")
-        set(pieces "${pieces}" PARENT_SCOPE)
     endif()
+    set(pieces "${pieces}" PARENT_SCOPE)
 endfunction()
 
 # The text of a file with its includes resolved; #line marks let a compiler's message name the file it came from.

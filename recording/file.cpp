@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <recording/file.h>
 
+#include <recording/system_file.h>
+
 #include <raycontact/error.h>
 
 #include <cerrno>
@@ -8,10 +10,6 @@
 #include <string>
 #include <system_error>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace raycontact::recording {
 
@@ -26,24 +24,21 @@ std::string reason(int error) {
 File File::checked(int descriptor, const std::filesystem::path& path, const char* what, const char* advice) {
     if (descriptor < 0) throw InputError(path.string() + ": " + what + ": " + reason(errno) + "; " + advice);
     File file(descriptor, path);
-    struct stat status {};
-    if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
+    if (!system::is_regular(descriptor))
         throw InputError(path.string() + ": " + what + ": it is not a regular file; " + advice);
     return file;
 }
 
-// Without waiting for somebody at the other end, should it be a pipe.
 File File::open(const std::filesystem::path& path) {
-    return checked(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK), path, "cannot be read",
+    return checked(system::open_to_read(path), path, "cannot be read",
                    "name a recording made by `raycontact run --record`");
 }
 
 File File::create(const std::filesystem::path& path) {
     const char* advice = "name a file in a folder that can be written";
-    File file = checked(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666), path,
-                        "cannot be written", advice);
+    File file = checked(system::open_to_write(path), path, "cannot be written", advice);
     // Emptied only now, when it is known to be a file.
-    if (::ftruncate(file.descriptor_, 0) != 0)
+    if (!system::make_empty(file.descriptor_))
         throw InputError(path.string() + ": cannot be written: " + reason(errno) + "; " + advice);
     return file;
 }
@@ -57,20 +52,23 @@ File& File::operator=(File&& other) noexcept {
 }
 
 File::~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    close();
+}
+
+void File::close() {
+    if (descriptor_ >= 0) system::close(std::exchange(descriptor_, -1));
 }
 
 std::uint64_t File::size() const {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0)
+    std::uint64_t bytes = 0;
+    if (!system::size_of(descriptor_, bytes))
         throw std::runtime_error(path_.string() + ": its size cannot be read: " + reason(errno));
-    return static_cast<std::uint64_t>(status.st_size);
+    return bytes;
 }
 
 bool File::read(std::uint64_t offset, std::span<unsigned char> to) const {
     while (!to.empty()) {
-        const ssize_t got = ::pread(descriptor_, to.data(), to.size(), static_cast<off_t>(offset));
-        if (got < 0 && errno == EINTR) continue;
+        const std::ptrdiff_t got = system::read_at(descriptor_, offset, to.data(), to.size());
         if (got < 0) throw std::runtime_error(path_.string() + ": cannot be read: " + reason(errno));
         if (got == 0) return false;
         offset += static_cast<std::uint64_t>(got);
@@ -81,8 +79,7 @@ bool File::read(std::uint64_t offset, std::span<unsigned char> to) const {
 
 void File::write(std::uint64_t offset, std::span<const unsigned char> bytes) {
     while (!bytes.empty()) {
-        const ssize_t put = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (put < 0 && errno == EINTR) continue;
+        const std::ptrdiff_t put = system::write_at(descriptor_, offset, bytes.data(), bytes.size());
         if (put <= 0) throw std::runtime_error(path_.string() + ": cannot be written: " + reason(errno));
         offset += static_cast<std::uint64_t>(put);
         bytes = bytes.subspan(static_cast<std::size_t>(put));
@@ -90,7 +87,7 @@ void File::write(std::uint64_t offset, std::span<const unsigned char> bytes) {
 }
 
 void File::sync() {
-    if (::fsync(descriptor_) != 0) throw std::runtime_error(path_.string() + ": cannot be written: " + reason(errno));
+    if (!system::sync(descriptor_)) throw std::runtime_error(path_.string() + ": cannot be written: " + reason(errno));
 }
 
 } // namespace raycontact::recording

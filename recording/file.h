@@ -26,6 +26,7 @@ public:
     void write(std::uint64_t offset, std::span<const unsigned char> bytes);
     /// Waits until the disk has it.
     void sync();
+    void close();
     const std::filesystem::path& path() const { return path_; }
 
 private:

@@ -238,6 +238,8 @@ void Writer::State::animate() {
             done += piece.size();
         }
         to.sync();
+        to.close();
+        file.close(); // Windows does not replace an open file
         std::filesystem::rename(part, file.path());
     } catch (...) {
         std::error_code ignored;

@@ -3,14 +3,12 @@
 
 #include "device/device_list.h"
 #include "give_back.h"
+#include "platform/system.h"
 #include "schedule/moving_pairs.h"
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace raycontact {
 
@@ -99,9 +97,7 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
     }
     if (trims_ == 0) return;
     --trims_;
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
+    platform::trim_heap();
 }
 
 void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts) {

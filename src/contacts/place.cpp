@@ -2,6 +2,7 @@
 #include "contacts/place.h"
 
 #include "contacts/vertex_order.h"
+#include "platform/prefetch.h"
 #include "shape/shape_data.h"
 
 namespace raycontact {
@@ -18,10 +19,10 @@ struct Side {
 
     // Prefetches most of what place() will read: the data of a fine mesh does not fit the caches.
     void send_for(const kernels::LocalContact& local) const {
-        __builtin_prefetch(&source.mesh.vertex_index[local.vertex]);
-        __builtin_prefetch(&source.mesh.vertices[local.vertex]);
-        __builtin_prefetch(&target.mesh.triangle_index[local.triangle]);
-        if (direction == Direction::weighted) __builtin_prefetch(&source.vertex_areas[local.vertex]);
+        platform::prefetch(&source.mesh.vertex_index[local.vertex]);
+        platform::prefetch(&source.mesh.vertices[local.vertex]);
+        platform::prefetch(&target.mesh.triangle_index[local.triangle]);
+        if (direction == Direction::weighted) platform::prefetch(&source.vertex_areas[local.vertex]);
     }
 };
 

@@ -13,17 +13,17 @@ thread_local int pinned_to = -1;
 } // namespace
 
 Pin::Pin(int core) {
-    if (core < 0 || core == pinned_to || sched_getaffinity(0, sizeof before_, &before_) != 0) return;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(core, &one);
-    pinned_ = sched_setaffinity(0, sizeof one, &one) == 0;
+    const auto number = static_cast<std::size_t>(core);
+    if (core < 0 || core == pinned_to || number >= before_.size()) return;
+    before_ = platform::thread_cores();
+    if (before_.none()) return;
+    pinned_ = platform::set_thread_cores(platform::CoreSet().set(number));
     if (pinned_) outer_ = std::exchange(pinned_to, core);
 }
 
 Pin::~Pin() {
     if (!pinned_) return;
-    sched_setaffinity(0, sizeof before_, &before_);
+    platform::set_thread_cores(before_);
     pinned_to = outer_;
 }
 
@@ -44,16 +44,15 @@ void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReferen
 }
 
 std::uint32_t usable_cores() {
-    cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+    if (const auto cores = platform::thread_cores().count(); cores > 0) return static_cast<std::uint32_t>(cores);
     return std::max(1u, std::thread::hardware_concurrency());
 }
 
 int usable_core(std::uint32_t k) {
-    cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return static_cast<int>(k);
-    for (int core = 0; core < CPU_SETSIZE; ++core)
-        if (CPU_ISSET(core, &allowed) && k-- == 0) return core;
+    const platform::CoreSet allowed = platform::thread_cores();
+    if (allowed.none()) return static_cast<int>(k);
+    for (std::size_t core = 0; core < allowed.size(); ++core)
+        if (allowed[core] && k-- == 0) return static_cast<int>(core);
     return -1;
 }
 

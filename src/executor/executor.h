@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "platform/system.h"
+
 #include <cstdint>
 #include <memory>
-#include <sched.h>
 #include <type_traits>
 
 namespace raycontact {
@@ -36,7 +37,7 @@ public:
     Pin& operator=(const Pin&) = delete;
 
 private:
-    cpu_set_t before_;
+    platform::CoreSet before_;
     int outer_ = -1;
     bool pinned_ = false;
 };

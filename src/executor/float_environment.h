@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#if defined(__x86_64__) || defined(__i386__)
+#if defined(__x86_64__) || defined(__i386__) || defined(_M_X64)
 #include <xmmintrin.h>
 #else
 #include <cfenv>
@@ -13,7 +13,7 @@ namespace raycontact {
 /// flushed denormal would change a hash.
 class FloatEnvironment {
 public:
-#if defined(__x86_64__) || defined(__i386__)
+#if defined(__x86_64__) || defined(__i386__) || defined(_M_X64)
     FloatEnvironment() : saved_(_mm_getcsr()) {
         _mm_setcsr(0x1f80u);
     }
@@ -33,7 +33,7 @@ public:
     FloatEnvironment& operator=(const FloatEnvironment&) = delete;
 
 private:
-#if defined(__x86_64__) || defined(__i386__)
+#if defined(__x86_64__) || defined(__i386__) || defined(_M_X64)
     unsigned saved_;
 #else
     std::fenv_t saved_;

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
+#include <fstream>
 #include <system_error>
 
 namespace raycontact {
@@ -53,16 +52,15 @@ InputFile InputFile::read(const std::filesystem::path& path, std::size_t most) {
     if (error) file.fail("cannot be read: " + error.message());
     if (whole == 0) file.fail("is empty; export the mesh again");
 
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), &std::fclose);
+    std::ifstream stream(path, std::ios::binary);
     if (!stream) file.fail(std::string("cannot be read: ") + std::strerror(errno));
     try {
         file.bytes.resize(size);
     } catch (const std::exception&) {
         file.fail("is too large for memory (" + std::to_string(size) + " bytes)");
     }
-    if (std::fread(file.bytes.data(), 1, file.bytes.size(), stream.get()) != file.bytes.size()) {
+    if (!stream.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size())))
         file.fail("could not be read to its end; is it still being written?");
-    }
     return file;
 }
 

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <clocale>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 #include <system_error>
 
 namespace raycontact {
@@ -26,6 +25,25 @@ std::errc parse(const TextScanner& scanner, std::string_view word, const char* w
     if (error == std::errc::invalid_argument || last != digits.data() + digits.size())
         scanner.fail(std::string(what) + " " + in_quotes(word) + " is not a " + kind);
     return error;
+}
+
+// Of a number that from_chars() found out of range: infinity if it is too large, else 0. Its first digit that is not 0
+// stands at a power of ten far from 0.
+double beyond_range(std::string_view word) {
+    const std::size_t mark = std::min(word.find_first_of("eE"), word.size());
+    const std::string_view digits = word.substr(0, mark);
+    const std::size_t first = digits.find_first_of("123456789"), point = std::min(digits.find('.'), digits.size());
+    if (first == std::string_view::npos) return 0;
+    double power = first < point ? static_cast<double>(point - first) : -static_cast<double>(first - point);
+    if (mark < word.size()) {
+        const std::size_t plus = word.substr(mark + 1).starts_with('+') ? 1 : 0;
+        const std::string_view exponent = word.substr(mark + 1 + plus);
+        std::int64_t value = 0;
+        const auto error = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value).ec;
+        constexpr double huge = std::numeric_limits<double>::max();
+        power += error == std::errc() ? static_cast<double>(value) : (exponent.starts_with('-') ? -huge : huge);
+    }
+    return power > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 } // namespace
@@ -78,11 +96,8 @@ std::string_view TextScanner::word() {
 
 double TextScanner::number(std::string_view word, const char* what) const {
     double value = 0;
-    // Out of range is either too large, refused below, or so small that it rounds to (nearly) zero.
-    if (parse(*this, word, what, "number", value) == std::errc::result_out_of_range) {
-        static const locale_t with_points = newlocale(LC_ALL_MASK, "C", nullptr); // the program's may have commas
-        value = strtod_l(std::string(word).c_str(), nullptr, with_points);
-    }
+    // Out of range is either too large, refused below, or so small that it rounds to zero.
+    if (parse(*this, word, what, "number", value) == std::errc::result_out_of_range) value = beyond_range(word);
     if (!std::isfinite(value)) fail(std::string(what) + " " + in_quotes(word) + " is not finite");
     return value;
 }

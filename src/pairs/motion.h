@@ -3,6 +3,7 @@
 
 #include "executor/executor.h"
 #include "pairs/directed_pairs.h"
+#include "platform/prefetch.h"
 
 #include <span>
 #include <vector>
@@ -17,7 +18,7 @@ public:
     void update(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// Prefetches what pair_bound() reads of the second body; the first body is mostly that of the last pair.
-    void prefetch(const SlotPair& pair) const { __builtin_prefetch(&bodies_[pair.second]); }
+    void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
     /// An upper bound of how far any vertex of either body moved in the frame of the other, metres.
     double pair_bound(const SlotPair& pair) const;
     /// About how fast the two bodies' surfaces move past each other, metres a step.

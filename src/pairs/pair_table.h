@@ -3,6 +3,7 @@
 
 #include "give_back.h"
 #include "pairs/pair_slots.h"
+#include "platform/prefetch.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -97,7 +98,7 @@ private:
     void prefetch_state(std::size_t i) const {
         constexpr std::size_t line = 64;
         const char* bytes = reinterpret_cast<const char*>(&states_[slots_.slot(i)]);
-        for (std::size_t at = 0; at < sizeof(State); at += line) __builtin_prefetch(bytes + at);
+        for (std::size_t at = 0; at < sizeof(State); at += line) platform::prefetch(bytes + at);
     }
 
     struct Incoming {

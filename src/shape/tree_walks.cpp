@@ -3,6 +3,8 @@
 // the linker keeps one copy of those, and it may be one that this processor cannot run.
 #include "shape/tree_walks.h"
 
+#include <cmath>
+
 namespace raycontact::trees::walks::RAYCONTACT_ISA {
 using kernels::uint;
 #include "device/cpu/instruction_set.h"
@@ -13,7 +15,11 @@ constexpr int lanes = 16;
 static_assert(lanes == NODE_LANES && lanes == TRIANGLE_LANES);
 // Each level of a tree leaves at most fifteen children waiting.
 constexpr int most_waiting = NODE_LEVELS * NODE_LANES + 1;
-constexpr double never = __builtin_inf();
+constexpr double never = std::numeric_limits<double>::infinity();
+
+DEVICE int first_in(uint bits) {
+    return static_cast<int>(kernels::lowest_bit(bits));
+}
 
 // A bit for each child whose box the ray meets within `most`, and where it enters the boxes. In float: the boxes are
 // grown by far more than its rounding.
@@ -94,8 +100,8 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
         const double d = ray.direction[axis];
         from[axis] = static_cast<float>(ray.origin[axis]);
         along[axis] = static_cast<float>(d);
-        apart += __builtin_fabs(ray.origin[axis]);
-        inverse[axis] = static_cast<float>(1 / (__builtin_fabs(d) > 1e-20 ? d : 1e-20));
+        apart += std::fabs(ray.origin[axis]);
+        inverse[axis] = static_cast<float>(1 / (std::fabs(d) > 1e-20 ? d : 1e-20));
     }
     const float error = static_cast<float>(4e-6 * apart * apart);
     MeshHit hit{never, NONE, false};
@@ -113,7 +119,7 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
         if ((next & LEAF) != 0) {
             const kernels::TriangleBlock& block = tree.blocks[next & ~LEAF];
             for (uint on = triangles_on_line(block, from, along, error); on != 0; on &= on - 1) {
-                const int k = __builtin_ctz(on);
+                const int k = first_in(on);
                 bool from_inside;
                 const double at = meet(block, k, ray, from_inside);
                 if ((ray.from_inside && !from_inside) || is_skipped(ray, block.triangle[k])) continue;
@@ -126,7 +132,7 @@ MeshHit closest_hit(const Tree& tree, const Ray& ray) {
         float enter[lanes];
         const int first = count;
         for (uint found = children_on_ray(node, from, inverse, reach, enter); found != 0; found &= found - 1) {
-            const int k = __builtin_ctz(found);
+            const int k = first_in(found);
             int at = count++;
             for (; at > first && enters[at - 1] < enter[k]; --at) {
                 enters[at] = enters[at - 1];
@@ -231,7 +237,7 @@ struct Walk {
             if (a.child[k] == NONE) continue;
             for (int i = 0; i < 6; ++i) box[i] = boxes[i][k];
             for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
-                pair(a.child[k], box, b.child[__builtin_ctz(in)]);
+                pair(a.child[k], box, b.child[first_in(in)]);
         }
     }
 
@@ -243,7 +249,7 @@ struct Walk {
         } else if (first_leaf) {
             const kernels::Node& b = trees.second.nodes[second_child];
             for (uint in = boxes_in_box(b.bounds, box); in != 0; in &= in - 1)
-                pair(first_child, box, b.child[__builtin_ctz(in)]);
+                pair(first_child, box, b.child[first_in(in)]);
         } else if (second_leaf) {
             under_first(first_child, second_child & ~LEAF);
         } else {
@@ -284,14 +290,14 @@ struct Walk {
         }
         float all[6] = {3e38f, 3e38f, 3e38f, -3e38f, -3e38f, -3e38f};
         for (uint in = near_first; in != 0; in &= in - 1) {
-            const int k = __builtin_ctz(in);
+            const int k = first_in(in);
             for (int i = 0; i < 3; ++i) {
                 all[i] = bounds.box[i][k] < all[i] ? bounds.box[i][k] : all[i];
                 all[3 + i] = bounds.box[3 + i][k] > all[3 + i] ? bounds.box[3 + i][k] : all[3 + i];
             }
         }
         for (uint own = boxes_in_box(first.bounds.box, all); own != 0; own &= own - 1) {
-            const int k = __builtin_ctz(own);
+            const int k = first_in(own);
             float box[6];
             for (int i = 0; i < 6; ++i) box[i] = first.bounds.box[i][k];
             uint in = boxes_in_box(bounds.box, box);
@@ -299,7 +305,7 @@ struct Walk {
             if (in != 0) in &= ~apart_by_plane(first, k, b, bounds);
             for (; in != 0; in &= in - 1) {
                 if (count == trees.room) flush();
-                trees.pairs[count++] = {a.triangle[k], b.triangle[__builtin_ctz(in)]};
+                trees.pairs[count++] = {a.triangle[k], b.triangle[first_in(in)]};
             }
         }
     }
@@ -340,7 +346,7 @@ void near_triangles(TwoTrees& trees) {
     Placed kept[kept_blocks];
     for (Placed& placed : kept) placed.block = NONE;
     Walk walk{trees, kept};
-    for (int i = 0; i < 9; ++i) walk.size[i] = __builtin_fabsf(trees.rotation[i]);
+    for (int i = 0; i < 9; ++i) walk.size[i] = kernels::magnitude_of(trees.rotation[i]);
     walk.both(0, 0);
     walk.flush();
 }

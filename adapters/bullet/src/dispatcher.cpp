@@ -4,6 +4,7 @@
 #include <box_face.h>
 #include <pair.h>
 #include <plane.h>
+#include <prefetch.h>
 #include <query.h>
 #include <raycontact/error.h>
 #include <round.h>
@@ -143,7 +144,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.hand_out(s.scene.contacts());
     s.hand_out(s.scene.coming_contacts());
     for (std::size_t i = 0; i < s.work.size(); ++i) {
-        if (i + 8 < s.work.size()) __builtin_prefetch(s.work[i + 8]);
+        if (i + 8 < s.work.size()) prefetch(s.work[i + 8]);
         if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();
         if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
         s.work[i]->patches.update(s.work[i]->candidates, s.manifolds, s.stats);
@@ -213,12 +214,12 @@ btCollisionAlgorithm* CollisionDispatcher::findAlgorithm(const btCollisionObject
 // Prefetches the state of some pairs ahead: it lies scattered in memory, and the solver has used the caches since.
 void CollisionDispatcher::State::fetch_ahead(std::size_t i) const {
     constexpr std::size_t algorithms = 12, states = 6;
-    if (i + algorithms < ours.size()) __builtin_prefetch(ours[i + algorithms]->m_algorithm);
+    if (i + algorithms < ours.size()) prefetch(ours[i + algorithms]->m_algorithm);
     if (i + states >= ours.size()) return;
     PairAlgorithm* coming = PairAlgorithm::of(ours[i + states]->m_algorithm);
     if (coming && coming->state()) {
         const char* bytes = reinterpret_cast<const char*>(coming->state());
-        for (std::size_t at = 0; at < sizeof(PairState); at += 64) __builtin_prefetch(bytes + at);
+        for (std::size_t at = 0; at < sizeof(PairState); at += 64) prefetch(bytes + at);
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <candidate.h>
+#include <prefetch.h>
 
 #include <vector>
 
@@ -20,11 +21,10 @@ public:
     /// This step's contacts, in the order of their keys. Points whose key is there again keep their impulses.
     void update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings, DispatcherStats& stats);
     /// Prefetches what update() will read: the list of manifolds, then the manifolds.
-    void fetch_list() const { __builtin_prefetch(manifolds_.data()); }
+    void fetch_list() const { prefetch(manifolds_.data()); }
     void fetch() const {
         for (const btPersistentManifold* m : manifolds_)
-            for (std::size_t at = 0; at < sizeof(*m); at += 64)
-                __builtin_prefetch(reinterpret_cast<const char*>(m) + at);
+            for (std::size_t at = 0; at < sizeof(*m); at += 64) prefetch(reinterpret_cast<const char*>(m) + at);
     }
     void clear();
     const std::vector<btPersistentManifold*>& manifolds() const { return manifolds_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
+#include "platform/system.h"
 
 #include <raycontact/error.h>
 
@@ -8,11 +9,9 @@
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <fstream>
 #include <new>
 #include <numeric>
 #include <string>
-#include <unistd.h>
 
 namespace raycontact::cpu {
 
@@ -154,14 +153,6 @@ private:
     Clock::duration busy_{};
 };
 
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string text; std::getline(file, text);)
-        if (text.starts_with("model name"))
-            if (const auto colon = text.find(": "); colon != std::string::npos) return text.substr(colon + 2);
-    return "processor";
-}
-
 } // namespace
 
 void* address_of(const Argument& argument) {
@@ -173,12 +164,10 @@ DeviceInfo describe() {
     info.id = "cpu";
     info.kind = "cpu";
     info.type = "cpu";
-    info.name = processor_name();
+    info.name = platform::processor_name();
     info.driver = "native, " + std::string(usable_tables().front()->instruction_set);
     info.cores = usable_cores();
-    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
-    info.memory_bytes =
-        pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page) : 0;
+    info.memory_bytes = platform::physical_memory();
     info.exact = true;
     info.usable = true;
     return info;

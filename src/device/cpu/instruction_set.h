@@ -24,7 +24,7 @@ DEVICE uint pack_sixteen(const int* lanes) {
         return static_cast<uint>(_mm256_movemask_ps(_mm256_loadu_ps(reinterpret_cast<const float*>(from))));
     };
     return eight(lanes) | eight(lanes + 8) << 8;
-#elif defined(__SSE2__)
+#elif defined(__SSE2__) || defined(_M_X64)
     const auto four = [](const int* from) {
         return static_cast<uint>(_mm_movemask_ps(_mm_loadu_ps(reinterpret_cast<const float*>(from))));
     };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cuda/cache.h"
 
+#include "platform/system.h"
+
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -9,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 #include <xxhash.h>
 
 namespace raycontact::cuda {
@@ -27,17 +28,11 @@ Head head_of(std::string_view bytes) {
 } // namespace
 
 Cache::Cache() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return fs::path(value ? value : "");
-    };
-    const fs::path own = variable("RAYCONTACT_CACHE"), all = variable("XDG_CACHE_HOME"), home = variable("HOME");
-    if (!own.empty())
-        folder_ = own.string();
-    else if (all.is_absolute())
+    const char* own = std::getenv("RAYCONTACT_CACHE");
+    if (own && *own != '\0')
+        folder_ = own;
+    else if (const fs::path all = platform::cache_folder(); !all.empty())
         folder_ = (all / "raycontact").string();
-    else if (!home.empty())
-        folder_ = (home / ".cache" / "raycontact").string();
 }
 
 std::optional<std::string> Cache::load(const std::string& name) const {
@@ -60,7 +55,8 @@ void Cache::store(const std::string& name, const std::string& bytes) const {
     // A name that no other process or thread has; renamed when it is whole.
     static std::atomic<unsigned> number = 0;
     const fs::path whole = fs::path(folder_) / name;
-    const fs::path part = whole.string() + "." + std::to_string(getpid()) + "-" + std::to_string(number++);
+    const fs::path part =
+        whole.string() + "." + std::to_string(platform::process_id()) + "-" + std::to_string(number++);
     const Head head = head_of(bytes);
     std::ofstream file(part, std::ios::binary);
     file.write(reinterpret_cast<const char*>(head.data()), sizeof head);

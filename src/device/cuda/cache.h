@@ -7,7 +7,8 @@
 namespace raycontact::cuda {
 
 /// What was compiled, kept in files from run to run, in $RAYCONTACT_CACHE, else $XDG_CACHE_HOME/raycontact, else
-/// ~/.cache/raycontact. It never fails: what cannot be read, or was damaged, is not there.
+/// ~/.cache/raycontact (%LOCALAPPDATA%\raycontact on Windows). It never fails: what cannot be read, or was damaged, is
+/// not there.
 class Cache {
 public:
     Cache();

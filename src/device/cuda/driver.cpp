@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cuda/driver.h"
 
-#include <dlfcn.h>
+#include "platform/library.h"
+#include "platform/system.h"
 
 namespace raycontact::cuda {
 
@@ -9,16 +10,18 @@ namespace {
 
 Installed load() {
     Installed loaded;
-    void* library = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
+    const std::string name = platform::on_windows ? "nvcuda.dll" : "libcuda.so.1";
+    const platform::Library library(name);
     if (!library) {
-        loaded.why_not = "no CUDA driver is installed here (libcuda.so.1)";
+        loaded.why_not = "no CUDA driver is installed here (" + name + ")";
         return loaded;
     }
     Driver& driver = loaded.driver;
-    const auto find = [&](auto& function, const char* name) {
-        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+    const auto find = [&](auto& function, const char* symbol) {
+        library.find(symbol, function);
         if (!function)
-            loaded.why_not = "the CUDA driver is too old: it has no " + std::string(name) + "; install one of CUDA 11";
+            loaded.why_not =
+                "the CUDA driver is too old: it has no " + std::string(symbol) + "; install one of CUDA 11";
     };
     // The suffix is part of the binary interface: without it, several of these are older functions.
     find(driver.cuInit, "cuInit");

@@ -3,9 +3,9 @@
 
 #include "device/cuda/nvrtc_search.h"
 #include "device/device.h"
+#include "platform/library.h"
 
 #include <algorithm>
-#include <dlfcn.h>
 
 namespace raycontact::cuda {
 
@@ -26,13 +26,13 @@ struct Nvrtc::Api {
     int (*cubin)(Program, char*) = nullptr;
     const char* (*error_text)(int) = nullptr;
 
-    /// Whether the library is there and has them all. It is never unloaded, so to load it again takes no time.
+    /// Whether the library is there and has them all.
     bool load(const std::string& path) {
-        void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+        const platform::Library library(path);
         if (!library) return false;
         bool complete = true;
         const auto find = [&](auto& function, const char* name) {
-            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+            library.find(name, function);
             complete = complete && function;
         };
         find(version, "nvrtcVersion");
@@ -48,7 +48,6 @@ struct Nvrtc::Api {
         find(cubin_size, "nvrtcGetCUBINSize");
         find(cubin, "nvrtcGetCUBIN");
         find(error_text, "nvrtcGetErrorString");
-        dlclose(library);
         return complete;
     }
     void check(int status, const char* call) const {
