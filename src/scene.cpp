@@ -378,10 +378,15 @@ std::span<const Contact> Scene::contacts() const {
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
-    const auto [first, second] = std::minmax({slot_of(a), slot_of(b)});
-    const auto bodies_of = [](const Contact& c) { return SlotPair(c.body_a, c.body_b); };
-    const auto found = std::ranges::equal_range(state_->contacts, SlotPair(first, second), {}, bodies_of);
-    return {found.begin(), found.end()};
+    const auto [low, high] = std::minmax({slot_of(a), slot_of(b)});
+    Contact wanted;
+    wanted.body_a = low;
+    wanted.body_b = high;
+    const auto by_bodies = [](const Contact& p, const Contact& q) {
+        return SlotPair(p.body_a, p.body_b) < SlotPair(q.body_a, q.body_b);
+    };
+    const auto [first, last] = std::equal_range(state_->contacts.begin(), state_->contacts.end(), wanted, by_bodies);
+    return {first, last};
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();

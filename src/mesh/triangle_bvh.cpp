@@ -16,10 +16,9 @@ constexpr std::uint32_t leaf = TriangleBvh::leaf_size;
 /// How many nodes cover n triangles, and n + 1.
 std::pair<std::uint32_t, std::uint32_t> node_counts(std::uint32_t n) {
     if (n + 1 <= leaf) return {1, 1};
-    const auto [few, more] = node_counts(n / 2);
-    const auto both = [&](std::uint32_t m) {
-        return m <= leaf ? 1 : 1 + (m / 2 == n / 2 ? few : more) + (m - m / 2 == n / 2 ? few : more);
-    };
+    const std::pair below = node_counts(n / 2);
+    const auto half = [&](std::uint32_t m) { return m == n / 2 ? below.first : below.second; };
+    const auto both = [&](std::uint32_t m) { return m <= leaf ? 1 : 1 + half(m / 2) + half(m - m / 2); };
     return {both(n), both(n + 1)};
 }
 

@@ -126,8 +126,8 @@ std::uint64_t process_id() {
 }
 
 std::filesystem::path cache_folder() {
-    if (const auto all = variable("XDG_CACHE_HOME"); all.is_absolute()) return all;
-    const auto home = variable("HOME");
+    if (auto all = variable("XDG_CACHE_HOME"); all.is_absolute()) return all;
+    auto home = variable("HOME");
     return home.empty() ? home : home / ".cache";
 }
 

@@ -12,7 +12,8 @@ using kernels::uint;
 namespace {
 
 constexpr int lanes = 16;
-static_assert(lanes == NODE_LANES && lanes == TRIANGLE_LANES);
+static_assert(lanes == NODE_LANES);
+static_assert(lanes == TRIANGLE_LANES);
 // Each level of a tree leaves at most fifteen children waiting.
 constexpr int most_waiting = NODE_LEVELS * NODE_LANES + 1;
 constexpr double never = std::numeric_limits<double>::infinity();
