@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/coloured.h>
 
+#include "mesh/measure.h"
+
 #include <raycontact/error.h>
 
 #include <nlohmann/json.hpp>
@@ -100,22 +102,17 @@ private:
     };
 
     Place write(const Mesh& mesh) {
-        Vec3 low = mesh.vertices.front(), high = low;
-        for (const Vec3& v : mesh.vertices) {
-            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-        }
-        const Vec3 middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)};
-        std::array<float, 3> least, most;
-        least.fill(std::numeric_limits<float>::infinity());
-        most.fill(-std::numeric_limits<float>::infinity());
+        const Vec3 middle = box_of(mesh.vertices).middle();
+        std::array<float, 3> low, high;
+        low.fill(std::numeric_limits<float>::infinity());
+        high.fill(-std::numeric_limits<float>::infinity());
         const std::size_t positions = bytes_.size();
         for (const Vec3& v : mesh.vertices) {
             const std::array p{static_cast<float>(v.x - middle.x), static_cast<float>(v.y - middle.y),
                                static_cast<float>(v.z - middle.z)};
             for (std::size_t k = 0; k < 3; ++k) {
-                least[k] = std::min(least[k], p[k]);
-                most[k] = std::max(most[k], p[k]);
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
             }
             append(bytes_, p);
         }
@@ -130,8 +127,8 @@ private:
                               {"componentType", 5126},
                               {"count", mesh.vertices.size()},
                               {"type", "VEC3"},
-                              {"min", least},
-                              {"max", most}});
+                              {"min", low},
+                              {"max", high}});
         accessors_.push_back({{"bufferView", view + 1},
                               {"componentType", 5125},
                               {"count", 3 * mesh.triangles.size()},

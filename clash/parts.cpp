@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/parts.h>
 
-#include <clash/side_by_side.h>
+#include "broadphase/sweep_and_prune.h"
+#include "executor/executor.h"
+#include "mesh/measure.h"
 
 #include <raycontact/error.h>
 
@@ -14,24 +16,13 @@ namespace raycontact::clash {
 
 namespace {
 
-struct Box {
-    Vec3 low, high;
-    std::size_t part;
-};
-
-Box box_of(const AssemblyPart& placed, std::size_t part) {
-    const Vec3 first = transform_point(placed.pose, placed.mesh->vertices.front());
-    Box box{first, first, part};
-    for (const Vec3& vertex : placed.mesh->vertices) {
-        const Vec3 v = transform_point(placed.pose, vertex);
-        box.low = {std::min(box.low.x, v.x), std::min(box.low.y, v.y), std::min(box.low.z, v.z)};
-        box.high = {std::max(box.high.x, v.x), std::max(box.high.y, v.y), std::max(box.high.z, v.z)};
-    }
-    // Shapes round vertices to a ten-millionth of their size.
-    const double grow = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
-    box.low = {box.low.x - grow, box.low.y - grow, box.low.z - grow};
-    box.high = {box.high.x + grow, box.high.y + grow, box.high.z + grow};
-    return box;
+/// Shapes round vertices to a ten-millionth of their size.
+WorldBox box_of(const AssemblyPart& part, BodySlot number) {
+    std::vector<Vec3> placed;
+    placed.reserve(part.mesh->vertices.size());
+    for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
+    const Box box = raycontact::box_of(placed);
+    return world_box(number, box.low, box.high, {}, 1e-6 * length(box.high - box.low));
 }
 
 void tell_apart(std::vector<Part>& parts) {
@@ -52,20 +43,13 @@ std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
     return parts;
 }
 
-// Sorted by their lower x, so a box meets only those that begin before it ends.
 std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
-    std::vector<Box> boxes;
-    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], i));
-    std::sort(boxes.begin(), boxes.end(), [](const Box& p, const Box& q) { return p.low.x < q.low.x; });
+    std::vector<WorldBox> boxes;
+    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], static_cast<BodySlot>(i)));
+    std::vector<SlotPair> found;
+    sweep_and_prune(boxes, found);
     std::vector<PartPair> pairs;
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        for (std::size_t k = i + 1; k < boxes.size() && boxes[k].low.x <= boxes[i].high.x; ++k) {
-            const Box &p = boxes[i], &q = boxes[k];
-            if (p.low.y <= q.high.y && q.low.y <= p.high.y && p.low.z <= q.high.z && q.low.z <= p.high.z)
-                pairs.push_back({std::min(p.part, q.part), std::max(p.part, q.part)});
-        }
-    std::sort(pairs.begin(), pairs.end(),
-              [](const PartPair& p, const PartPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+    for (const auto& [a, b] : found) pairs.push_back({a, b});
     return pairs;
 }
 
@@ -83,9 +67,9 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
         }
     std::mutex mutex;
     std::size_t done = 0;
-    for_each_beside(
-        wanted.size(), threads,
-        [&](std::size_t i) {
+    Executor executor(threads);
+    executor.run(static_cast<std::uint32_t>(wanted.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end && !stop(); ++i) {
             std::shared_ptr<const Shape> shape;
             std::string fault;
             try {
@@ -99,8 +83,8 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
                 parts[part].fault = fault;
             }
             progress(++done, wanted.size());
-        },
-        stop);
+        }
+    });
 }
 
 } // namespace raycontact::clash

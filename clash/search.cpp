@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/search.h>
 
-#include <clash/side_by_side.h>
+#include "executor/executor.h"
 
 #include <raycontact/collide.h>
 #include <raycontact/scene.h>
@@ -47,6 +47,7 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
     for (const std::size_t part : used) bodies.emplace(part, scene.add(parts[part].shape, parts[part].pose));
 
     std::vector<Clash> clashes;
+    Executor executor(options.threads);
     constexpr std::size_t at_once = 256;
     for (std::size_t first = 0; first < asked.size() && !options.stop(); first += at_once) {
         const std::span some = std::span(asked).subspan(first, std::min(at_once, asked.size() - first));
@@ -56,18 +57,17 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
         scene.step(list);
         std::vector<Clash> found(some.size());
         std::vector<char> meets(some.size(), 0);
-        for_each_beside(
-            some.size(), options.threads,
-            [&](std::size_t i) {
+        executor.run(static_cast<std::uint32_t>(some.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end && !options.stop(); ++i) {
                 found[i] = clash_of(some[i], scene.contacts(list[i].first, list[i].second));
                 meets[i] = found[i].contacts > 0;
-                if (meets[i]) return;
+                if (meets[i]) continue;
                 const Part &a = parts[some[i].a], &b = parts[some[i].b];
                 const auto shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
                 if (shared) found[i].point = *shared;
                 meets[i] = shared.has_value();
-            },
-            options.stop);
+            }
+        });
         for (std::size_t i = 0; i < some.size(); ++i)
             if (meets[i]) clashes.push_back(found[i]);
         options.progress(first + some.size(), asked.size());

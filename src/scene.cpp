@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <new>
 #include <unordered_map>
 
 namespace raycontact {
@@ -104,19 +105,24 @@ struct Scene::State {
             if (body.shape != nullptr) body.shape->prepare(narrow.settings().threads);
     }
 
-    // Once a shape meets others in a second step, more steps are likely to come.
+    // Once a shape meets others in a second step, more steps are likely to come. Without memory for it, they come
+    // without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
         ++steps_met;
-        for (const SlotPair& pair : slot_pairs)
-            for (const BodySlot slot : {pair.first, pair.second}) {
-                const Shape* shape = bodies[slot].shape;
-                if (shape->is_prepared()) continue;
-                std::uint64_t& first = met_shapes.try_emplace(shape, steps_met).first->second;
-                if (first >= steps_met) continue; // met for the first time, or wanted already
-                first = wanted;
-                preparer.want(shape->shared_from_this());
-            }
+        try {
+            for (const SlotPair& pair : slot_pairs)
+                for (const BodySlot slot : {pair.first, pair.second})
+                    if (narrow.parts().is_plain(bodies[slot].shape_index)) meet(*bodies[slot].shape);
+        } catch (const std::bad_alloc&) {
+        }
+    }
+
+    void meet(const Shape& shape) {
+        std::uint64_t& first = met_shapes.try_emplace(&shape, steps_met).first->second;
+        if (first >= steps_met) return; // met for the first time, or wanted already
+        preparer.want(shape.shared_from_this());
+        first = wanted;
     }
 
     void find_pairs() {
@@ -194,8 +200,8 @@ struct Scene::State {
         narrow.step(bodies, slot_pairs, contacts, stats);
         stats.broad_ms = broad_ms;
         if (narrow.settings().continuous) find_coming();
-        want_shapes();
         slots.step_done();
+        want_shapes();
         cut_to_slots();
         give_back(boxes);
         give_back(pairs);

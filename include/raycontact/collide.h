@@ -36,4 +36,8 @@ bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& 
 /// the other. Nothing if intersects() is false.
 std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
+/// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
+/// Decided by exact predicates. Body frame, metres. Safe to call from several threads.
+bool contains(const Shape& shape, const Vec3& point);
+
 } // namespace raycontact

@@ -27,10 +27,7 @@ MeshHit closest_hit(const ShapeData& mesh, const Vec3& origin, const Vec3& direc
                                 least,
                                 most,
                                 mesh.header.tolerance,
-                                mesh.reach,
-                                false,
-                                nullptr,
-                                0});
+                                mesh.reach});
 }
 
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -77,7 +77,11 @@ void Parts::remove_shape(const Shape* shape) {
 
 // All stores have had the same calls, so a shape has the same index in each.
 kernels::uint Parts::index_of(const Shape* shape) const {
-    return (*std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; }))->shapes().index_of(shape);
+    return any_part().shapes().index_of(shape);
+}
+
+Part& Parts::any_part() const {
+    return **std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
 }
 
 bool Parts::pack_shapes() {

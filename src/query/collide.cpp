@@ -2,16 +2,12 @@
 #include <raycontact/collide.h>
 #include <raycontact/scene.h>
 
-#include "pose_fault.h"
-
-#include <string>
-
 namespace raycontact {
 
 std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                              const CollideOptions& options) {
-    if (const char* fault = pose_fault(pose_a)) throw InputError(std::string("pose of the first mesh: ") + fault);
-    if (const char* fault = pose_fault(pose_b)) throw InputError(std::string("pose of the second mesh: ") + fault);
+    check_pose(pose_a, "pose of the first mesh");
+    check_pose(pose_b, "pose of the second mesh");
     Settings settings;
     settings.method = Method::standard; // nothing to keep for a next step
     settings.direction = options.direction;

@@ -5,11 +5,8 @@
 #include "mesh/predicates.h"
 #include "mesh/self_intersection.h"
 #include "pairs/directed_pairs.h"
-#include "pose_fault.h"
 #include "query/winding.h"
 #include "shape/shape_data.h"
-
-#include <raycontact/error.h>
 
 #include <algorithm>
 #include <array>
@@ -17,7 +14,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 
 namespace raycontact {
 
@@ -178,7 +174,7 @@ private:
 
 // Their surfaces do not meet, so each component lies inside as a whole or not at all. A vertex of one that does.
 std::optional<Vec3> vertex_inside(const ShapeData& source, const Pose& source_in_target, const ShapeData& target) {
-    if (!target.mesh.report.closed) return std::nullopt;
+    if (target.header.closed == 0) return std::nullopt;
     for (const std::uint32_t v : source.component_vertices) {
         const Vec3 p = transform_point(source_in_target, source.point(v));
         if (winding_number(target, p) != 0) return p;
@@ -190,8 +186,8 @@ std::optional<Vec3> vertex_inside(const ShapeData& source, const Pose& source_in
 
 std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
     const FloatEnvironment environment;
-    if (const char* fault = pose_fault(pose_a)) throw InputError(std::string("pose of the first mesh: ") + fault);
-    if (const char* fault = pose_fault(pose_b)) throw InputError(std::string("pose of the second mesh: ") + fault);
+    check_pose(pose_a, "pose of the first mesh");
+    check_pose(pose_b, "pose of the second mesh");
     const Pose centred_a = centred_pose(a, pose_a), centred_b = centred_pose(b, pose_b);
     const Pose a_in_b = relative_pose(centred_b, centred_a);
     if (const auto point = SurfaceTest(a.data(), b.data(), a_in_b).meet()) return transform_point(centred_b, *point);
@@ -199,6 +195,11 @@ std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape
     if (const auto point = vertex_inside(b.data(), relative_pose(centred_a, centred_b), a.data()))
         return transform_point(centred_a, *point);
     return std::nullopt;
+}
+
+bool contains(const Shape& shape, const Vec3& point) {
+    const FloatEnvironment environment;
+    return shape.data().header.closed != 0 && winding_number(shape.data(), point - shape.centre()) != 0;
 }
 
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {

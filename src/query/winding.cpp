@@ -81,7 +81,7 @@ int winding_number(const ShapeData& shape, const Vec3& point) {
     constexpr int attempts = 64; // as many that all meet an edge: the point is on the surface
     for (int i = 0; i < attempts; ++i) {
         const double rise = high.x - p.x + 0.1 * shape.diagonal;
-        const Vec3 to{p.x + rise, p.y + askew() * rise, p.z + askew() * rise};
+        const Vec3 to = snapped({p.x + rise, p.y + askew() * rise, p.z + askew() * rise});
         if (const auto winding = winding_along(shape, p, to)) return *winding;
     }
     return 1;

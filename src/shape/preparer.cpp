@@ -3,7 +3,8 @@
 
 #include "executor/executor.h"
 
-#include <new>
+#include <exception>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -23,7 +24,7 @@ void Preparer::want(const std::shared_ptr<const Shape>& shape) {
 }
 
 void Preparer::serve(const std::stop_token& stop) {
-    Executor executor(threads_, -1, Executor::Priority::low);
+    std::optional<Executor> executor;
     for (;;) {
         std::shared_ptr<const Shape> shape;
         {
@@ -33,9 +34,10 @@ void Preparer::serve(const std::stop_token& stop) {
             shapes_.pop_front();
         }
         try {
-            shape->prepare(executor, stop);
-        } catch (const std::bad_alloc&) {
-            // Steps go on without; they are slower and find the same contacts.
+            if (!executor) executor.emplace(threads_, -1, Executor::Priority::low);
+            shape->prepare(*executor, stop);
+        } catch (const std::exception&) {
+            // No memory or threads. Steps go on without; they are slower and find the same contacts.
         }
     }
 }

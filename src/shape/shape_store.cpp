@@ -39,10 +39,11 @@ void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
         return;
     }
     // Entered last: a shape too large for the device has no entry, and leaves at most unused elements in the arrays.
-    Entry entry{shape, 0, 1, 0, false};
-    upload(entry);
+    Entry entry{shape, 0, 1, 0};
+    const bool accelerated = upload(entry);
     order_.reserve(order_.size() + 1);
-    entries_.emplace(shape.get(), std::move(entry));
+    const Entry& entered = entries_.emplace(shape.get(), std::move(entry)).first->second;
+    if (!accelerated) note_plain(entered);
     order_.push_back(shape.get());
 }
 
@@ -50,7 +51,7 @@ void ShapeStore::remove(const Shape* shape) {
     const auto found = entries_.find(shape);
     if (--found->second.users > 0) return;
     bytes_dropped_ += found->second.bytes;
-    plain_ -= found->second.accelerated ? 0 : 1;
+    no_longer_plain(found->second.index, shape);
     order_.erase(std::find(order_.begin(), order_.end(), shape));
     entries_.erase(found);
 }
@@ -60,15 +61,19 @@ bool ShapeStore::pack() {
     ++packed_;
     arrays_ = {};
     headers_.clear();
+    plain_shapes_.clear();
     bytes_used_ = bytes_dropped_ = 0;
     plain_ = 0;
     whole_ = false; // if an upload throws, the next call begins anew
-    for (const Shape* shape : order_) upload(entries_.at(shape));
+    for (const Shape* shape : order_) {
+        Entry& entry = entries_.at(shape);
+        if (!upload(entry)) note_plain(entry);
+    }
     whole_ = true;
     return true;
 }
 
-void ShapeStore::upload(Entry& entry) {
+bool ShapeStore::upload(Entry& entry) {
     const ShapeData& data = entry.shape->data();
     const Accelerators* more = entry.shape->accelerators();
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
@@ -84,24 +89,35 @@ void ShapeStore::upload(Entry& entry) {
     const kernels::uint cluster_first = append(device_, arrays_.clusters, data.clusters);
     for (kernels::uint& first : header.cluster_first) first += cluster_first;
     headers_.reserve(headers_.size() + 1);
+    plain_shapes_.resize(headers_.size() + 1, nullptr);
     arrays_.headers.append(device_, std::span(&header, 1));
     entry.index = static_cast<kernels::uint>(headers_.size());
     headers_.push_back(header);
     entry.bytes = entry.shape->memory_bytes();
     bytes_used_ += entry.bytes;
-    entry.accelerated = more != nullptr;
-    plain_ += more != nullptr ? 0 : 1;
+    return more != nullptr;
 }
 
 void ShapeStore::accelerate() {
     if (plain_ == 0) return;
-    for (const Shape* shape : order_) {
-        Entry& entry = entries_.at(shape);
-        if (entry.accelerated || shape->accelerators() == nullptr) continue;
-        upload_accelerators(entry, *shape->accelerators());
-        entry.accelerated = true;
-        --plain_;
+    for (kernels::uint i = 0; i < plain_shapes_.size(); ++i) {
+        const Shape* shape = plain_shapes_[i];
+        if (shape == nullptr || shape->accelerators() == nullptr) continue;
+        upload_accelerators(entries_.at(shape), *shape->accelerators());
+        no_longer_plain(i, shape);
     }
+}
+
+void ShapeStore::note_plain(const Entry& entry) {
+    plain_shapes_[entry.index] = entry.shape.get();
+    ++plain_;
+}
+
+// A pack that failed may have left another index.
+void ShapeStore::no_longer_plain(kernels::uint index, const Shape* shape) {
+    if (index >= plain_shapes_.size() || plain_shapes_[index] != shape) return;
+    plain_shapes_[index] = nullptr;
+    --plain_;
 }
 
 // The grids go to the ends of their arrays; the word of the grid of one cell stays, unused.

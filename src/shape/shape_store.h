@@ -37,8 +37,9 @@ public:
     bool pack();
     /// Takes over what was made of the shapes since they were added (Shape::prepare). Call it between steps.
     void accelerate();
-    /// How many shapes have no accelerators here.
+    /// How many shapes have no accelerators here, and whether that one has none, by its index.
     std::size_t plain() const { return plain_; }
+    bool is_plain(kernels::uint index) const { return plain_shapes_[index] != nullptr; }
     /// Counts the times that indices changed.
     std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
@@ -50,11 +51,12 @@ private:
         std::shared_ptr<const Shape> shape;
         kernels::uint index = 0;
         std::uint32_t users = 0;
-        std::uint64_t bytes = 0; ///< of the shape, when it was uploaded
-        bool accelerated = false;
+        std::uint64_t bytes = 0; ///< of the shape, as far as it is here
     };
-    void upload(Entry& entry);
+    bool upload(Entry& entry); ///< returns whether it has accelerators
     void upload_accelerators(Entry& entry, const Accelerators& more);
+    void note_plain(const Entry& entry);
+    void no_longer_plain(kernels::uint index, const Shape* shape);
 
     Device& device_;
     std::unordered_map<const Shape*, Entry> entries_;
@@ -63,8 +65,9 @@ private:
     std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
     std::uint64_t packed_ = 0;
-    std::size_t plain_ = 0; ///< entries not accelerated
-    bool whole_ = true;     ///< all shapes of order_ are in the arrays
+    std::vector<const Shape*> plain_shapes_; ///< by index; null: accelerated, or dropped
+    std::size_t plain_ = 0;                  ///< of them
+    bool whole_ = true;                      ///< all shapes of order_ are in the arrays
 };
 
 } // namespace raycontact

@@ -30,13 +30,13 @@ struct Tree {
 };
 
 struct Ray {
-    double origin[3], direction[3]; ///< direction: unit
-    double least, most;             ///< hits with least < distance <= most count
-    double tolerance;               ///< metres that boxes are looked beyond `most`
-    double reach;                   ///< of the mesh: largest distance of a vertex from its centre
-    bool from_inside;               ///< faces met from outside do not count
-    const std::uint32_t* skipped;   ///< faces that do not count
-    std::uint32_t skipped_count;
+    double origin[3], direction[3];         ///< direction: unit
+    double least, most;                     ///< hits with least < distance <= most count
+    double tolerance;                       ///< metres that boxes are looked beyond `most`
+    double reach;                           ///< of the mesh: largest distance of a vertex from its centre
+    bool from_inside = false;               ///< faces met from outside do not count
+    const std::uint32_t* skipped = nullptr; ///< faces that do not count
+    std::uint32_t skipped_count = 0;
 };
 
 /// Two trees, the pose of the first in the frame of the second, and where the pairs go.
