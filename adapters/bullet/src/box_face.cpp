@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <box_face.h>
+#include <vectors.h>
 
 #include <LinearMath/btAabbUtil2.h>
 
 namespace raycontact::bullet {
 
 namespace {
-
-btVector3 to_bullet(const Vec3& v) {
-    return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
-}
 
 /// The face that a box in the other box's frame lies over: twice the axis, plus one for the upper side; -1 for none.
 int face_under(const btVector3& low, const btVector3& high, const btVector3& half) {

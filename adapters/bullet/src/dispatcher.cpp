@@ -8,6 +8,7 @@
 #include <query.h>
 #include <raycontact/error.h>
 #include <round.h>
+#include <vectors.h>
 #include <work.h>
 #include <world_recorder.h>
 
@@ -377,10 +378,12 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
             c.feature,     key_crossing(c.crossing)};
         candidate.triangle = static_cast<int>(c.triangle);
         if (entry->swapped) {
-            surface_points(c, candidate.on1, candidate.on0);
+            candidate.on0 = to_bullet(point_on_b(c));
+            candidate.on1 = to_bullet(point_on_a(c));
             candidate.normal = normal_of(c);
         } else {
-            surface_points(c, candidate.on0, candidate.on1);
+            candidate.on0 = to_bullet(point_on_a(c));
+            candidate.on1 = to_bullet(point_on_b(c));
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);

@@ -5,6 +5,7 @@
 #include <mesh_tree.h>
 #include <raycontact/bullet/mass.h>
 #include <raycontact/error.h>
+#include <vectors.h>
 
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <LinearMath/btAabbUtil2.h>
@@ -28,9 +29,7 @@ MeshShape::~MeshShape() = default;
 void MeshShape::getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
     if (bounds_ == Bounds::box) {
         const Vec3 low = scaled_->box_min(), high = scaled_->box_max();
-        btTransformAabb(btVector3(btScalar(low.x), btScalar(low.y), btScalar(low.z)),
-                        btVector3(btScalar(high.x), btScalar(high.y), btScalar(high.z)), getMargin(), t, aabb_min,
-                        aabb_max);
+        btTransformAabb(to_bullet(low), to_bullet(high), getMargin(), t, aabb_min, aabb_max);
         return;
     }
     tree_->bounds(t, aabb_min, aabb_max);

@@ -2,6 +2,7 @@
 #include <plane.h>
 
 #include <objects.h>
+#include <vectors.h>
 
 #include <cmath>
 
@@ -34,7 +35,7 @@ void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const H
     for (const std::uint32_t v : below) {
         const Vec3 p = transform_point(pose, mesh.shape->vertices()[v]);
         const double depth = height - (nx * p.x + ny * p.y + nz * p.z);
-        if (depth > 0) out.push_back({v, btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z)), btScalar(depth)});
+        if (depth > 0) out.push_back({v, to_bullet(p), btScalar(depth)});
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <plane.h>
 #include <round.h>
+#include <vectors.h>
 #include <work.h>
 
 #include <LinearMath/btAabbUtil2.h>
@@ -13,14 +14,6 @@ namespace raycontact::bullet {
 
 btVector3 normal_of(const Contact& c) {
     return btVector3(c.normal[0], c.normal[1], c.normal[2]);
-}
-
-void surface_points(const Contact& c, btVector3& on_a, btVector3& on_b) {
-    const btVector3 vertex(btScalar(c.point.x), btScalar(c.point.y), btScalar(c.point.z));
-    const btVector3 across = normal_of(c) * btScalar(c.depth);
-    // The vertex lies on its own body; the other's surface is a depth away, against the way it went in.
-    on_a = c.vertex_body == VertexBody::a ? vertex : btVector3(vertex + across);
-    on_b = c.vertex_body == VertexBody::a ? btVector3(vertex - across) : vertex;
 }
 
 std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) const {
@@ -131,13 +124,11 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
     const BodyId body_b = scene_.add(b.leaf.converted.shape, to_pose(b.pose));
     const std::array pairs{Pair{body_a, body_b}};
     for (const Contact& c : scene_.step(pairs)) {
-        btVector3 on_a, on_b;
-        surface_points(c, on_a, on_b);
         const int source = static_cast<int>(c.vertex), target = static_cast<int>(c.triangle);
         const bool of_a = c.vertex_body == VertexBody::a;
         result.setShapeIdentifiersA(a.index, of_a ? source : target);
         result.setShapeIdentifiersB(b.index, of_a ? target : source);
-        result.addContactPoint(-normal_of(c), on_b, btScalar(-c.depth));
+        result.addContactPoint(-normal_of(c), to_bullet(point_on_b(c)), btScalar(-c.depth));
     }
     scene_.remove(body_a);
     scene_.remove(body_b);

@@ -72,8 +72,6 @@ private:
     btPersistentManifold* manifold_;
 };
 
-/// To Bullet's terms: on0 and on1 for a contact between a (body 0) and b (body 1).
-void surface_points(const Contact& contact, btVector3& on_a, btVector3& on_b);
 btVector3 normal_of(const Contact& contact);
 
 } // namespace raycontact::bullet

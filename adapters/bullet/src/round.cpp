@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <round.h>
+#include <vectors.h>
+
+#include <raycontact/collide.h>
 
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
@@ -111,7 +114,7 @@ private:
         if ((on & (on - 1)) == 0) {
             const std::size_t k = on == 1 ? 0 : on == 2 ? 1 : 2;
             const Vec3& n = mesh_.shape->vertex_normals()[mesh_.tree->triangle(t)[k]];
-            return btVector3(btScalar(n.x), btScalar(n.y), btScalar(n.z));
+            return to_bullet(n);
         }
         btVector3 sum(0, 0, 0);
         around(t, on, [&](std::uint32_t other) { sum += face_normal(other); });
@@ -204,36 +207,9 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
     }
 }
 
-/// Whether a line upwards from p crosses a closed mesh an odd number of times. Rounding can err where it meets an edge.
-bool seems_inside(const Converted& mesh, const btVector3& p) {
-    const Vec3 low = mesh.shape->box_min(), high = mesh.shape->box_max();
-    const double at[3] = {double(p.x()), double(p.y()), double(p.z())};
-    if (!mesh.shape->report().closed || at[0] < low.x || at[1] < low.y || at[2] < low.z || at[0] > high.x
-        || at[1] > high.y || at[2] > high.z)
-        return false;
-    bool inside = false;
-    mesh.tree->overlapping(p, btVector3(p.x(), p.y(), btScalar(high.z)), [&](std::uint32_t index) {
-        const auto& t = mesh.tree->triangle(index);
-        btVector3 corners[3];
-        for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.tree->vertex(t[k]) - p;
-        btScalar area[3]; // of the triangles that p makes with the edges, seen from above
-        for (int k = 0; k < 3; ++k) {
-            const btVector3 &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
-            area[k] = a.x() * b.y() - a.y() * b.x();
-        }
-        const bool up = area[0] >= 0 && area[1] >= 0 && area[2] >= 0, down = area[0] < 0 && area[1] < 0 && area[2] < 0;
-        const btScalar sum = area[0] + area[1] + area[2];
-        if ((!up && !down) || sum == 0) return;
-        const btScalar height = (area[0] * corners[0].z() + area[1] * corners[1].z() + area[2] * corners[2].z()) / sum;
-        if (height > 0) inside = !inside;
-    });
-    return inside;
-}
-
 /// An end so deep inside that no surface is in its reach: the nearest way out, found by growing steps.
 void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, std::vector<Found>& out) {
-    // Aside by less than the limit, within which there is no surface: the middle of a face is often a cut's, too.
-    if (!seems_inside(mesh, centre + limit * btVector3(btScalar(0.137), btScalar(0.219), 0))) return;
+    if (!contains(*mesh.shape, to_vec(centre))) return;
     const btScalar most = 4 * btScalar(mesh.shape->radius()) + limit;
     while (out.empty() && limit < most) {
         limit *= 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <stand_in.h>
+#include <vectors.h>
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
@@ -21,10 +22,6 @@ namespace {
 constexpr std::uint32_t sides = 64;      ///< of a cylinder and a cone: facets within 6e-4 of the radius
 constexpr std::uint32_t ball_parts = 10; ///< of each edge of the icosahedron: 1002 points, within 1.5e-3 of the radius
 constexpr double pi = 3.14159265358979323846;
-
-Vec3 to_vec(const btVector3& v) {
-    return {double(v.x()), double(v.y()), double(v.z())};
-}
 
 double dot(const Vec3& a, const Vec3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;

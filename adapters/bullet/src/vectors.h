@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/pose.h>
+
+#include <LinearMath/btVector3.h>
+
+namespace raycontact::bullet {
+
+inline Vec3 to_vec(const btVector3& v) {
+    return {double(v.x()), double(v.y()), double(v.z())};
+}
+
+inline btVector3 to_bullet(const Vec3& v) {
+    return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+}
+
+} // namespace raycontact::bullet
