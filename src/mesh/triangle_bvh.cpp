@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/triangle_bvh.h"
 
+#include "executor/divide.h"
 #include "mesh/triangle_distance.h"
 
 #include <algorithm>
@@ -53,21 +54,11 @@ void TriangleBvh::build(Executor& executor) {
             sorting.sums[order_[i]] = p + q + r;
         }
     });
-    // Level by level while there are few parts, then each part by one thread.
-    std::vector<Part> parts{{0, 0, count}};
-    while (parts.size() < 256 && count / parts.size() > 4096) {
-        std::vector<Part> halves(2 * parts.size());
-        executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const auto both = split(parts[i], sorting);
-                std::copy(both.begin(), both.end(), halves.begin() + 2 * std::ptrdiff_t{i});
-            }
-        });
-        parts = std::move(halves);
-    }
-    executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) build_below(parts[i], sorting);
-    });
+    constexpr std::uint32_t large = 4096;
+    const auto parts = divide(
+        executor, Part{0, 0, count}, [](const Part& part) { return part.last - part.first > large; },
+        [&](const Part& part) { return split(part, sorting); });
+    for_each_part(executor, parts, [&](const Part& part) { build_below(part, sorting); });
 }
 
 /// Fills the part's node, with the places of both children.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "executor/divide.h"
 #include "shape/build.h"
 
 #include <raycontact/error.h>
@@ -238,40 +239,35 @@ public:
 
 private:
     struct Part {
-        std::size_t branch; ///< that it hangs from
-        std::size_t first, last;
+        std::size_t branch = 0;          ///< its root
+        std::size_t first = 0, last = 0; ///< items
+        Box box;                         ///< of a large one
     };
 
-    // Large parts are split level by level, all of a level side by side; then each part grows its own subtree.
+    // Large parts are split first; then each part grows its own subtree.
     void split(std::vector<Item>& items) {
         constexpr std::size_t sweep_at_most = 1 << 14;
         branches_.emplace_back();
-        std::vector<Part> open{{0, 0, items.size()}}, parts;
         const auto items_of = [&](const Part& p) { return std::span(items).subspan(p.first, p.last - p.first); };
-        while (!open.empty()) {
-            std::vector<Part> large;
-            for (const Part& p : open) (p.last - p.first > sweep_at_most ? large : parts).push_back(p);
-            std::vector<std::size_t> middles(large.size());
-            executor_.run(static_cast<std::uint32_t>(large.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-                for (std::uint32_t i = begin; i < end; ++i) {
-                    for (const Item& item : items_of(large[i])) branches_[large[i].branch].box.add(item.box);
-                    middles[i] = large[i].first + split_longest(items_of(large[i]));
-                }
+        auto parts = divide(
+            executor_, Part{0, 0, items.size(), {}}, [](const Part& p) { return p.last - p.first > sweep_at_most; },
+            [&](Part& p) {
+                for (const Item& item : items_of(p)) p.box.add(item.box);
+                const std::size_t middle = p.first + split_longest(items_of(p));
+                return std::array{Part{0, p.first, middle, {}}, Part{0, middle, p.last, {}}};
+            },
+            [&](const Part& p, std::array<Part, 2>& halves) {
+                halves[0].branch = branches_.size();
+                halves[1].branch = branches_.size() + 1;
+                branches_[p.branch].box = p.box;
+                branches_[p.branch].left = halves[0].branch;
+                branches_[p.branch].right = halves[1].branch;
+                branches_.resize(branches_.size() + 2);
             });
-            open.clear();
-            for (std::size_t i = 0; i < large.size(); ++i) {
-                const std::size_t left = branches_.size();
-                branches_.resize(left + 2);
-                branches_[large[i].branch].left = left;
-                branches_[large[i].branch].right = left + 1;
-                open.push_back({left, large[i].first, middles[i]});
-                open.push_back({left + 1, middles[i], large[i].last});
-            }
-        }
         std::ranges::sort(parts, {}, &Part::first);
         std::vector<Subtree> subtrees(parts.size());
-        executor_.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) subtrees[i].build(shape_, items_of(parts[i]), balanced_);
+        for_each_part(executor_, parts, [&](const Part& p) {
+            subtrees[static_cast<std::size_t>(&p - parts.data())].build(shape_, items_of(p), balanced_);
         });
         for (std::size_t i = 0; i < parts.size(); ++i) graft(subtrees[i], parts[i].branch);
         for (std::size_t id = 0; id < shape_.triangle_blocks.size(); ++id)

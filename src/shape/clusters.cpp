@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "executor/divide.h"
 #include "mesh/vector.h"
 #include "shape/build.h"
 
@@ -52,22 +53,14 @@ void order_below(const ShapeData& shape, std::span<uint> vertices) {
 
 void order_by_place(const ShapeData& shape, std::span<uint> all, Executor& executor) {
     constexpr std::size_t large = 1 << 13;
-    std::vector<std::span<uint>> open{all}, parts;
-    while (!open.empty()) { // large ones level by level, all of a level side by side
-        std::vector<std::span<uint>> halves(2 * open.size());
-        executor.run(static_cast<std::uint32_t>(open.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t left = open[i].size() > large ? split_by_place(shape, open[i]) : 0;
-                halves[2 * i] = open[i].first(left);
-                halves[2 * i + 1] = open[i].subspan(left);
-            }
+    using Part = std::span<uint>;
+    const auto parts = divide(
+        executor, all, [](const Part& part) { return part.size() > large; },
+        [&](const Part& part) {
+            const std::size_t left = split_by_place(shape, part);
+            return std::array{part.first(left), part.subspan(left)};
         });
-        open.clear();
-        for (const std::span<uint> half : halves) (half.size() > large ? open : parts).push_back(half);
-    }
-    executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) order_below(shape, parts[i]);
-    });
+    for_each_part(executor, parts, [&](const Part& part) { order_below(shape, part); });
 }
 
 // Empty (NaN) until something is added.
