@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What it takes to begin with a new mesh: Bullet's own btBvhTriangleMeshShape, a raycontact::Shape, the first Bullet
-// step with it, what is made beside later steps, and one query of two copies. Milliseconds, medians, by turns.
+// step with it, one query of two copies, the same with their files read, and what is made beside later steps.
+// Milliseconds, medians, by turns.
 // Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
@@ -15,7 +16,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace rc = raycontact;
@@ -77,10 +81,21 @@ double first_dispatch(btBvhTriangleMeshShape& shape, double size) {
     return ms;
 }
 
+void write_obj(const rc::Mesh& mesh, const std::filesystem::path& file) {
+    std::ofstream out(file);
+    out.precision(9);
+    for (const rc::Vec3& v : mesh.vertices) out << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (const auto& [a, b, c] : mesh.triangles) out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+    if (!out.flush()) throw std::runtime_error(file.string() + " cannot be written");
+}
+
 void measure(std::uint32_t triangles, int rounds) {
     const rc::Mesh mesh = rc::scenes::scene_model("sphere", triangles).mesh;
     BulletMesh bullet(mesh);
-    std::vector<double> own, make, dispatch, prepare, query;
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("raycontact_bench_" + std::to_string(triangles) + ".obj");
+    write_obj(mesh, file);
+    std::vector<double> own, make, dispatch, prepare, query, read;
     for (int i = 0; i < rounds; ++i) {
         std::unique_ptr<btBvhTriangleMeshShape> shape;
         own.push_back(milliseconds_of([&] { shape = std::make_unique<btBvhTriangleMeshShape>(&bullet.array, true); }));
@@ -88,16 +103,19 @@ void measure(std::uint32_t triangles, int rounds) {
         make.push_back(milliseconds_of([&] { made = rc::Shape::make(mesh); }));
         const double size = made->box_max().x - made->box_min().x;
         dispatch.push_back(first_dispatch(*shape, size));
-        query.push_back(milliseconds_of([&] {
-            const auto a = rc::Shape::make(mesh), b = rc::Shape::make(mesh);
+        const auto ask = [&](const rc::Mesh& one, const rc::Mesh& two) {
+            const auto a = rc::Shape::make(one), b = rc::Shape::make(two);
             if (rc::collide(*a, {}, *b, {.translation = {0.8 * size, 0, 0}}, {.threads = 0}).empty())
                 throw std::runtime_error("the two meshes have no contact");
-        }));
+        };
+        query.push_back(milliseconds_of([&] { ask(mesh, mesh); }));
+        read.push_back(milliseconds_of([&] { ask(rc::load_mesh(file), rc::load_mesh(file)); }));
         prepare.push_back(milliseconds_of([&] { made->prepare(); }));
     }
-    std::printf("%9zu  %10.1f  %10.1f %5.2f  %10.1f %5.2f  %10.1f  %10.1f\n", mesh.triangles.size(), median(own),
-                median(make), median(make) / median(own), median(dispatch), median(dispatch) / median(own),
-                median(query), median(prepare));
+    std::filesystem::remove(file);
+    std::printf("%9zu  %10.1f  %10.1f %5.2f  %10.1f %5.2f  %10.1f  %10.1f  %10.1f\n", mesh.triangles.size(),
+                median(own), median(make), median(make) / median(own), median(dispatch), median(dispatch) / median(own),
+                median(query), median(read), median(prepare));
     std::fflush(stdout);
 }
 
@@ -109,7 +127,8 @@ int main(int argc, char** argv) try {
         rounds = std::max(1, std::atoi(argv[2]));
     else if (argc > 1)
         throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N]");
-    std::printf("triangles  Bullet BVH  Shape::make      first dispatch   two and a query  prepare()   (ms)\n");
+    std::printf(
+        "triangles  Bullet BVH  Shape::make      first dispatch   two and a query  files read  prepare()   (ms)\n");
     for (const std::uint32_t triangles : {902u, 20000u, 82000u, 327680u}) measure(triangles, rounds);
     return 0;
 } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Callbacks of Bullet's: which pairs the near callback is asked about, and how often those of contacts are called,
 // against Bullet's own algorithms in the same scene.
+#include "contact_events.h"
 #include "test_world.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -165,48 +166,6 @@ TEST(Callbacks, NeedsCollisionIsAsked) {
         world.removeRigidBody(&b);
     }
 }
-
-struct Events {
-    static inline int added = 0, processed = 0, destroyed = 0, started = 0, ended = 0;
-    static inline std::set<const void*> bodies;
-    static inline int data = 0;
-    static bool on_added(btManifoldPoint& p, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*,
-                         int, int) {
-        ++added;
-        p.m_userPersistentData = &data;
-        return true;
-    }
-    static bool on_processed(btManifoldPoint& p, void* a, void* b) {
-        ++processed;
-        bodies.insert(a);
-        bodies.insert(b);
-        EXPECT_LT(p.getDistance(), gContactBreakingThreshold);
-        return true;
-    }
-    static bool on_destroyed(void* user) {
-        ++destroyed;
-        EXPECT_EQ(user, &data);
-        return true;
-    }
-    static void on_started(btPersistentManifold* const&) { ++started; }
-    static void on_ended(btPersistentManifold* const&) { ++ended; }
-    Events() {
-        added = processed = destroyed = started = ended = 0;
-        bodies.clear();
-        gContactAddedCallback = on_added;
-        gContactProcessedCallback = on_processed;
-        gContactDestroyedCallback = on_destroyed;
-        gContactStartedCallback = on_started;
-        gContactEndedCallback = on_ended;
-    }
-    ~Events() {
-        gContactAddedCallback = nullptr;
-        gContactProcessedCallback = nullptr;
-        gContactDestroyedCallback = nullptr;
-        gContactStartedCallback = nullptr;
-        gContactEndedCallback = nullptr;
-    }
-};
 
 /// A box that lies on a floor for some steps, then is lifted off. Its finder differs.
 struct Counts {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From contacts to manifolds: signs, keys, impulses kept, patches, counters, callbacks, sleeping and filtered pairs.
+#include "contact_events.h"
 #include "test_world.h"
 
 #include <gtest/gtest.h>
@@ -175,29 +176,6 @@ TEST(Manifold, PointsAreHeldForAWhile) {
     EXPECT_EQ(w.touching(), 0);
 }
 
-struct Events {
-    static inline int added = 0, started = 0, ended = 0;
-    static bool on_added(btManifoldPoint& p, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*,
-                         int, int) {
-        ++added;
-        p.m_combinedFriction = btScalar(0.125);
-        return true;
-    }
-    static void on_started(btPersistentManifold* const&) { ++started; }
-    static void on_ended(btPersistentManifold* const&) { ++ended; }
-    Events() {
-        added = started = ended = 0;
-        gContactAddedCallback = on_added;
-        gContactStartedCallback = on_started;
-        gContactEndedCallback = on_ended;
-    }
-    ~Events() {
-        gContactAddedCallback = nullptr;
-        gContactStartedCallback = nullptr;
-        gContactEndedCallback = nullptr;
-    }
-};
-
 TEST(Manifold, KeysHoldCrossings) {
     for (const std::uint32_t kept : {0u, 1u, 1021u, edge_start, edge_end}) EXPECT_EQ(bullet::key_crossing(kept), kept);
     EXPECT_EQ(bullet::key_crossing(1022), 0u);
@@ -220,7 +198,7 @@ TEST(Manifold, ContactCallbacks) {
     EXPECT_EQ(Events::added, 4);
     EXPECT_EQ(Events::started, 1);
     EXPECT_EQ(Events::ended, 0);
-    each_point(w, [](btPersistentManifold&, btManifoldPoint& p) { EXPECT_EQ(p.m_combinedFriction, btScalar(0.125)); });
+    each_point(w, [](btPersistentManifold&, btManifoldPoint& p) { EXPECT_EQ(p.m_combinedFriction, Events::friction); });
     body.setWorldTransform(at(0, 0, 5));
     w.world.performDiscreteCollisionDetection();
     EXPECT_EQ(Events::ended, 1);

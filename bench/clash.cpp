@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `raycontact clash` takes: parts of four shapes on a grid, near enough that neighbours reach into each other, all
+// of different meshes (each a little longer than the last) or placed over and over. Seconds.
+// Usage: raycontact_bench_clash [--parts N] [--triangles N]: 1000 and 10000 unless told.
+#include <clash/search.h>
+#include <scenes/models/model.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace rc = raycontact;
+
+namespace {
+
+constexpr const char* kinds[] = {"knot", "gear", "torus", "sphere"};
+
+std::vector<rc::clash::Part> assembly(std::size_t count, std::uint32_t triangles, bool different) {
+    std::vector<std::shared_ptr<const rc::Mesh>> models;
+    for (const char* kind : kinds)
+        models.push_back(std::make_shared<const rc::Mesh>(rc::scenes::scene_model(kind, triangles).mesh));
+    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(double(count))));
+    std::vector<rc::clash::Part> parts(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        parts[i].name = "part " + std::to_string(i);
+        parts[i].mesh = models[i % models.size()];
+        if (different) {
+            auto own = std::make_shared<rc::Mesh>(*parts[i].mesh);
+            for (rc::Vec3& v : own->vertices) v.x *= 1 + 1e-4 * double(i);
+            parts[i].mesh = std::move(own);
+        }
+        constexpr double spacing = 0.93; // metres; the shapes are about one across
+        parts[i].pose.translation = {spacing * double(i % side), spacing * double(i / side % side),
+                                     spacing * double(i / side / side)};
+    }
+    return parts;
+}
+
+void measure(std::size_t count, std::uint32_t triangles, bool different) {
+    std::vector<rc::clash::Part> parts = assembly(count, triangles, different);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto pairs = rc::clash::touching_boxes(parts);
+    rc::clash::make_shapes(
+        parts, pairs, 0, [](std::size_t, std::size_t) {}, [] { return false; });
+    const auto made = std::chrono::steady_clock::now();
+    const auto clashes = rc::clash::find_clashes(parts, pairs, {});
+    const auto end = std::chrono::steady_clock::now();
+    const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
+    std::printf(
+        "%-10s %6zu parts of %u triangles: %zu pairs, %zu clashes; shapes %.2f s, clashes %.2f s, together %.2f s\n",
+        different ? "different" : "the same", count, triangles, pairs.size(), clashes.size(), seconds(begin, made),
+        seconds(made, end), seconds(begin, end));
+    std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    std::size_t count = 1000;
+    std::uint32_t triangles = 10000;
+    for (int i = 1; i < argc; i += 2) {
+        const unsigned long value = i + 1 < argc ? std::strtoul(argv[i + 1], nullptr, 10) : 0;
+        if (value > 0 && std::strcmp(argv[i], "--parts") == 0)
+            count = value;
+        else if (value > 0 && std::strcmp(argv[i], "--triangles") == 0)
+            triangles = static_cast<std::uint32_t>(value);
+        else
+            throw std::runtime_error("usage: raycontact_bench_clash [--parts N] [--triangles N]");
+    }
+    for (const bool different : {false, true}) measure(count, triangles, different);
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "raycontact_bench_clash: %s\n", error.what());
+    return 1;
+}
