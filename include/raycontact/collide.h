@@ -28,7 +28,7 @@ std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b,
                              const CollideOptions& options = {});
 
 /// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
-/// closed. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance decides. Ends at the first
+/// closed and wound alike everywhere. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance decides. Ends at the first
 /// triangles that meet; copies nothing. Safe to call from several threads. Throws InputError as collide().
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 

@@ -46,11 +46,9 @@ std::optional<HalfSpace> only_face(const Converted& mesh, const btTransform& mes
     const int axis = face / 2;
     btVector3 normal = box_pose.getBasis().getColumn(axis).normalized();
     if (face % 2 == 0) normal = -normal;
-    const btVector3& o = box_pose.getOrigin();
     HalfSpace space;
     space.normal = normal;
-    space.height = double(normal.x()) * double(o.x()) + double(normal.y()) * double(o.y())
-                   + double(normal.z()) * double(o.z()) + double(half[axis]);
+    space.height = dot_in_double(normal, box_pose.getOrigin()) + double(half[axis]);
     return space;
 }
 

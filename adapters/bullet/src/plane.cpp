@@ -11,9 +11,7 @@ namespace raycontact::bullet {
 HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose) {
     HalfSpace space;
     space.normal = (plane_pose.getBasis() * plane.getPlaneNormal()).normalized();
-    const btVector3 &n = space.normal, &o = plane_pose.getOrigin();
-    space.height = double(n.x()) * double(o.x()) + double(n.y()) * double(o.y()) + double(n.z()) * double(o.z())
-                   + double(plane.getPlaneConstant());
+    space.height = dot_in_double(space.normal, plane_pose.getOrigin()) + double(plane.getPlaneConstant());
     return space;
 }
 
@@ -26,8 +24,7 @@ void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const H
 
     // The tree prunes in the mesh's frame, with slack; the depth is computed in double, in the world.
     const btVector3 local = normal * mesh_pose.getBasis(); // row vector: the inverse rotation
-    const double at = nx * double(mesh_pose.getOrigin().x()) + ny * double(mesh_pose.getOrigin().y())
-                      + nz * double(mesh_pose.getOrigin().z());
+    const double at = dot_in_double(normal, mesh_pose.getOrigin());
     const double slack = 1e-5 * (mesh.shape->radius() + std::fabs(height - at));
     static thread_local std::vector<std::uint32_t> below;
     mesh.tree->vertices_below(local, btScalar(height - at + slack), below);

@@ -15,4 +15,9 @@ inline btVector3 to_bullet(const Vec3& v) {
     return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
 }
 
+/// In double: a plane's height far from the origin needs it.
+inline double dot_in_double(const btVector3& a, const btVector3& b) {
+    return double(a.x()) * double(b.x()) + double(a.y()) * double(b.y()) + double(a.z()) * double(b.z());
+}
+
 } // namespace raycontact::bullet
