@@ -36,8 +36,8 @@ std::vector<rc::clash::Part> assembly(std::size_t count, std::uint32_t triangles
             parts[i].mesh = std::move(own);
         }
         constexpr double spacing = 0.93; // metres; the shapes are about one across
-        parts[i].pose.translation = {spacing * double(i % side), spacing * double(i / side % side),
-                                     spacing * double(i / side / side)};
+        const std::size_t column = i % side, row = i / side % side, layer = i / side / side;
+        parts[i].pose.translation = {spacing * double(column), spacing * double(row), spacing * double(layer)};
     }
     return parts;
 }

@@ -49,6 +49,7 @@ std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
     std::vector<SlotPair> found;
     sweep_and_prune(boxes, found);
     std::vector<PartPair> pairs;
+    pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b});
     return pairs;
 }

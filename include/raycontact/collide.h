@@ -28,8 +28,9 @@ std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b,
                              const CollideOptions& options = {});
 
 /// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
-/// closed and wound alike everywhere. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance decides. Ends at the first
-/// triangles that meet; copies nothing. Safe to call from several threads. Throws InputError as collide().
+/// closed and wound alike everywhere. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance
+/// decides. Ends at the first triangles that meet; copies nothing. Safe to call from several threads. Throws InputError
+/// as collide().
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// A point that both share, world frame, metres, to rounding: where two triangles meet, or a vertex of the one inside
