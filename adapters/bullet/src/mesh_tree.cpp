@@ -15,75 +15,84 @@ constexpr std::size_t exact_bounds = 1024;
 MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles().begin(), shape.triangles().end()) {
     vertices_.reserve(shape.vertices().size());
     for (const Vec3& v : shape.vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
-    order_.resize(triangles_.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    build();
-
-    if (vertices_.size() <= exact_bounds) {
-        for (const btVector3& v : vertices_) cover_.push_back({v, btVector3(0, 0, 0)});
-    } else {
-        for (const Node& node : nodes_) {
-            if (node.begin != node.end)
-                cover_.push_back({(node.low + node.high) * btScalar(0.5), (node.high - node.low) * btScalar(0.5)});
-        }
-    }
 }
 
-/// What triangles are sorted by: read in their order, it is a third of the time of looking at their vertices.
-struct MeshTree::Sorting {
+class MeshTree::Builder {
+public:
+    Builder(const MeshTree& tree, Boxes& boxes) : boxes_(boxes), keys_(tree.triangles_.size()) {
+        items_.reserve(tree.triangles_.size());
+        for (const auto& t : tree.triangles_) {
+            btVector3 low = tree.vertices_[t[0]], high = low;
+            for (std::size_t k = 1; k < 3; ++k) {
+                low.setMin(tree.vertices_[t[k]]);
+                high.setMax(tree.vertices_[t[k]]);
+            }
+            items_.push_back({low, high, tree.vertices_[t[0]] + tree.vertices_[t[1]] + tree.vertices_[t[2]]});
+        }
+        boxes_.order.resize(items_.size());
+        std::iota(boxes_.order.begin(), boxes_.order.end(), 0u);
+        boxes_.nodes.reserve(items_.size() / (leaf_triangles / 4) + 1);
+    }
+
+    void build(std::uint32_t begin, std::uint32_t end) {
+        const std::size_t index = boxes_.nodes.size();
+        Node& node = boxes_.nodes.emplace_back();
+        std::vector<std::uint32_t>& order = boxes_.order;
+        const Item& any = items_[order[begin]];
+        btVector3 low = any.low, high = any.high, first = any.centroid3, last = first;
+        for (std::uint32_t k = begin + 1; k < end; ++k) {
+            const Item& item = items_[order[k]];
+            low.setMin(item.low);
+            high.setMax(item.high);
+            first.setMin(item.centroid3);
+            last.setMax(item.centroid3);
+        }
+        node.low = low;
+        node.high = high;
+        if (end - begin <= leaf_triangles) {
+            node.begin = begin;
+            node.end = end;
+        } else {
+            const int axis = (last - first).maxAxis();
+            const std::uint32_t middle = begin + (end - begin) / 2;
+            const auto keys = keys_.begin();
+            for (std::uint32_t k = begin; k < end; ++k) keys[k] = {items_[order[k]].centroid3[axis], order[k]};
+            std::nth_element(keys + begin, keys + middle, keys + end);
+            for (std::uint32_t k = begin; k < end; ++k) order[k] = keys[k].second;
+            build(begin, middle);
+            build(middle, end);
+        }
+        boxes_.nodes[index].skip = static_cast<std::uint32_t>(boxes_.nodes.size());
+    }
+
+private:
+    // What triangles are sorted by: read in their order, it is a third of the time of looking at their vertices.
     struct Item {
         btVector3 low, high;
-        btVector3 centroid3; ///< three times the centroid orders the same
+        btVector3 centroid3; // three times the centroid orders the same
     };
-    std::vector<Item> items; ///< by triangle
-    std::vector<std::pair<btScalar, std::uint32_t>> keys;
+    Boxes& boxes_;
+    std::vector<Item> items_; // by triangle
+    std::vector<std::pair<btScalar, std::uint32_t>> keys_;
 };
 
-void MeshTree::build() {
-    Sorting sorting;
-    sorting.items.reserve(triangles_.size());
-    for (const auto& t : triangles_) {
-        btVector3 low = vertices_[t[0]], high = low;
-        for (int k = 1; k < 3; ++k) {
-            low.setMin(vertices_[t[k]]);
-            high.setMax(vertices_[t[k]]);
+const MeshTree::Boxes& MeshTree::boxes() const {
+    std::call_once(made_, [this] {
+        Boxes made;
+        Builder(*this, made).build(0, static_cast<std::uint32_t>(triangles_.size()));
+        made.nodes.shrink_to_fit();
+        if (vertices_.size() <= exact_bounds) {
+            for (const btVector3& v : vertices_) made.cover.push_back({v, btVector3(0, 0, 0)});
+        } else {
+            for (const Node& node : made.nodes) {
+                if (node.begin != node.end)
+                    made.cover.push_back(
+                        {(node.low + node.high) * btScalar(0.5), (node.high - node.low) * btScalar(0.5)});
+            }
         }
-        sorting.items.push_back({low, high, vertices_[t[0]] + vertices_[t[1]] + vertices_[t[2]]});
-    }
-    sorting.keys.resize(triangles_.size());
-    nodes_.reserve(triangles_.size() / (leaf_triangles / 4) + 1);
-    build(0, static_cast<std::uint32_t>(order_.size()), sorting);
-    nodes_.shrink_to_fit();
-}
-
-void MeshTree::build(std::uint32_t begin, std::uint32_t end, Sorting& sorting) {
-    const std::size_t index = nodes_.size();
-    Node& node = nodes_.emplace_back();
-    const Sorting::Item& any = sorting.items[order_[begin]];
-    btVector3 low = any.low, high = any.high, first = any.centroid3, last = first;
-    for (std::uint32_t k = begin + 1; k < end; ++k) {
-        const Sorting::Item& item = sorting.items[order_[k]];
-        low.setMin(item.low);
-        high.setMax(item.high);
-        first.setMin(item.centroid3);
-        last.setMax(item.centroid3);
-    }
-    node.low = low;
-    node.high = high;
-    if (end - begin <= leaf_triangles) {
-        node.begin = begin;
-        node.end = end;
-    } else {
-        const int axis = (last - first).maxAxis();
-        const std::uint32_t middle = begin + (end - begin) / 2;
-        const auto keys = sorting.keys.begin();
-        for (std::uint32_t k = begin; k < end; ++k) keys[k] = {sorting.items[order_[k]].centroid3[axis], order_[k]};
-        std::nth_element(keys + begin, keys + middle, keys + end);
-        for (std::uint32_t k = begin; k < end; ++k) order_[k] = keys[k].second;
-        build(begin, middle, sorting);
-        build(middle, end, sorting);
-    }
-    nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
+        boxes_ = std::move(made);
+    });
+    return boxes_;
 }
 
 bool MeshTree::triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const {
@@ -99,8 +108,9 @@ bool MeshTree::triangle_overlaps(std::uint32_t index, const btVector3& low, cons
 void MeshTree::vertices_below(const btVector3& normal, btScalar offset, std::vector<std::uint32_t>& out) const {
     out.clear();
     const btVector3 size = normal.absolute();
-    for (std::uint32_t i = 0; i < nodes_.size();) {
-        const Node& node = nodes_[i];
+    const Boxes& boxes = this->boxes();
+    for (std::uint32_t i = 0; i < boxes.nodes.size();) {
+        const Node& node = boxes.nodes[i];
         const btVector3 centre = (node.low + node.high) * btScalar(0.5), half = (node.high - node.low) * btScalar(0.5);
         // A little slack: a box is only pruned; the vertices themselves decide.
         const btScalar slack = btScalar(1e-5) * (size.dot(centre.absolute() + half) + btFabs(offset));
@@ -109,7 +119,7 @@ void MeshTree::vertices_below(const btVector3& normal, btScalar offset, std::vec
             continue;
         }
         for (std::uint32_t k = node.begin; k < node.end; ++k) {
-            for (const std::uint32_t v : triangles_[order_[k]]) {
+            for (const std::uint32_t v : triangles_[boxes.order[k]]) {
                 if (normal.dot(vertices_[v]) < offset) out.push_back(v);
             }
         }
@@ -124,7 +134,7 @@ void MeshTree::bounds(const btTransform& transform, btVector3& low, btVector3& h
     for (int axis = 0; axis < 3; ++axis) {
         const btScalar x = basis[axis].x(), y = basis[axis].y(), z = basis[axis].z();
         btScalar least = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
-        for (const Cover& c : cover_) {
+        for (const Cover& c : boxes().cover) {
             const btScalar p = x * c.centre.x() + y * c.centre.y() + z * c.centre.z();
             const btScalar r = btFabs(x) * c.half.x() + btFabs(y) * c.half.y() + btFabs(z) * c.half.z();
             least = p - r < least ? p - r : least;

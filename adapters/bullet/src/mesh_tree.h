@@ -6,12 +6,15 @@
 #include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>
 
+#include <array>
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 namespace raycontact::bullet {
 
-/// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres.
+/// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres. They
+/// are made when they are first asked for, on any thread: meshes that meet only meshes never need them.
 class MeshTree {
 public:
     explicit MeshTree(const Shape& shape);
@@ -22,14 +25,15 @@ public:
     /// Calls visit(triangle) for each triangle whose own box overlaps [low, high].
     template <class Visit>
     void overlapping(const btVector3& low, const btVector3& high, Visit&& visit) const {
-        for (std::uint32_t i = 0; i < nodes_.size();) {
-            const Node& node = nodes_[i];
+        const Boxes& boxes = this->boxes();
+        for (std::uint32_t i = 0; i < boxes.nodes.size();) {
+            const Node& node = boxes.nodes[i];
             if (!overlap(node.low, node.high, low, high)) {
                 i = node.skip;
                 continue;
             }
             for (std::uint32_t k = node.begin; k < node.end; ++k) {
-                if (triangle_overlaps(order_[k], low, high)) visit(order_[k]);
+                if (triangle_overlaps(boxes.order[k], low, high)) visit(boxes.order[k]);
             }
             ++i;
         }
@@ -45,11 +49,16 @@ public:
 private:
     struct Node {
         btVector3 low, high;
-        std::uint32_t begin = 0, end = 0; ///< triangles of a leaf, positions in order_; empty in an inner node
+        std::uint32_t begin = 0, end = 0; ///< triangles of a leaf, positions in the order; empty in an inner node
         std::uint32_t skip = 0;           ///< next node when this box is missed
     };
     struct Cover {
         btVector3 centre, half;
+    };
+    struct Boxes {
+        std::vector<std::uint32_t> order; ///< triangles, leaf by leaf
+        std::vector<Node> nodes;
+        std::vector<Cover> cover;
     };
 
     static bool overlap(const btVector3& a_low, const btVector3& a_high, const btVector3& b_low,
@@ -58,15 +67,13 @@ private:
                && a_low.z() <= b_high.z() && b_low.z() <= a_high.z();
     }
     bool triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const;
-    struct Sorting;
-    void build();
-    void build(std::uint32_t begin, std::uint32_t end, Sorting& sorting);
+    class Builder;
+    const Boxes& boxes() const;
 
     std::vector<btVector3> vertices_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Node> nodes_;
-    std::vector<Cover> cover_;
+    mutable std::once_flag made_;
+    mutable Boxes boxes_; ///< after made_
 };
 
 } // namespace raycontact::bullet
