@@ -118,7 +118,7 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, LazyBvh& bvh,
 
 /// Few triangles are done before other threads wake.
 Executor executor_for(std::size_t triangles) {
-    return Executor(triangles < 4096 ? 1 : 0);
+    return Executor(triangles < 512 ? 1 : 0);
 }
 
 } // namespace

@@ -15,40 +15,39 @@ using kernels::uint;
 constexpr std::size_t lanes = VERTEX_LANES;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-float coordinate(const ShapeData& shape, uint vertex, std::size_t k) {
-    return static_cast<float>(axis(shape.point(vertex), k));
-}
+using Key = std::pair<float, uint>; // a coordinate and its vertex
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
 // tree groups neighbours.
 // Returns how many come first.
-std::size_t split_by_place(const ShapeData& shape, std::span<uint> vertices) {
-    std::size_t longest = 0;
-    float size = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto place = [&](uint v) { return coordinate(shape, v, k); };
-        const auto [low, high] = std::ranges::minmax(vertices, {}, place);
-        if (place(high) - place(low) > size) {
-            size = place(high) - place(low);
-            longest = k;
-        }
+std::size_t split_by_place(const ShapeData& shape, std::span<uint> vertices, std::vector<Key>& keys) {
+    Point3f low = shape.points[vertices[0]], high = low;
+    for (const uint v : vertices) {
+        const Point3f& p = shape.points[v];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
+    float Point3f::*longest = &Point3f::x;
+    for (float Point3f::*const side : {&Point3f::y, &Point3f::z})
+        if (high.*side - low.*side > high.*longest - low.*longest) longest = side;
     std::size_t unit = lanes;
     while (unit * lanes < vertices.size()) unit *= lanes;
     const std::size_t units = (vertices.size() + unit - 1) / unit, left = unit * (units / 2);
-    std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(left), {},
-                             [&](uint v) { return std::pair(coordinate(shape, v, longest), v); });
+    keys.clear();
+    for (const uint v : vertices) keys.emplace_back(shape.points[v].*longest, v);
+    std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
+    for (std::size_t i = 0; i < keys.size(); ++i) vertices[i] = keys[i].second;
     return left;
 }
 
-void order_below(const ShapeData& shape, std::span<uint> vertices) {
+void order_below(const ShapeData& shape, std::span<uint> vertices, std::vector<Key>& keys) {
     if (vertices.size() <= lanes) {
         std::ranges::sort(vertices);
         return;
     }
-    const std::size_t left = split_by_place(shape, vertices);
-    order_below(shape, vertices.first(left));
-    order_below(shape, vertices.subspan(left));
+    const std::size_t left = split_by_place(shape, vertices, keys);
+    order_below(shape, vertices.first(left), keys);
+    order_below(shape, vertices.subspan(left), keys);
 }
 
 void order_by_place(const ShapeData& shape, std::span<uint> all, Executor& executor) {
@@ -57,10 +56,14 @@ void order_by_place(const ShapeData& shape, std::span<uint> all, Executor& execu
     const auto parts = divide(
         executor, all, [](const Part& part) { return part.size() > large; },
         [&](const Part& part) {
-            const std::size_t left = split_by_place(shape, part);
+            std::vector<Key> keys;
+            const std::size_t left = split_by_place(shape, part, keys);
             return std::array{part.first(left), part.subspan(left)};
         });
-    for_each_part(executor, parts, [&](const Part& part) { order_below(shape, part); });
+    for_each_part(executor, parts, [&](const Part& part) {
+        std::vector<Key> keys;
+        order_below(shape, part, keys);
+    });
 }
 
 // Empty (NaN) until something is added.
@@ -88,8 +91,9 @@ void build_clusters(ShapeData& shape, Executor& executor) {
             const bool empty = first + lane >= order.size();
             const uint v = empty ? NONE : order[first + lane];
             const Vec3 n = empty ? Vec3{} : shape.vertex_normals[v];
+            const Vec3 p = empty ? Vec3{nan, nan, nan} : shape.point(v);
             for (std::size_t k = 0; k < 3; ++k) {
-                block.position[k][lane] = empty ? nan : coordinate(shape, v, k);
+                block.position[k][lane] = static_cast<float>(axis(p, k));
                 block.direction[k][lane] = -static_cast<float>(axis(n, k));
                 bounds.add(k, block.position[k][lane], block.position[k][lane]);
             }

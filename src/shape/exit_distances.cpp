@@ -18,6 +18,9 @@ constexpr double never = std::numeric_limits<double>::infinity();
 // by its pseudo-normal (Baerentzen and Aanaes 2005): a face, an edge, or the vertex itself.
 bool points_inside(const ShapeData& shape, std::span<const Vec3> normals, std::uint32_t vertex, const Vec3& direction,
                    std::span<const std::uint32_t> around) {
+    // Mostly it is on the inner side of every face, so that none of them could decide otherwise.
+    constexpr double clearly = -1e-9; // beyond the rounding of a sum of two
+    if (std::ranges::all_of(around, [&](std::uint32_t t) { return dot(direction, normals[t]) < clearly; })) return true;
     double best = 0; // cosine to the closest feature; none in front of the direction: the apex, which is inside
     Vec3 decides = shape.vertex_normals[vertex];
     const auto consider = [&](double cosine, const Vec3& normal) {

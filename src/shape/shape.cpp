@@ -16,8 +16,8 @@ namespace raycontact {
 
 namespace {
 
-constexpr double rounding = 1.1920929e-7;   // 2^-23
-constexpr std::size_t few_triangles = 4096; // one thread has them done before others wake
+constexpr double rounding = 1.1920929e-7;  // 2^-23
+constexpr std::size_t few_triangles = 512; // one thread has them done before others wake
 
 // Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
 void round_vertices(ShapeData& shape) {

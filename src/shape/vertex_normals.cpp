@@ -19,10 +19,7 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
     std::vector<std::array<double, 3>> angles(normals.size());
     executor.run(static_cast<std::uint32_t>(normals.size()), 1024, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t t = begin; t < end; ++t)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const Vec3 at = shape.corner(t, c);
-                angles[t][c] = angle_between(shape.corner(t, (c + 1) % 3) - at, shape.corner(t, (c + 2) % 3) - at);
-            }
+            angles[t] = corner_angles({shape.corner(t, 0), shape.corner(t, 1), shape.corner(t, 2)});
     });
     std::vector<Vec3> sums(shape.points.size());
     for (std::uint32_t t = 0; t < normals.size(); ++t)
