@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/search.h>
 
+#include <clash/duplicates.h>
+
 #include "executor/executor.h"
 
 #include <raycontact/collide.h>
@@ -60,9 +62,13 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
         executor.run(static_cast<std::uint32_t>(some.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
             for (std::uint32_t i = begin; i < end && !options.stop(); ++i) {
                 found[i] = clash_of(some[i], scene.contacts(list[i].first, list[i].second));
+                const Part &a = parts[some[i].a], &b = parts[some[i].b];
+                if (are_duplicates(a, b)) {
+                    found[i] = clash_of(some[i], collide(*a.shape, a.pose, *b.shape, moved_aside(b)));
+                    found[i].duplicate = true;
+                }
                 meets[i] = found[i].contacts > 0;
                 if (meets[i]) continue;
-                const Part &a = parts[some[i].a], &b = parts[some[i].b];
                 const auto shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
                 if (shared) found[i].point = *shared;
                 meets[i] = shared.has_value();

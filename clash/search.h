@@ -14,6 +14,8 @@ struct Clash {
     Vec3 point;               ///< between the witness points of that contact; else one that they share (common_point)
     Vec3 normal;              ///< of that contact, unit, from a to b; else 0
     std::size_t contacts = 0;
+    bool duplicate = false; ///< copies in one place (are_duplicates): depth, point and contacts are those of copies
+                            ///< 2e-6 of their size apart, as faces that coincide say nothing of a depth
 };
 
 struct SearchOptions {

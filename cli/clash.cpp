@@ -64,7 +64,8 @@ std::string json_lines(const Result& result) {
                   {"b", result.parts[c.b].name},
                   {"depth", c.depth},
                   {"point", {c.point.x, c.point.y, c.point.z}},
-                  {"contacts", c.contacts}};
+                  {"contacts", c.contacts},
+                  {"duplicate", c.duplicate}};
         line["normal"] = c.contacts > 0 ? Json{c.normal.x, c.normal.y, c.normal.z} : Json();
         text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     }
@@ -75,18 +76,22 @@ std::string table(const Result& result) {
     std::string text;
     for (const clash::Clash& c : result.clashes) {
         const std::string depth = c.contacts > 0 ? fmt::format("{:.4g} m", c.depth) : "touching";
-        text += fmt::format("{:>12}  {}  x  {}  at {:.6g}, {:.6g}, {:.6g}\n", depth, result.parts[c.a].name,
-                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z);
+        text += fmt::format("{:>12}  {}  x  {}  at {:.6g}, {:.6g}, {:.6g}{}\n", depth, result.parts[c.a].name,
+                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z,
+                            c.duplicate ? "  (the same part in the same place)" : "");
     }
     return text;
 }
 
 std::string summary(const Result& result) {
-    std::string text = fmt::format("{} clash{} among {} parts ({} pairs of touching boxes)", result.clashes.size(),
-                                   result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs);
+    std::string text = fmt::format("{} clash{} among {} parts ({} pair{} of touching boxes)", result.clashes.size(),
+                                   result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs,
+                                   result.pairs == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
-    if (result.open() > 0) text += fmt::format("; {} parts are open: nothing is inside of them", result.open());
-    if (result.faults() > 0) text += fmt::format("; {} parts were not checked", result.faults());
+    if (result.open() == 1) text += "; 1 part is open: nothing is inside of it";
+    if (result.open() > 1) text += fmt::format("; {} parts are open: nothing is inside of them", result.open());
+    if (result.faults() > 0)
+        text += fmt::format("; {} part{} not checked", result.faults(), result.faults() == 1 ? " was" : "s were");
     if (stop_signal() != 0) text += fmt::format("; cut short by {}", stop_name());
     return text + "\n";
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace {
 
@@ -88,13 +89,15 @@ TEST_F(Clash, DeepestFirstByFileName) {
         << "boxes of a and c do not touch; no progress bar where nobody sees it";
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "depth", "point", "contacts", "normal"}));
+    EXPECT_EQ(keys_of(found[0]),
+              (std::set<std::string>{"a", "b", "depth", "point", "contacts", "duplicate", "normal"}));
     EXPECT_EQ(found[0]["a"], "b.obj");
     EXPECT_EQ(found[0]["b"], "c.obj");
     EXPECT_NEAR(found[0]["depth"].get<double>(), 0.3, 1e-5);
     EXPECT_NEAR(found[0]["point"][0].get<double>(), 1.25, 1e-5);
     EXPECT_NEAR(found[0]["normal"][0].get<double>(), 1, 1e-6);
     EXPECT_GT(found[0]["contacts"], 0);
+    EXPECT_EQ(found[0]["duplicate"], false);
     EXPECT_EQ(found[1]["a"], "a.obj");
     EXPECT_NEAR(found[1]["depth"].get<double>(), 0.1, 1e-5);
     EXPECT_NEAR(found[1]["point"][0].get<double>(), 0.45, 1e-5);
@@ -153,6 +156,42 @@ TEST_F(Clash, TheSamePartTwice) {
     const auto found = clashes({"all.gltf"});
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0]["a"], "p #1");
+    EXPECT_EQ(found[0]["duplicate"], true);
+    EXPECT_NEAR(found[0]["depth"].get<double>(), 1, 1e-5) << "a whole part deep, not a hair";
+    EXPECT_NE(run({"all.gltf"}).out.find("(the same part in the same place)"), std::string::npos);
+}
+
+TEST_F(Clash, ACopyWithItsVerticesInAnotherOrderOrTurnedIsADuplicate) {
+    write_cube("a.obj", 3);
+    folder_.write("b.obj", "v 3.5 .5 .5\nv 2.5 .5 .5\nv 3.5 -.5 .5\nv 2.5 -.5 .5\nv 3.5 .5 -.5\nv 2.5 .5 -.5\n"
+                           "v 3.5 -.5 -.5\nv 2.5 -.5 -.5\n"
+                           "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n");
+    const auto found = clashes({"a.obj", "b.obj"});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0]["duplicate"], true);
+    EXPECT_NEAR(found[0]["depth"].get<double>(), 1, 1e-5);
+}
+
+TEST_F(Clash, FittedCopiesOnlyTouch) {
+    const auto write_prism = [&](const std::string& name, const std::vector<std::array<double, 2>>& outline) {
+        std::ostringstream text, low, high;
+        for (const double z : {0.0, 1.0})
+            for (const auto& [x, y] : outline) text << "v " << x << ' ' << y << ' ' << z << '\n';
+        const std::size_t n = outline.size();
+        for (std::size_t i = 1; i <= n; ++i) {
+            const std::size_t next = i % n + 1;
+            text << "f " << i << ' ' << next << ' ' << n + next << ' ' << n + i << '\n';
+            low << ' ' << n + 1 - i;
+            high << ' ' << n + i;
+        }
+        folder_.write(name, text.str() + "f" + low.str() + "\nf" + high.str() + "\n");
+    };
+    write_prism("l.obj", {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}});
+    write_prism("turned.obj", {{3, 2}, {1, 2}, {1, 1}, {2, 1}, {2, 0}, {3, 0}});
+    const auto found = clashes({"l.obj", "turned.obj"});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0]["depth"], 0.0);
+    EXPECT_EQ(found[0]["duplicate"], false);
 }
 
 TEST_F(Clash, CheckIsForScripts) {
@@ -170,7 +209,7 @@ TEST_F(Clash, APartThatCannotBeTestedIsNamed) {
     const ProgramResult result = run({"a.obj", "tiny.obj"});
     EXPECT_EQ(result.status, 0);
     EXPECT_NE(result.err.find("not checked: tiny.obj: "), std::string::npos) << result.err;
-    EXPECT_NE(result.out.find("; 1 parts were not checked"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("; 1 part was not checked"), std::string::npos) << result.out;
     EXPECT_EQ(run({"a.obj", "tiny.obj", "--check"}).status, 1) << "nothing passes untested";
 }
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <clash/duplicates.h>
+
+#include "mesh/vector.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace raycontact::clash {
+
+namespace {
+
+// Unit, and no mesh is alike along them.
+constexpr std::array<Vec3, 3> directions{
+    {{0.5257, 0.6113, 0.5915}, {-0.7482, 0.1301, 0.6506}, {0.3137, -0.8819, 0.352}}};
+
+double size_of(const Shape& shape) {
+    return length(shape.box_max() - shape.box_min());
+}
+
+std::vector<double> sorted_heights(const Part& part, const Vec3& origin, const Vec3& direction) {
+    std::vector<double> heights;
+    heights.reserve(part.shape->vertices().size());
+    for (const Vec3& v : part.shape->vertices())
+        heights.push_back(dot(transform_point(part.pose, v) - origin, direction));
+    std::sort(heights.begin(), heights.end());
+    return heights;
+}
+
+} // namespace
+
+// Points that agree to a tolerance have heights along any direction that agree, sorted, to that tolerance, whatever
+// their order; others differ along one of three directions that no mesh follows.
+bool are_duplicates(const Part& a, const Part& b) {
+    if (a.shape->vertices().size() != b.shape->vertices().size()
+        || a.shape->triangles().size() != b.shape->triangles().size())
+        return false;
+    const double tolerance = duplicate_tolerance * std::max(size_of(*a.shape), size_of(*b.shape));
+    const Vec3 origin = transform_point(a.pose, a.shape->centre());
+    return std::ranges::all_of(directions, [&](const Vec3& direction) {
+        return std::ranges::equal(sorted_heights(a, origin, direction), sorted_heights(b, origin, direction),
+                                  [&](double p, double q) { return std::fabs(p - q) <= tolerance; });
+    });
+}
+
+Pose moved_aside(const Part& part) {
+    Pose pose = part.pose;
+    pose.translation = pose.translation + 2 * duplicate_tolerance * size_of(*part.shape) * directions[0];
+    return pose;
+}
+
+} // namespace raycontact::clash
