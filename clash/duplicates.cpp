@@ -20,6 +20,12 @@ double size_of(const Shape& shape) {
     return length(shape.box_max() - shape.box_min());
 }
 
+// Mostly this one vertex tells them apart.
+bool has_first_vertex(const Part& b, const Part& a, double tolerance) {
+    const Vec3 sought = transform_point(relative_pose(b.pose, a.pose), a.shape->vertices()[0]);
+    return std::ranges::any_of(b.shape->vertices(), [&](const Vec3& v) { return length(v - sought) <= 2 * tolerance; });
+}
+
 std::vector<double> sorted_heights(const Part& part, const Vec3& origin, const Vec3& direction) {
     std::vector<double> heights;
     heights.reserve(part.shape->vertices().size());
@@ -38,6 +44,7 @@ bool are_duplicates(const Part& a, const Part& b) {
         || a.shape->triangles().size() != b.shape->triangles().size())
         return false;
     const double tolerance = duplicate_tolerance * std::max(size_of(*a.shape), size_of(*b.shape));
+    if (!has_first_vertex(b, a, tolerance)) return false;
     const Vec3 origin = transform_point(a.pose, a.shape->centre());
     return std::ranges::all_of(directions, [&](const Vec3& direction) {
         return std::ranges::equal(sorted_heights(a, origin, direction), sorted_heights(b, origin, direction),
