@@ -7,8 +7,10 @@
 #include <raycontact/error.h>
 
 #include <CLI/CLI.hpp>
+#include <LinearMath/btAlignedAllocator.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -16,6 +18,13 @@
 #include <string>
 
 namespace {
+
+/// Bullet would use what it did not get.
+void* allocate_or_throw(std::size_t size) {
+    void* memory = std::malloc(size);
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
 
 int run_program(int argc, char** argv) {
     CLI::App app{"RayContact finds the contacts between moving, concave triangle meshes by casting rays.",
@@ -44,6 +53,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is then an error like a full disk
+    btAlignedAllocSetCustom(allocate_or_throw, std::free);
     try {
         return run_program(argc, argv);
     } catch (const EndWith& end) {

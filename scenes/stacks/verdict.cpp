@@ -8,10 +8,10 @@
 
 namespace raycontact::scenes {
 
-bool Verdict::fell(const Stack& stack, double allowed) const {
+bool Verdict::fell(const Stack& stack, double allowed, double allowed_turn) const {
     // Negated, so that what is not a number has fallen.
     if (!(sunk <= drift_limit && overlap <= drift_limit)) return true;
-    return stack.stands && !(drift <= std::max(allowed, drift_limit) && turn <= turn_limit);
+    return stack.stands && !(drift <= std::max(allowed, drift_limit) && turn <= allowed_turn);
 }
 
 Verdict judge(const Stack& stack, std::span<const Pose> poses) {

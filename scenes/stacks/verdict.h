@@ -16,8 +16,8 @@ struct Verdict {
     double turn = 0;    ///< the most, degrees
     double sunk = 0;    ///< the most that a vertex is below z = 0
     double overlap = 0; ///< the most that two boxes overlap, of the smaller size (box_overlap)
-    /// allowed: the drift of a stack that stands, at least drift_limit.
-    bool fell(const Stack& stack, double allowed = drift_limit) const;
+    /// allowed: the drift of a stack that stands, at least drift_limit; allowed_turn: degrees.
+    bool fell(const Stack& stack, double allowed = drift_limit, double allowed_turn = turn_limit) const;
 };
 
 Verdict judge(const Stack& stack, std::span<const Pose> poses);

@@ -16,6 +16,10 @@ constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double pull = 1e-3, most_pull = 0.01;
 // An end beside vertices in contact speaks from this part of their depth on.
 constexpr double loud = 0.5;
+// Depths are equal if they differ by less: what was equal before vertices were moved by a hair may differ by two.
+constexpr double few_hairs = 3;
+// Of faces equally deep the one that looks most this way decides; no mesh has two that do so equally.
+constexpr Vec3 preferred{0.31, 0.53, 0.79};
 // Of a larger region so many points stand for all.
 constexpr std::size_t most_points = 48;
 constexpr int most_triangles_around = 256;
@@ -37,6 +41,20 @@ Vec3 inward(const ShapeData& source, std::uint32_t edge) {
     return size > 1e-6 ? (-1 / size) * n : Vec3{};
 }
 
+// Along a concave edge the source reaches farther into the target on both sides.
+bool is_concave(const ShapeData& source, std::uint32_t edge) {
+    const std::uint32_t face = edge / 3, across = source.neighbours[face][edge % 3];
+    if (across == NONE) return false;
+    const auto& own = source.mesh.triangles[face];
+    const Vec3 start = source.corner(face, edge % 3), n = normal_of(source, face);
+    double highest = 0; // of the corner that is not on the edge
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = source.mesh.triangles[across][k];
+        if (v != own[edge % 3] && v != own[(edge % 3 + 1) % 3]) highest = dot(source.point(v) - start, n);
+    }
+    return highest > 0;
+}
+
 } // namespace
 
 bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
@@ -47,11 +65,20 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
         find_crossings(placed[side], near[side], crossings_[side]);
     }
     if (crossings_[0].empty() && crossings_[1].empty()) return false;
+    const std::size_t before = found.size();
+    ask(placed, vertices, false, found);
+    if (found.size() == before && vertices[0].empty() && vertices[1].empty()) ask(placed, vertices, true, found);
+    return true;
+}
+
+void PairEdges::ask(const std::array<SourceMesh, 2>& placed,
+                    const std::array<std::span<const kernels::LocalContact>, 2>& vertices, bool concave,
+                    std::vector<FeatureContact>& found) {
     const std::array<std::uint32_t, 2> first{0, static_cast<std::uint32_t>(crossings_[0].size())};
     auto node = static_cast<std::uint32_t>(crossings_[0].size() + crossings_[1].size());
     for (std::size_t side = 0; side < 2; ++side) {
         list_speakers(placed[side], vertices[side], node, speakers_[side]);
-        list_pieces(placed[side], crossings_[side], speakers_[side], first[side], pieces_[side]);
+        list_pieces(placed[side], crossings_[side], speakers_[side], first[side], concave, pieces_[side]);
     }
     regions_.reset(node);
     for (std::size_t side = 0; side < 2; ++side) {
@@ -59,7 +86,6 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
         join_vertices(placed[side].source, side);
     }
     for (std::size_t side = 0; side < 2; ++side) speak(placed[side], side, found);
-    return true;
 }
 
 void PairEdges::list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
@@ -72,7 +98,8 @@ void PairEdges::list_speakers(const SourceMesh& placed, std::span<const kernels:
 }
 
 void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const Speaker> speakers, std::uint32_t first_node, std::vector<Piece>& pieces) {
+                            std::span<const Speaker> speakers, std::uint32_t first_node, bool concave,
+                            std::vector<Piece>& pieces) {
     pieces.clear();
     const auto speaker_of = [&](std::uint32_t vertex) -> const Speaker* {
         const auto at = std::lower_bound(speakers.begin(), speakers.end(), vertex,
@@ -82,6 +109,7 @@ void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> 
     for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
         const std::uint32_t edge = crossings[begin].edge;
         while (end < crossings.size() && crossings[end].edge == edge) ++end;
+        if (!concave && is_concave(placed.source, edge)) continue;
         const std::span<const Crossing> own = crossings.subspan(begin, end - begin);
         const auto [start, stop] = ends_of(placed.source, edge);
         const Vec3 origin = placed.vertex(start), along = placed.vertex(stop) - origin;
@@ -196,7 +224,7 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
         while (end < choices_.size() && choices_[end].piece->region == choices_[begin].piece->region) ++end;
         agree(placed, std::span(choices_).subspan(begin, end - begin));
     }
-    for (const Choice& choice : choices_) speak(static_cast<VertexBody>(side), choice, found);
+    for (const Choice& choice : choices_) speak(placed.target, static_cast<VertexBody>(side), choice, found);
     // Several edges may speak for one vertex: the lowest does.
     std::sort(quiet_.begin(), quiet_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
@@ -259,24 +287,29 @@ void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
     for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
     if (count == 0 || deepest < loud * loudness(piece.region)) return;
 
-    // What is equal to a hair is equal, so that rounding decides nothing. No region is shallower than its piece: from
-    // the shallowest on, the rest need not be asked.
-    const double hair = placed.hair;
+    // What is equal is so to a few hairs, by which vertices were moved: rounding decides nothing. No region is
+    // shallower than its piece: from the shallowest on, the rest need not be asked.
+    const double few = few_hairs * placed.hair;
     std::array<double, 5> regions{never, never, never, never, never};
     double shallowest = never, shallowest_piece = never;
     for (;;) {
         std::size_t next = count;
         for (std::size_t i = 0; i < count; ++i)
             if (regions[i] == never && (next == count || candidates[i].deeper() < candidates[next].deeper())) next = i;
-        if (next == count || candidates[next].deeper() >= shallowest + hair) break;
+        if (next == count || candidates[next].deeper() >= shallowest + few) break;
         const Candidate& c = candidates[next];
-        regions[next] = std::max(c.deeper(), extent(placed, piece.region, c.normal, c.height, shallowest + hair));
+        regions[next] = std::max(c.deeper(), extent(placed, piece.region, c.normal, c.height, shallowest + few));
         shallowest = std::min(shallowest, regions[next]);
     }
     for (std::size_t i = 0; i < count; ++i)
-        if (regions[i] < shallowest + hair) shallowest_piece = std::min(shallowest_piece, candidates[i].deeper());
-    std::size_t chosen = 0;
-    while (!(regions[chosen] < shallowest + hair && candidates[chosen].deeper() < shallowest_piece + hair)) ++chosen;
+        if (regions[i] < shallowest + few) shallowest_piece = std::min(shallowest_piece, candidates[i].deeper());
+    // By its direction, not by which end comes first: all edges that pierce a plate leave by the same side.
+    std::size_t chosen = count;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (regions[i] >= shallowest + few || candidates[i].deeper() >= shallowest_piece + few) continue;
+        if (chosen == count || dot(preferred, candidates[i].normal) > dot(preferred, candidates[chosen].normal))
+            chosen = i;
+    }
     choices_.push_back({&piece, candidates[chosen], regions[chosen]});
 }
 
@@ -289,14 +322,14 @@ void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
         least = std::min(least, choice.metres);
     }
     std::size_t shallowest = 0;
-    while (region[shallowest].metres >= least + placed.hair) ++shallowest;
+    while (region[shallowest].metres >= least + few_hairs * placed.hair) ++shallowest;
     std::uint32_t face = region[shallowest].by.face;
     least = region[shallowest].metres;
     if (const Speaker* speaker = loudest(region[0].piece->region); speaker && speaker->depth < loud * most) {
         const Vec3 normal = normal_of(placed.target, speaker->face);
         const double height = dot(placed.target.corner(speaker->face, 0), normal);
         const double metres = extent(placed, speaker->region, normal, height, least);
-        if (metres < least - placed.hair) {
+        if (metres < least - few_hairs * placed.hair) {
             least = metres;
             face = speaker->face;
         }
@@ -309,10 +342,21 @@ void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
     }
 }
 
-void PairEdges::speak(VertexBody source, const Choice& choice, std::vector<FeatureContact>& found) {
+void PairEdges::speak(const ShapeData& target, VertexBody source, const Choice& choice,
+                      std::vector<FeatureContact>& found) {
     const Piece& piece = *choice.piece;
     const Candidate& by = choice.by;
     const double enough = loudest(piece.region) ? loud * choice.metres : 0;
+    if (piece.ends[0].is_crossing() && piece.ends[1].is_crossing()) {
+        // Where round bodies cross, both ends lie on the target's surface, and the edge is deep between them.
+        const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
+        const double depth = way_out(target, middle, by.normal, by.height);
+        if (depth > enough && loud * depth > std::max(by.depths[0], by.depths[1])) {
+            found.push_back(
+                {source, Feature::edge, piece.edge, piece.ends[0].crossing, by.face, middle, by.normal, depth});
+            return;
+        }
+    }
     for (std::size_t k = 0; k < 2; ++k) {
         const End &end = piece.ends[k], &other = piece.ends[1 - k];
         // Above a vertex for which this piece speaks, the crossing adds nothing.

@@ -71,10 +71,15 @@ private:
         double metres;
     };
 
+    /// concave: whether concave edges speak, too.
+    void ask(const std::array<SourceMesh, 2>& placed,
+             const std::array<std::span<const kernels::LocalContact>, 2>& vertices, bool concave,
+             std::vector<FeatureContact>& found);
     static void list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
                               std::uint32_t& node, std::vector<Speaker>& speakers);
     static void list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const Speaker> speakers, std::uint32_t first_node, std::vector<Piece>& pieces);
+                            std::span<const Speaker> speakers, std::uint32_t first_node, bool concave,
+                            std::vector<Piece>& pieces);
     void join_crossings(const SourceMesh& placed, std::span<const Crossing> crossings, std::uint32_t first_node,
                         bool source_first);
     void join_vertices(const ShapeData& source, std::size_t side);
@@ -82,7 +87,7 @@ private:
     static Candidate candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face);
     void choose(const SourceMesh& placed, const Piece& piece);
     void agree(const SourceMesh& placed, std::span<Choice> region);
-    void speak(VertexBody source, const Choice& choice, std::vector<FeatureContact>& found);
+    void speak(const ShapeData& target, VertexBody source, const Choice& choice, std::vector<FeatureContact>& found);
     double extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height, double enough);
     /// The deepest vertex contact of this side in a region; null: none.
     const Speaker* loudest(std::uint32_t region) const;

@@ -105,12 +105,14 @@ std::vector<Pose> after(const Stack& stack, Ground ground, Finder finder, double
 }
 
 void expect_stands(const Stack& stack, Ground ground, double seconds, const StackSolver& solver) {
+    // With a slop Bullet's own boxes turn by up to 2.2 degrees.
+    const double allowed_turn = solver.slop > 0 ? 1.5 * turn_limit : turn_limit;
     double allowed = drift_limit;
     if (stack.stands && stack.convex())
         allowed = std::max(allowed, 2 * judge(stack, after(stack, ground, Finder::convex, seconds, solver)).drift);
     const std::vector<Pose> poses = after(stack, ground, Finder::edges, seconds, solver);
     const Verdict verdict = judge(stack, poses);
-    EXPECT_FALSE(verdict.fell(stack, allowed))
+    EXPECT_FALSE(verdict.fell(stack, allowed, allowed_turn))
         << stack.name << ": drift " << verdict.drift << " of " << allowed << ", turned by " << verdict.turn
         << " degrees, sunk by " << verdict.sunk << ", overlap " << verdict.overlap;
     const std::vector<Placed> bodies = placed(stack, poses);

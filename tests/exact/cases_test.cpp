@@ -10,6 +10,8 @@
 
 #include "scenes/models/procedural.h"
 
+#include <raycontact/collide.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -260,6 +262,81 @@ TEST(exact_cases, crossed_bars) {
             c.deepest = std::max(1.001 * overlap, touching * hair(c));
             trial.ask(c);
         }
+}
+
+// Round bodies: both ends of each edge's piece lie on the other's surface, and the edge is deep between them.
+TEST(exact_cases, crossed_rods_are_as_deep_as_they_overlap) {
+    Pose lying; // its axis along y
+    lying.rotation = {1, 0, 0, 0, 0, -1, 0, 1, 0};
+    for (const std::uint32_t corners : {12u, 32u, 64u})
+        for (const double half : {0.5, 3.0}) {
+            const auto rod = Shape::make(prism_solid(corners, 0.4, half));
+            const double edge = 0.4 * (1 - std::cos(M_PI / corners)); // between corner and side
+            for (const double overlap : {0.05, 0.1, 0.175, 0.3, 0.4}) {
+                lying.translation = {0.8 - overlap, 0.011, 0.037};
+                double deepest = 0;
+                for (const Contact& c : collide(*rod, {}, *rod, lying)) deepest = std::max(deepest, double(c.depth));
+                EXPECT_NEAR(deepest, overlap, 0.1 * overlap + 2 * edge) << corners << " corners, half " << half;
+            }
+        }
+}
+
+// A box without a lid: 2 x 2 x 1 outside, walls and floor 0.2 thick, the inner corner at (-0.8, -0.8, 0.2).
+Mesh tray_solid() {
+    Mesh tray;
+    tray.name = "tray";
+    const auto square = [&](double half, double z) {
+        for (const double x : {-half, half})
+            for (const double y : {-half, half}) tray.vertices.push_back({x, y, z});
+    };
+    square(1, 0);
+    square(1, 1);
+    square(0.8, 1);
+    square(0.8, 0.2);
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        tray.triangles.push_back({a, b, c});
+        tray.triangles.push_back({a, c, d});
+    };
+    quad(0, 1, 3, 2);     // below
+    quad(12, 14, 15, 13); // the floor
+    constexpr std::uint32_t around[] = {0, 2, 3, 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::uint32_t p = around[i], q = around[(i + 1) % 4];
+        quad(p, q, q + 4, p + 4);           // a side
+        quad(p + 4, q + 4, q + 8, p + 8);   // the rim
+        quad(p + 8, q + 8, q + 12, p + 12); // a wall
+    }
+    return tray;
+}
+
+// Concave edges of the tray lie in the cube along its whole side: no face of the cube is a way out for all of them.
+TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
+    const auto tray = Shape::make(tray_solid()), cube = box(0.3, 0.3, 0.3);
+    ASSERT_TRUE(tray->report().closed && tray->report().outward);
+    Random random(9);
+    for (const double e : {1e-5, 1e-4, 1e-3, 1e-2})
+        for (int i = 0; i < 250; ++i) {
+            const auto in = [&] { return random.uniform(0.1 * e, e); };
+            const Vec3 turn = e * random.direction();
+            Pose pose = pose_from_quaternion({}, 1, turn.x / 2, turn.y / 2, turn.z / 2);
+            pose.translation = {-0.5 - in(), -0.5 - in(), 0.5 - in()};
+            const auto contacts = collide(*tray, {}, *cube, pose);
+            EXPECT_FALSE(contacts.empty());
+            for (const Contact& c : contacts) EXPECT_LT(double(c.depth), 3 * e) << words_of(c);
+        }
+}
+
+TEST(exact_cases, a_plate_pierced_straight_is_left_by_one_side) {
+    const auto plate = box(1, 1, 0.005), cube = box(0.1, 0.1, 0.1);
+    for (const double z : {-0.05, -0.01, 0.0, 0.01, 0.05}) {
+        std::size_t up = 0, down = 0;
+        for (const Contact& c : collide(*plate, {}, *cube, at(0.31, 0.17, z))) {
+            up += c.normal[2] > 0.9f;
+            down += c.normal[2] < -0.9f;
+        }
+        EXPECT_GE(up + down, 4u);
+        EXPECT_TRUE(up == 0 || down == 0) << "the middle of the cube at " << z << ": " << up << " up, " << down;
+    }
 }
 
 TEST(exact_cases, cone_through_plate) {

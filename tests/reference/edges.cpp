@@ -30,6 +30,7 @@ struct Edge {
     std::uint32_t from = 0, to = 0;     ///< vertices
     std::uint32_t faces[2] = {0, none}; ///< its lowest triangle, the other one; none at a border
     bool sharp = true;
+    bool concave = false;
 };
 
 bool in_one_direction(const Vec3& n, const Vec3& m) {
@@ -50,12 +51,14 @@ std::vector<Edge> edges_of(const Solid& solid) {
             const std::array<std::uint32_t, 2> ends{std::min(from, to), std::max(from, to)};
             const auto [at, fresh] = found.try_emplace(ends, edges.size());
             if (fresh) {
-                edges.push_back({3 * solid.triangle_index[t] + c, from, to, {t, none}, true});
+                edges.push_back({3 * solid.triangle_index[t] + c, from, to, {t, none}, true, false});
                 continue;
             }
             Edge& edge = edges[at->second];
             edge.faces[1] = t;
             edge.sharp = !in_one_direction(solid.face_normals[edge.faces[0]], solid.face_normals[t]);
+            const Vec3 opposite = solid.vertices[solid.triangles[t][(c + 2) % 3]];
+            edge.concave = dot(solid.face_normals[edge.faces[0]], opposite - solid.vertices[from]) > 0;
         }
     return edges;
 }
@@ -186,10 +189,10 @@ public:
             for (Crossing& c : list) c.node = graph.add();
     }
 
-    void cut_pieces() {
+    void cut_pieces(bool with_concave) {
         vertex_points_.assign(source.vertices.size(), none);
         for (std::uint32_t e = 0; e < edges.size(); ++e) {
-            if (!edges[e].sharp) continue;
+            if (!edges[e].sharp || (edges[e].concave && !with_concave)) continue;
             const auto& list = crossings[e];
             const auto n = static_cast<std::uint32_t>(list.size());
             if (n == 0) continue;
@@ -229,6 +232,12 @@ public:
             const Piece& piece = pieces[i];
             const std::optional<Choice>& choice = choices[i];
             if (!choice) continue;
+            if (const auto middle = deep_middle(piece, *choice)) {
+                End end = piece.ends[0];
+                end.point = middle->first;
+                contacts.push_back(made(piece, end, choice->face, middle->second, body, direction));
+                continue;
+            }
             for (const int k : {0, 1}) {
                 const End& end = piece.ends[k];
                 const End& other = piece.ends[1 - k];
@@ -427,6 +436,17 @@ private:
         return list;
     }
 
+    // The middle of a piece between two crossings, and its way out, if it speaks for both.
+    std::optional<std::pair<std::uint32_t, double>> deep_middle(const Piece& piece, const Choice& choice) {
+        const auto& [first, last] = piece.ends;
+        if (first.vertex != none || last.vertex != none) return {};
+        const std::uint32_t middle = add_point(0.5 * (points_[first.point] + points_[last.point]));
+        const double out = way_out(middle, choice.face);
+        if (out <= 2 * std::max(end_out(first, choice.face), end_out(last, choice.face))) return {};
+        if (out <= 0 || (choice.deepest > 0 && out < choice.region / 2)) return {};
+        return std::pair(middle, out);
+    }
+
     bool at_a_rim(const Piece& piece) const {
         for (const int k : {0, 1}) {
             const End& end = piece.ends[k];
@@ -454,12 +474,15 @@ private:
         const double least = *std::min_element(of_region.begin(), of_region.end());
         double least_piece = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < candidates.size(); ++i)
-            if (of_region[i] < least + hair) least_piece = std::min(least_piece, of_piece[i]);
+            if (of_region[i] < least + 3 * hair) least_piece = std::min(least_piece, of_piece[i]);
+        bool chosen = false;
         for (std::size_t i = 0; i < candidates.size(); ++i) {
-            if (of_region[i] >= least + hair || of_piece[i] >= least_piece + hair) continue;
+            if (of_region[i] >= least + 3 * hair || of_piece[i] >= least_piece + 3 * hair) continue;
+            const Vec3 &n = target.face_normals[candidates[i]], &best = target.face_normals[choice.face];
+            if (chosen && dot({0.31, 0.53, 0.79}, n) <= dot({0.31, 0.53, 0.79}, best)) continue;
             choice.face = candidates[i];
             choice.region = of_region[i];
-            break;
+            chosen = true;
         }
         return choice;
     }
@@ -476,7 +499,7 @@ private:
                 most = std::max(most, choices[i]->region);
             }
             const auto first = std::find_if(list.begin(), list.end(),
-                                            [&](std::size_t i) { return choices[i]->region < least + hair; });
+                                            [&](std::size_t i) { return choices[i]->region < least + 3 * hair; });
             Choice other = *choices[*first];
             const CastRay* deepest = nullptr;
             for (std::uint32_t v = 0; v < source.vertices.size(); ++v)
@@ -484,7 +507,7 @@ private:
                     deepest = &*contact[v];
             if (deepest && deepest->depth < most / 2) {
                 const double depth = std::max(0.0, region_depth(name, deepest->triangle));
-                if (depth < other.region - hair) {
+                if (depth < other.region - 3 * hair) {
                     other.region = depth;
                     other.face = deepest->triangle;
                 }
@@ -581,8 +604,10 @@ void join_curves(const OneWay& of_a, const OneWay& of_b, Graph& graph) {
 
 } // namespace
 
-std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
-                                         Direction direction) {
+namespace {
+
+std::vector<ReferenceContact> find_with(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
+                                        Direction direction, bool with_concave) {
     OneWay of_a(a, pose_a, b, pose_b);
     OneWay of_b(b, pose_b, a, pose_a);
     Graph graph;
@@ -590,7 +615,7 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
     for (OneWay* side : {&of_a, &of_b}) {
         side->cross_all(touching);
         side->add_nodes(graph);
-        side->cut_pieces();
+        side->cut_pieces(with_concave);
         side->join_regions(graph);
     }
     join_curves(of_a, of_b, graph);
@@ -598,6 +623,8 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
     std::vector<ReferenceContact> contacts = of_a.speak(region, VertexBody::a, direction);
     const std::vector<ReferenceContact> others = of_b.speak(region, VertexBody::b, direction);
     contacts.insert(contacts.end(), others.begin(), others.end());
+    if (!with_concave && contacts.empty() && !touching && (of_a.crosses() || of_b.crosses()))
+        return find_with(a, pose_a, b, pose_b, direction, true);
     if (!of_a.crosses() && !of_b.crosses() && !of_a.in_contact() && !of_b.in_contact()) {
         if (const auto c = of_a.inside(VertexBody::a, direction)) contacts.push_back(*c);
         if (const auto c = of_b.inside(VertexBody::b, direction)) contacts.push_back(*c);
@@ -607,6 +634,13 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
                < std::tuple(y.vertex_body, y.feature, y.vertex, y.crossing);
     });
     return contacts;
+}
+
+} // namespace
+
+std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
+                                         Direction direction) {
+    return find_with(a, pose_a, b, pose_b, direction, false);
 }
 
 } // namespace raycontact::reference
