@@ -50,6 +50,13 @@ std::string_view name_of(const Table& table, Value wanted) {
     return "?";
 }
 
+template <typename Table, typename Value>
+void need_known(const Table& table, Value value, const char* what) {
+    if (name_of(table, value) == "?")
+        throw InputError(std::string(what) + " is number " + std::to_string(static_cast<int>(value))
+                         + ", which its enumeration does not have");
+}
+
 void need_length(const char* name, const std::optional<double>& metres, bool zero_too) {
     if (!metres) return;
     if (!std::isfinite(*metres) || *metres < 0 || (*metres == 0 && !zero_too))
@@ -60,6 +67,11 @@ void need_length(const char* name, const std::optional<double>& metres, bool zer
 } // namespace
 
 void check_settings(const Settings& settings) {
+    need_known(methods, settings.method, "method");
+    need_known(casters, settings.caster, "caster");
+    need_known(directions, settings.direction, "direction");
+    need_known(features, settings.features, "features");
+    need_known(schedules, settings.schedule, "schedule");
     need_length("displacement_threshold", settings.displacement_threshold, true);
     need_length("culling_distance", settings.culling_distance, true);
     need_length("distance_extension", settings.distance_extension, true);

@@ -9,7 +9,7 @@ namespace raycontact {
 
 /// A device as `raycontact devices` lists it.
 struct DeviceInfo {
-    std::string id;   ///< as Settings::device takes it
+    std::string id;   ///< as Settings::devices takes it
     std::string kind; ///< its back end: the id up to a colon
     std::string type; ///< "cpu", "gpu" or "other"
     std::string bus;  ///< address of the card, as "0000:65:00.0"; empty where none is known

@@ -91,7 +91,7 @@ public:
     /// Of all bodies, by slot.
     std::vector<BodyId> bodies() const;
     /// Changes method, caster, direction or thresholds between two steps; forgets what the last method kept. Throws
-    /// InputError for settings that make no sense, and for another device or number of threads.
+    /// InputError for settings that make no sense, and for other devices, another schedule or number of threads.
     void set_settings(const Settings& settings);
     const Settings& settings() const;
 

@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <new>
+
 namespace raycontact::test {
 namespace {
 
@@ -30,6 +33,30 @@ TEST(Removal, LeavesNoManifoldAndNoBody) {
     }
     EXPECT_EQ(w.dispatcher.getNumManifolds(), 0);
     EXPECT_EQ(w.dispatcher.scene().body_count(), 0u); // the ground has nobody to meet
+}
+
+TEST(Removal, ANewShapeAtTheAddressOfTheOldOneIsSeen) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 5, at(0, 0, 0.3));
+    alignas(btConvexHullShape) std::byte place[sizeof(btConvexHullShape)];
+    const auto hull = [&](double half) {
+        auto* made = new (place) btConvexHullShape;
+        for (int i = 0; i < 8; ++i)
+            made->addPoint(btVector3(btScalar(i & 1 ? half : -half), btScalar(i & 2 ? half : -half),
+                                     btScalar(i & 4 ? half : -half)));
+        body.setCollisionShape(made);
+        return made;
+    };
+    btConvexHullShape* made = hull(0.3);
+    w.steps(60);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.3, 0.02);
+    made->~btConvexHullShape();
+    made = hull(0.5); // as many points
+    w.steps(120);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.5, 0.02);
+    w.remove(body);
+    made->~btConvexHullShape();
 }
 
 TEST(Removal, BodiesComeBack) {

@@ -264,6 +264,9 @@ Form form_of(const btCollisionShape& shape) {
     case CONVEX_HULL_SHAPE_PROXYTYPE:
         form.size = shape.getLocalScaling();
         form.count = static_cast<const btConvexHullShape&>(shape).getNumPoints();
+        shape.getAabb(btTransform::getIdentity(), form.low, form.high);
+        form.low.setW(0);
+        form.high.setW(0);
         break;
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
         form.size = shape.getLocalScaling();
@@ -274,6 +277,13 @@ Form form_of(const btCollisionShape& shape) {
         break; // read anew in every step
     default:
         form.size = scaling_of(shape);
+        if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) {
+            form.data = own->shape().get();
+        } else if (const btStridingMeshInterface* mesh = interface_of(shape); mesh && mesh->getNumSubParts() > 0) {
+            const Part part(*mesh, 0);
+            form.data = part.vertices;
+            form.count = part.triangle_count;
+        }
     }
     form.size.setW(0);
     return form;

@@ -41,13 +41,17 @@ constexpr unsigned bit(Kind kind) {
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
-/// What can be compared in every step: if it changes, the shape must be converted again.
+/// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
+/// address of a deleted one.
 struct Form {
     int type = INVALID_SHAPE_PROXYTYPE;
     btVector3 size{0, 0, 0}; ///< scaling or dimensions
-    int count = 0;           ///< points of a hull, balls of a multi-sphere; the axis of others
+    int count = 0;           ///< points of a hull, balls of a multi-sphere, triangles of a mesh; the axis of others
+    btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< box of a hull
+    const void* data = nullptr;            ///< where a mesh has its vertices; a Shape
     friend bool operator==(const Form& a, const Form& b) {
-        return a.type == b.type && a.size == b.size && a.count == b.count;
+        return a.type == b.type && a.size == b.size && a.count == b.count && a.low == b.low && a.high == b.high
+               && a.data == b.data;
     }
 };
 Form form_of(const btCollisionShape& shape);

@@ -229,7 +229,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
     // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
     const bool asked = dispatcher.getNearCallback() != btCollisionDispatcher::defaultNearCallback;
-    if ((!asked && !dispatcher.needsCollision(a, b)) || (a->isStaticObject() && b->isStaticObject())) return;
+    if (!asked && !dispatcher.needsCollision(a, b)) return;
     PairState& state = state_of(pair, *a, *b);
     objects.refresh(*a, state.record0, dispatch);
     objects.refresh(*b, state.record1, dispatch);
@@ -393,6 +393,8 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
 }
 
 BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
+    if (object.getCollisionShape() == nullptr)
+        throw InputError("CollisionDispatcher::add_body: the object has no shape; give it one first");
     const Object& record = state_->objects.refresh(object, state_->dispatch);
     state_->objects.pin(object, true);
     for (const Leaf& leaf : record.leaves) {

@@ -78,7 +78,8 @@ public:
                                  const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
     ~CollisionDispatcher() override;
 
-    /// Throws InputError naming the body when a pose is not finite, or a mesh cannot be converted.
+    /// Throws InputError naming the body when the pose of one that has a pair is not finite, or a mesh cannot be
+    /// converted.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
 
