@@ -53,9 +53,10 @@ public:
     }
 
     void mark(const std::string& name, const Clash& clash) {
-        nodes_.push_back({{"name", name},
-                          {"translation", {clash.point.x, clash.point.y, clash.point.z}},
-                          {"extras", {{"depth", clash.depth}, {"contacts", clash.contacts}}}});
+        nodes_.push_back(
+            {{"name", name},
+             {"translation", {clash.point.x, clash.point.y, clash.point.z}},
+             {"extras", {{"depth", clash.depth ? Json(*clash.depth) : Json()}, {"contacts", clash.contacts}}}});
     }
 
     std::string glb() {

@@ -43,19 +43,13 @@ bool are_duplicates(const Part& a, const Part& b) {
     if (a.shape->vertices().size() != b.shape->vertices().size()
         || a.shape->triangles().size() != b.shape->triangles().size())
         return false;
-    const double tolerance = duplicate_tolerance * std::max(size_of(*a.shape), size_of(*b.shape));
+    const double tolerance = 1e-6 * std::max(size_of(*a.shape), size_of(*b.shape));
     if (!has_first_vertex(b, a, tolerance)) return false;
     const Vec3 origin = transform_point(a.pose, a.shape->centre());
     return std::ranges::all_of(directions, [&](const Vec3& direction) {
         return std::ranges::equal(sorted_heights(a, origin, direction), sorted_heights(b, origin, direction),
                                   [&](double p, double q) { return std::fabs(p - q) <= tolerance; });
     });
-}
-
-Pose moved_aside(const Part& part) {
-    Pose pose = part.pose;
-    pose.translation = pose.translation + 2 * duplicate_tolerance * size_of(*part.shape) * directions[0];
-    return pose;
 }
 
 } // namespace raycontact::clash

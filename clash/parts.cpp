@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace raycontact::clash {
@@ -25,21 +27,47 @@ WorldBox box_of(const AssemblyPart& part, BodySlot number) {
     return world_box(number, box.low, box.high, {}, 1e-6 * length(box.high - box.low));
 }
 
-void tell_apart(std::vector<Part>& parts) {
+/// Names that several files have get the file before them, then names that several parts have a number.
+void tell_apart(std::vector<Part>& parts, const std::vector<std::filesystem::path>& file_of) {
+    std::map<std::string, std::set<std::filesystem::path>> files;
+    for (std::size_t i = 0; i < parts.size(); ++i) files[parts[i].name].insert(file_of[i]);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (files[parts[i].name].size() > 1)
+            parts[i].name = parts[i].name == file_of[i].filename().string() ? file_of[i].string()
+                                                                            : file_of[i].string() + ":" + parts[i].name;
     std::map<std::string, std::size_t> count;
     for (const Part& part : parts) ++count[part.name];
+    std::set<std::string> taken;
+    for (const auto& [name, times] : count) taken.insert(name);
     std::map<std::string, std::size_t> given;
-    for (Part& part : parts)
-        if (count[part.name] > 1) part.name += " #" + std::to_string(++given[part.name]);
+    for (Part& part : parts) {
+        if (count[part.name] < 2) continue;
+        std::string numbered;
+        do numbered = part.name + " #" + std::to_string(++given[part.name]);
+        while (!taken.insert(numbered).second);
+        part.name = numbered;
+    }
+}
+
+/// The mesh's name before a message; it may be another part's, too.
+std::string without_name(const std::string& message, const std::string& name) {
+    std::string text = message;
+    for (const std::string& prefix : {name + ": ", "mesh '" + name + "': "})
+        if (text.starts_with(prefix)) text.erase(0, prefix.size());
+    return text;
 }
 
 } // namespace
 
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
     std::vector<Part> parts;
+    std::vector<std::filesystem::path> file_of;
     for (const std::filesystem::path& file : files)
-        for (AssemblyPart& part : load_assembly(file)) parts.push_back({std::move(part), nullptr, {}});
-    tell_apart(parts);
+        for (AssemblyPart& part : load_assembly(file)) {
+            parts.push_back({std::move(part), nullptr, {}});
+            file_of.push_back(file);
+        }
+    tell_apart(parts, file_of);
     return parts;
 }
 
@@ -76,7 +104,7 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
             try {
                 shape = Shape::make(prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology));
             } catch (const InputError& error) {
-                fault = error.what();
+                fault = without_name(error.what(), wanted[i]->name);
             }
             const std::lock_guard lock(mutex);
             for (const std::size_t part : users.at(wanted[i])) {

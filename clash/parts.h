@@ -19,8 +19,8 @@ struct Part : AssemblyPart {
     std::string fault; ///< why it cannot be tested; empty: it can
 };
 
-/// The parts of all files, in their order (load_assembly). Where several have the same name, a number is added. Throws
-/// InputError as load_mesh().
+/// The parts of all files, in their order (load_assembly). Where several have the same name, the file is set before it,
+/// or a number is added. Throws InputError as load_mesh().
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files);
 
 /// Two parts whose boxes touch, by their numbers; the first is the lower.

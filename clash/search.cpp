@@ -2,6 +2,7 @@
 #include <clash/search.h>
 
 #include <clash/duplicates.h>
+#include <clash/nudged.h>
 
 #include "executor/executor.h"
 
@@ -9,24 +10,61 @@
 #include <raycontact/scene.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
+#include <vector>
 
 namespace raycontact::clash {
 
 namespace {
 
 Clash clash_of(const PartPair& pair, std::span<const Contact> contacts) {
-    Clash clash{pair.a, pair.b, 0, {}, {}, contacts.size()};
+    Clash clash{pair.a, pair.b, 0, {}, {}, contacts.size(), false};
     for (const Contact& contact : contacts) {
-        if (double(contact.depth) <= clash.depth) continue;
+        if (double(contact.depth) <= *clash.depth) continue;
         clash.depth = double(contact.depth);
-        const Vec3 a = point_on_a(contact), b = point_on_b(contact);
-        clash.point = {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z)};
+        clash.point = contact.point;
         clash.normal = {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])};
     }
     return clash;
 }
+
+/// Nothing where they share no point.
+std::optional<Clash> clash_of(const PartPair& pair, const Part& a, const Part& b, std::span<const Contact> contacts) {
+    Clash clash = clash_of(pair, contacts);
+    const double depth = *clash.depth, size = smaller_size(a, b);
+    if (depth <= shallow * size) {
+        const auto shared = depth <= noise * size ? common_point(*a.shape, a.pose, *b.shape, b.pose) : clash.point;
+        if (!shared && contacts.empty()) return {};
+        std::vector<Contact> nudged;
+        if (a.shape->report().closed && b.shape->report().closed) nudged = contacts_when_nudged(a, b, depth);
+        if (!nudged.empty()) {
+            clash = clash_of(pair, nudged);
+        } else if (depth <= noise * size) {
+            const Vec3 point = shared ? *shared : clash.point;
+            clash = clash_of(pair, {});
+            clash.point = point;
+        }
+    }
+    clash.duplicate = are_duplicates(a, b);
+    return clash;
+}
+
+/// Whether each part's mesh is closed, does not intersect itself and winds outward. Looked into once for each mesh.
+class Soundness {
+public:
+    bool of(const Part& part) {
+        const auto [known, is_new] = known_.try_emplace(part.mesh.get());
+        if (is_new)
+            known->second =
+                part.shape->report().closed && verdict_of(prepare_mesh(*part.mesh, Repair::allowed).report).good;
+        return known->second;
+    }
+
+private:
+    std::unordered_map<const Mesh*, bool> known_;
+};
 
 } // namespace
 
@@ -57,29 +95,23 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
         list.reserve(some.size());
         for (const auto& [a, b] : some) list.emplace_back(bodies.at(a), bodies.at(b));
         scene.step(list);
-        std::vector<Clash> found(some.size());
-        std::vector<char> meets(some.size(), 0);
+        std::vector<std::optional<Clash>> found(some.size());
         executor.run(static_cast<std::uint32_t>(some.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end && !options.stop(); ++i) {
-                found[i] = clash_of(some[i], scene.contacts(list[i].first, list[i].second));
-                const Part &a = parts[some[i].a], &b = parts[some[i].b];
-                if (are_duplicates(a, b)) {
-                    found[i] = clash_of(some[i], collide(*a.shape, a.pose, *b.shape, moved_aside(b)));
-                    found[i].duplicate = true;
-                }
-                meets[i] = found[i].contacts > 0;
-                if (meets[i]) continue;
-                const auto shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
-                if (shared) found[i].point = *shared;
-                meets[i] = shared.has_value();
-            }
+            for (std::uint32_t i = begin; i < end && !options.stop(); ++i)
+                found[i] = clash_of(some[i], parts[some[i].a], parts[some[i].b],
+                                    scene.contacts(list[i].first, list[i].second));
         });
-        for (std::size_t i = 0; i < some.size(); ++i)
-            if (meets[i]) clashes.push_back(found[i]);
+        for (const std::optional<Clash>& clash : found)
+            if (clash) clashes.push_back(*clash);
         options.progress(first + some.size(), asked.size());
     }
+    Soundness sound;
+    for (Clash& clash : clashes)
+        if (clash.contacts == 0 && !options.stop() && !(sound.of(parts[clash.a]) && sound.of(parts[clash.b])))
+            clash.depth.reset();
     std::sort(clashes.begin(), clashes.end(), [](const Clash& p, const Clash& q) {
-        return std::tuple(-p.depth, p.a, p.b) < std::tuple(-q.depth, q.a, q.b);
+        const auto rank = [](const Clash& c) { return -c.depth.value_or(1e-300); }; // any depth is more
+        return std::tuple(rank(p), p.a, p.b) < std::tuple(rank(q), q.a, q.b);
     });
     return clashes;
 }

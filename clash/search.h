@@ -5,17 +5,20 @@
 
 #include <raycontact/contact.h>
 
+#include <optional>
+
 namespace raycontact::clash {
 
 /// Two parts that share a point.
 struct Clash {
     std::size_t a = 0, b = 0; ///< numbers of the parts, a < b
-    double depth = 0;         ///< of the deepest contact, metres; 0: they touch, or no rule of contact applies
-    Vec3 point;               ///< between the witness points of that contact; else one that they share (common_point)
-    Vec3 normal;              ///< of that contact, unit, from a to b; else 0
+    /// Of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a depth,
+    /// as one of them is open, intersects itself or winds the wrong way somewhere.
+    std::optional<double> depth = 0;
+    Vec3 point;  ///< of that contact: on one part's surface, in the other; else one that they share (common_point)
+    Vec3 normal; ///< of that contact, unit, from a to b; else 0
     std::size_t contacts = 0;
-    bool duplicate = false; ///< copies in one place (are_duplicates): depth, point and contacts are those of copies
-                            ///< 2e-6 of their size apart, as faces that coincide say nothing of a depth
+    bool duplicate = false; ///< copies in one place (are_duplicates)
 };
 
 struct SearchOptions {
@@ -24,8 +27,9 @@ struct SearchOptions {
     std::function<bool()> stop = [] { return false; }; ///< asked between pairs; true: the search ends there
 };
 
-/// Every pair that shares a point (raycontact::intersects), deepest first; ties in the parts' order. Pairs of parts
-/// with a fault are left out.
+/// Every pair that shares a point (raycontact::intersects), deepest first, then those without a depth, then those that
+/// touch; ties in the parts' order. Where faces coincide, contacts_when_nudged() tells touching parts from others.
+/// Pairs of parts with a fault are left out.
 std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vector<PartPair>& pairs,
                                 const SearchOptions& options);
 

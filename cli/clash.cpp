@@ -8,6 +8,7 @@
 #include "cli/stop.h"
 
 #include <clash/coloured.h>
+#include <clash/nudged.h>
 #include <clash/parts.h>
 #include <clash/search.h>
 #include <output/out_file.h>
@@ -18,6 +19,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -49,10 +52,15 @@ struct Result {
         return static_cast<std::size_t>(
             std::count_if(parts.begin(), parts.end(), [](const clash::Part& part) { return !part.fault.empty(); }));
     }
-    std::size_t open() const {
-        return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [](const clash::Part& part) {
-            return part.shape && !part.shape->report().closed;
-        }));
+    std::vector<std::string> open() const {
+        std::vector<std::string> names;
+        for (const clash::Part& part : parts)
+            if (part.shape && !part.shape->report().closed) names.push_back(part.name);
+        return names;
+    }
+    std::size_t without_depth() const {
+        return static_cast<std::size_t>(
+            std::count_if(clashes.begin(), clashes.end(), [](const clash::Clash& c) { return !c.depth; }));
     }
 };
 
@@ -62,7 +70,7 @@ std::string json_lines(const Result& result) {
     for (const clash::Clash& c : result.clashes) {
         Json line{{"a", result.parts[c.a].name},
                   {"b", result.parts[c.b].name},
-                  {"depth", c.depth},
+                  {"depth", c.depth ? Json(*c.depth) : Json()},
                   {"point", {c.point.x, c.point.y, c.point.z}},
                   {"contacts", c.contacts},
                   {"duplicate", c.duplicate}};
@@ -75,11 +83,23 @@ std::string json_lines(const Result& result) {
 std::string table(const Result& result) {
     std::string text;
     for (const clash::Clash& c : result.clashes) {
-        const std::string depth = c.contacts > 0 ? fmt::format("{:.4g} m", c.depth) : "touching";
-        text += fmt::format("{:>12}  {}  x  {}  at {:.6g}, {:.6g}, {:.6g}{}\n", depth, result.parts[c.a].name,
-                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z,
+        const std::string depth = !c.depth ? "no depth" : *c.depth > 0 ? fmt::format("{:.4g} m", *c.depth) : "touching";
+        const clash::Part &a = result.parts[c.a], &b = result.parts[c.b];
+        // To some hundred-thousandth of the smaller part, however far from the origin.
+        const int decimals = std::clamp(5 - static_cast<int>(std::floor(std::log10(clash::smaller_size(a, b)))), 0, 15);
+        text += fmt::format("{:>12}  {}  x  {}  at {:.{}f}, {:.{}f}, {:.{}f}{}\n", depth, a.name, b.name, c.point.x,
+                            decimals, c.point.y, decimals, c.point.z, decimals,
                             c.duplicate ? "  (the same part in the same place)" : "");
     }
+    return text;
+}
+
+/// "a, b and 3 more".
+std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 5;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];
+    if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
     return text;
 }
 
@@ -88,8 +108,10 @@ std::string summary(const Result& result) {
                                    result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs,
                                    result.pairs == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
-    if (result.open() == 1) text += "; 1 part is open: nothing is inside of it";
-    if (result.open() > 1) text += fmt::format("; {} parts are open: nothing is inside of them", result.open());
+    if (result.without_depth() > 0)
+        text += fmt::format("; {} without a depth, as a part is open or intersects itself", result.without_depth());
+    if (const auto open = result.open(); !open.empty())
+        text += fmt::format("; open, so that nothing is inside: {}", some_of(open));
     if (result.faults() > 0)
         text += fmt::format("; {} part{} not checked", result.faults(), result.faults() == 1 ? " was" : "s were");
     if (stop_signal() != 0) text += fmt::format("; cut short by {}", stop_name());
@@ -99,6 +121,8 @@ std::string summary(const Result& result) {
 Result search(const ClashOptions& options) {
     Result result;
     result.parts = clash::load_parts({options.files.begin(), options.files.end()});
+    if (result.parts.size() < 2)
+        throw InputError(options.files[0] + ": is one part; give several files, or a glTF file whose nodes are parts");
     const auto pairs = clash::touching_boxes(result.parts);
     result.pairs = pairs.size();
     listen_for_stop();
@@ -120,14 +144,27 @@ Result search(const ClashOptions& options) {
     result.clashes = clash::find_clashes(result.parts, pairs, how);
     progress.done();
     if (options.ignore_touching)
-        result.ignored =
-            std::erase_if(result.clashes, [&](const clash::Clash& c) { return c.depth <= *options.ignore_touching; });
+        result.ignored = std::erase_if(result.clashes, [&](const clash::Clash& c) {
+            // Depths are float32: a tenth is a little more.
+            return c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
+        });
     return result;
+}
+
+void check_out(const ClashOptions& options) {
+    if (!options.out.ends_with(".glb")) throw InputError("--out " + options.out + ": give a name that ends in .glb");
+    std::error_code none;
+    for (const std::string& file : options.files)
+        if (std::filesystem::equivalent(file, options.out, none))
+            throw InputError("--out " + options.out + ": is one of the files to read; give another name");
 }
 
 void run_clash(const ClashOptions& options) {
     std::optional<output::OutFile> out;
-    if (!options.out.empty()) out.emplace(options.out);
+    if (!options.out.empty()) {
+        check_out(options);
+        out.emplace(options.out);
+    }
     const Result result = search(options);
     if (options.json) {
         std::cout << json_lines(result) << std::flush;
@@ -152,15 +189,17 @@ void add_clash(CLI::App& app) {
     command->add_option("FILES", options->files, "mesh files; of a glTF file each node with a mesh is a part")
         ->required();
     add_number(*command, "--ignore-touching", options->ignore_touching,
-               "leave out clashes no deeper than this, metres; 0: those that only touch", 0.0, 1e9);
+               "leave out clashes no deeper than this, metres; 0: those that only touch. Those without a depth stay",
+               0.0, 1e9);
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(
-        "A clash has the depth of its deepest contact and a point there; parts that share a point and have no\n"
-        "contact touch. Parts stay where their files place them.\n"
+        "A clash has the depth of its deepest contact and that contact's point, which is in both parts. Parts touch\n"
+        "if they share a point and nothing more. Where one of the parts is open or intersects itself, there may be no\n"
+        "depth; these come after those with a depth. Parts stay where their files place them.\n"
         "Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 3 clashes found (--check).");
     command->callback([options] { run_clash(*options); });
 }

@@ -160,7 +160,9 @@ void GltfFile::check_object(const Item& item) const {
 
 std::string GltfFile::name_of(const Item& node) const {
     const std::optional<Item> name = member(node, "name");
-    return name && name->value.is_string() ? printable(text_of(*name)) : node.name;
+    if (!name || !name->value.is_string()) return node.name;
+    const std::string text = printable(text_of(*name));
+    return text.empty() ? node.name : text;
 }
 
 std::optional<GltfFile::Item> GltfFile::member(const Item& of, const char* key) const {

@@ -56,7 +56,7 @@ std::string to_json(const MeshReport& report) {
     json["self_intersecting"] = report.self_intersecting;
     json["outward"] = report.outward;
     json["components"] = report.components;
-    json["volume"] = report.volume;
+    json["volume"] = report.closed ? nlohmann::ordered_json(report.volume) : nlohmann::ordered_json();
     json["area"] = report.area;
     json["box"] = {{report.box_min.x, report.box_min.y, report.box_min.z},
                    {report.box_max.x, report.box_max.y, report.box_max.z}};
