@@ -154,7 +154,7 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
 Pose pose_of(const CollideCommand& options) {
     for (const auto& [name, numbers] : {std::pair{"--at", &options.at}, std::pair{"--turn", &options.turn}})
         for (const double x : *numbers)
-            if (!std::isfinite(x)) throw InputError(std::string(name) + ": must be three finite numbers");
+            if (!std::isfinite(x)) throw InputError(fmt::format("{}: {} is not a finite number", name, x));
     Pose pose;
     for (std::size_t k = 0; k < options.turn.size(); ++k) {
         const double angle = options.turn[k] * std::numbers::pi / 180;

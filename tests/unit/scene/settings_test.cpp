@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/collide.h>
+#include <raycontact/scene.h>
+
+#include "reference/meshes.h"
+
+#include <gtest/gtest.h>
+
+namespace raycontact {
+namespace {
+
+void expect_refused(const Settings& settings, const std::string& name) {
+    try {
+        check_settings(settings);
+        ADD_FAILURE() << name << " was taken";
+    } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with(name)) << error.what();
+    }
+    EXPECT_THROW(Scene{settings}, InputError);
+}
+
+TEST(Settings, ValuesThatAnEnumerationDoesNotHaveAreRefused) {
+    Settings settings;
+    settings.method = static_cast<Method>(77);
+    expect_refused(settings, "method");
+    settings = {};
+    settings.caster = static_cast<Caster>(9);
+    expect_refused(settings, "caster");
+    settings = {};
+    settings.direction = static_cast<Direction>(-1);
+    expect_refused(settings, "direction");
+    settings = {};
+    settings.features = static_cast<Features>(2);
+    expect_refused(settings, "features");
+    settings = {};
+    settings.schedule = static_cast<Schedule>(3);
+    expect_refused(settings, "schedule");
+    const auto box = Shape::make(reference::box_mesh({0.5, 0.5, 0.5}));
+    EXPECT_THROW(collide(*box, {}, *box, {}, {.direction = static_cast<Direction>(9)}), InputError);
+}
+
+} // namespace
+} // namespace raycontact
