@@ -213,5 +213,89 @@ TEST(Callbacks, ProcessedSeesPointsThatAreHeld) {
     EXPECT_EQ(Events::processed, 32);
 }
 
+/// A level of two sub-parts: the floor's left half in one, its right half in the other, each of four triangles.
+struct TwoParts {
+    std::vector<btScalar> vertices{-4, -2, 0, 0, -2, 0, 0, 2, 0, -4, 2, 0, -2, 0, 0,
+                                   0,  -2, 0, 4, -2, 0, 4, 2, 0, 0,  2, 0, 2,  0, 0};
+    std::vector<int> indices{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+    btTriangleIndexVertexArray array;
+
+    TwoParts() {
+        for (int part = 0; part < 2; ++part) {
+            btIndexedMesh mesh;
+            mesh.m_numTriangles = 4;
+            mesh.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(indices.data());
+            mesh.m_triangleIndexStride = 3 * sizeof(int);
+            mesh.m_numVertices = 5;
+            mesh.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices.data() + part * 15);
+            mesh.m_vertexStride = 3 * sizeof(btScalar);
+            array.addIndexedMesh(mesh, PHY_INTEGER);
+        }
+    }
+    /// Whether a point over the floor lies over this triangle, to a millimetre.
+    bool lies_over(const btVector3& p, int part, int triangle) const {
+        btVector3 corner[3];
+        for (int k = 0; k < 3; ++k) {
+            const btScalar* v = vertices.data() + part * 15 + 3 * indices[static_cast<std::size_t>(3 * triangle + k)];
+            corner[k].setValue(v[0], v[1], 0);
+        }
+        for (int k = 0; k < 3; ++k) {
+            const btVector3 side = corner[(k + 1) % 3] - corner[k], to = p - corner[k];
+            if (side.x() * to.y() - side.y() * to.x() < btScalar(-1e-3) * side.length()) return false;
+        }
+        return true;
+    }
+};
+
+struct AddedPlace {
+    btVector3 point;
+    const btCollisionObject* object;
+    int part, index;
+};
+std::vector<AddedPlace> added_places;
+
+bool note_added(btManifoldPoint& p, const btCollisionObjectWrapper* a, int part0, int index0,
+                const btCollisionObjectWrapper* b, int part1, int index1) {
+    added_places.push_back({p.m_positionWorldOnA, a->getCollisionObject(), part0, index0});
+    added_places.push_back({p.m_positionWorldOnB, b->getCollisionObject(), part1, index1});
+    return false;
+}
+
+// Users look up a material by them.
+TEST(Callbacks, AddedNamesSubPartsAndTrianglesOnBothSides) {
+    TestWorld w;
+    TwoParts level;
+    const btRigidBody& floor = w.add(std::make_unique<btBvhTriangleMeshShape>(&level.array, true), 0, at(0, 0, 0));
+    const btRigidBody& box = w.add_mesh(Shape::make(box_mesh(1, 1, 0.4)), 5, at(-0.3, 0.1, 0.2));
+    const btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.3)), 5, at(2.9, 0.4, 0.3));
+    for (const auto& body : w.bodies)
+        body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+    added_places.clear();
+    gContactAddedCallback = note_added;
+    w.steps(30);
+    gContactAddedCallback = nullptr;
+    std::set<int> parts;
+    std::size_t of_box = 0, of_ball = 0;
+    for (const AddedPlace& place : added_places) {
+        if (place.object == &floor) {
+            ASSERT_TRUE(place.part >= 0 && place.part < 2 && place.index >= 0 && place.index < 4)
+                << place.part << ", " << place.index;
+            EXPECT_TRUE(level.lies_over(place.point, place.part, place.index)) << place.part << ", " << place.index;
+            parts.insert(place.part);
+        } else if (place.object == &box) {
+            EXPECT_EQ(place.part, 0);
+            EXPECT_TRUE(place.index >= 0 && place.index < 12) << place.index;
+            ++of_box;
+        } else {
+            EXPECT_EQ(place.object, &ball);
+            EXPECT_EQ(std::pair(place.part, place.index), std::pair(-1, -1));
+            ++of_ball;
+        }
+    }
+    EXPECT_EQ(parts, (std::set<int>{0, 1}));
+    EXPECT_GT(of_box, 0u);
+    EXPECT_GT(of_ball, 0u);
+}
+
 } // namespace
 } // namespace raycontact::test

@@ -5,14 +5,21 @@
 
 namespace raycontact::bullet {
 
+/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a convex shape.
+struct PlaceName {
+    int part = -1, index = -1;
+    friend bool operator==(const PlaceName&, const PlaceName&) = default;
+};
+
 /// A contact in Bullet's terms, not yet part of a manifold. World frame, metres.
 struct Candidate {
     PointKey key;
-    int triangle = 0;    ///< of the other body, index of its file; 0 on a plane
-    btVector3 on0, on1;  ///< the point on either body's surface
-    btVector3 normal;    ///< unit, from body 1 to body 0
-    btScalar distance{}; ///< negative: the depth
-    btScalar reach{};    ///< size of a patch it may join
+    int triangle = 0;       ///< of the other body, index of its file; 0 on a plane
+    btVector3 on0, on1;     ///< the point on either body's surface
+    btVector3 normal;       ///< unit, from body 1 to body 0
+    btScalar distance{};    ///< negative: the depth
+    btScalar reach{};       ///< size of a patch it may join
+    PlaceName name0, name1; ///< only where gContactAddedCallback will be called
 };
 
 } // namespace raycontact::bullet

@@ -243,6 +243,28 @@ btVector3 scaling_of(const btCollisionShape& shape) {
     }
 }
 
+std::vector<int> triangles_of_parts(const btCollisionShape& shape) {
+    std::vector<int> counts;
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
+        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+        if (g.getGImpactShapeType() != CONST_GIMPACT_TRIMESH_SHAPE) return counts;
+        const auto& whole = static_cast<const btGImpactMeshShape&>(g);
+        for (int i = 0; i < whole.getMeshPartCount(); ++i)
+            counts.push_back(whole.getMeshPart(i)->getPrimitiveManager()->get_primitive_count());
+    } else if (const btStridingMeshInterface* mesh = interface_of(shape)) {
+        for (int i = 0; i < mesh->getNumSubParts(); ++i) counts.push_back(Part(*mesh, i).triangle_count);
+    }
+    return counts;
+}
+
+int first_part(const btCollisionShape& shape) {
+    if (shape.getShapeType() != GIMPACT_SHAPE_PROXYTYPE) return 0;
+    const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+    return g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART
+               ? static_cast<const btGImpactMeshShapePart&>(g).getPart()
+               : 0;
+}
+
 Form form_of(const btCollisionShape& shape) {
     Form form{shape.getShapeType(), btVector3(0, 0, 0), 0};
     switch (shape.getShapeType()) {

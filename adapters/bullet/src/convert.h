@@ -41,6 +41,11 @@ constexpr unsigned bit(Kind kind) {
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
+/// How many triangles each sub-part of a mesh has; empty where the shape has no parts. Triangles are counted through.
+std::vector<int> triangles_of_parts(const btCollisionShape& shape);
+/// The number of the first of them: not 0 for a part of a GImpact mesh that is a shape of its own.
+int first_part(const btCollisionShape& shape);
+
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
 /// address of a deleted one.
 struct Form {

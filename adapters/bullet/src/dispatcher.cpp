@@ -3,6 +3,7 @@
 
 #include <box_face.h>
 #include <pair.h>
+#include <place_name.h>
 #include <plane.h>
 #include <prefetch.h>
 #include <query.h>
@@ -62,6 +63,16 @@ HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
     const bool plane_is_0 = a.kind == Kind::plane;
     const Leaf& plane = plane_is_0 ? a : b;
     return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
+}
+
+void name_places(PairState& state) {
+    for (Candidate& c : state.candidates) {
+        const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(c.key.child0)];
+        const Leaf& leaf1 = state.record1.leaves[static_cast<std::size_t>(c.key.child1)];
+        const bool of_0 = c.key.vertex_body == 0;
+        c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, c.triangle);
+        c.name1 = of_0 ? name_of_triangle(leaf1, c.triangle) : name_of_feature(leaf1, c.key);
+    }
 }
 
 } // namespace
@@ -144,6 +155,8 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     if (s.recorder) s.recorder->step();
     s.hand_out(s.scene.contacts());
     s.hand_out(s.scene.coming_contacts());
+    for (PairState* state : s.work)
+        if (adds_are_told(*state->object0, *state->object1)) name_places(*state);
     for (std::size_t i = 0; i < s.work.size(); ++i) {
         if (i + 8 < s.work.size()) prefetch(s.work[i + 8]);
         if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();

@@ -98,13 +98,12 @@ int index_of(const btPersistentManifold& manifold, const PointKey& key) {
     return -1;
 }
 
-void call_added(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
-    if (!gContactAddedCallback
-        || !((a->getCollisionFlags() | b->getCollisionFlags()) & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK))
-        return;
+void call_added(btManifoldPoint& point, const Candidate& candidate, const btCollisionObject* a,
+                const btCollisionObject* b) {
     const btCollisionObjectWrapper wrap0(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper wrap1(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
-    (*gContactAddedCallback)(point, &wrap0, point.m_partId0, point.m_index0, &wrap1, point.m_partId1, point.m_index1);
+    (*gContactAddedCallback)(point, &wrap0, candidate.name0.part, candidate.name0.index, &wrap1, candidate.name1.part,
+                             candidate.name1.index);
 }
 
 bool of_edge(const PointKey& key) {
@@ -293,8 +292,12 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
             m.addManifoldPoint(p, true);
         }
         leave(false);
-        for (int i = 0; i < m.getNumContacts(); ++i) {
-            if (absent_steps(m.getContactPoint(i)) == 0) call_added(m.getContactPoint(i), object0_, object1_);
+        for (int i = 0; i < m.getNumContacts() && adds_are_told(*object0_, *object1_); ++i) {
+            btManifoldPoint& point = m.getContactPoint(i);
+            if (absent_steps(point) != 0) continue;
+            const auto c = std::ranges::find(patch.members, CollisionDispatcher::key(point),
+                                             [&](std::size_t member) { return candidates[member].key; });
+            if (c != patch.members.end()) call_added(point, candidates[*c], object0_, object1_);
         }
         if (was_empty && gContactStartedCallback) gContactStartedCallback(patch.manifold);
         // Bullet calls it when it refreshes a manifold, in every step for every point, the last one first.
@@ -305,6 +308,11 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         ++stats.manifolds;
         manifolds_.push_back(patch.manifold);
     }
+}
+
+bool adds_are_told(const btCollisionObject& a, const btCollisionObject& b) {
+    return gContactAddedCallback
+           && ((a.getCollisionFlags() | b.getCollisionFlags()) & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK) != 0;
 }
 
 PointKey CollisionDispatcher::key(const btManifoldPoint& p) {

@@ -8,6 +8,9 @@
 
 namespace raycontact::bullet {
 
+/// Whether gContactAddedCallback is called for points of these two.
+bool adds_are_told(const btCollisionObject& a, const btCollisionObject& b);
+
 /// The manifolds of one pair: one for each patch of contacts with like normals, so that a pair that touches in several
 /// places is supported in all of them.
 class Patches {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <query.h>
 
+#include <place_name.h>
 #include <plane.h>
 #include <round.h>
 #include <vectors.h>
@@ -29,6 +30,16 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
               });
     return leaves;
 }
+
+namespace {
+
+void identify(btManifoldResult& result, bool first_is_a, const PlaceName& first, const PlaceName& second) {
+    const PlaceName &a = first_is_a ? first : second, &b = first_is_a ? second : first;
+    result.setShapeIdentifiersA(a.part, a.index);
+    result.setShapeIdentifiersB(b.part, b.index);
+}
+
+} // namespace
 
 void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btDispatcherInfo& info,
                   btManifoldResult& result) {
@@ -92,8 +103,7 @@ void Queries::run_plane(const Placed& a, const Placed& b, btManifoldResult& resu
     plane_contacts(mesh.leaf.converted, mesh.pose, space, found);
     for (const PlaneContact& c : found) {
         const int vertex = static_cast<int>(mesh.leaf.converted.shape->vertex_index()[c.vertex]);
-        result.setShapeIdentifiersA(a.index, a_is_mesh ? vertex : 0);
-        result.setShapeIdentifiersB(b.index, a_is_mesh ? 0 : vertex);
+        identify(result, a_is_mesh, name_of_feature(mesh.leaf, {.vertex = vertex}), {});
         if (a_is_mesh)
             result.addContactPoint(normal, c.point + normal * c.depth, -c.depth);
         else
@@ -110,8 +120,7 @@ void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& resu
                    result.m_closestPointDistanceThreshold, found);
     for (const RoundContact& c : found) {
         const int triangle = static_cast<int>(mesh.leaf.converted.shape->triangle_index()[c.triangle]);
-        result.setShapeIdentifiersA(a.index, a_is_mesh ? triangle : c.place);
-        result.setShapeIdentifiersB(b.index, a_is_mesh ? c.place : triangle);
+        identify(result, a_is_mesh, name_of_triangle(mesh.leaf, triangle), {});
         if (a_is_mesh)
             result.addContactPoint(-c.normal, c.point + c.normal * c.distance, c.distance);
         else
@@ -126,8 +135,9 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
     for (const Contact& c : scene_.step(pairs)) {
         const int source = static_cast<int>(c.vertex), target = static_cast<int>(c.triangle);
         const bool of_a = c.vertex_body == VertexBody::a;
-        result.setShapeIdentifiersA(a.index, of_a ? source : target);
-        result.setShapeIdentifiersB(b.index, of_a ? target : source);
+        const Leaf &source_leaf = of_a ? a.leaf : b.leaf, &target_leaf = of_a ? b.leaf : a.leaf;
+        identify(result, of_a, name_of_feature(source_leaf, {.vertex = source, .feature = c.feature}),
+                 name_of_triangle(target_leaf, target));
         result.addContactPoint(-normal_of(c), to_bullet(point_on_b(c)), btScalar(-c.depth));
     }
     scene_.remove(body_a);

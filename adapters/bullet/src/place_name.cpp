@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <place_name.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+namespace {
+
+bool has_triangles(const Leaf& leaf) {
+    return (leaf.kind == Kind::mesh || leaf.kind == Kind::field) && leaf.converted.shape != nullptr;
+}
+
+} // namespace
+
+PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
+    if (!has_triangles(leaf)) return {};
+    PlaceName name{first_part(*leaf.shape), triangle};
+    for (const int count : triangles_of_parts(*leaf.shape)) {
+        if (name.index < count) break;
+        name.index -= count;
+        ++name.part;
+    }
+    return name;
+}
+
+PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
+    if (!has_triangles(leaf)) return {};
+    if (key.feature == Feature::edge) return name_of_triangle(leaf, key.vertex / 3);
+    const Shape& shape = *leaf.converted.shape;
+    const auto vertices = shape.vertex_index(); // ascending
+    const auto at = std::lower_bound(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(key.vertex));
+    if (at == vertices.end() || *at != static_cast<std::uint32_t>(key.vertex)) return {};
+    const std::uint32_t triangle =
+        leaf.converted.tree->triangle_at(static_cast<std::uint32_t>(std::distance(vertices.begin(), at)));
+    return name_of_triangle(leaf, static_cast<int>(shape.triangle_index()[triangle]));
+}
+
+} // namespace raycontact::bullet
