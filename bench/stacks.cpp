@@ -8,6 +8,7 @@
 #include <scenes/stacks/verdict.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -41,7 +42,7 @@ Row run(const Stack& stack, Ground ground, Finder finder, const Options& options
     StackWorld world(stack, ground, finder, options.solver);
     Row row;
     row.ran = true;
-    const int steps = static_cast<int>(options.seconds * 60 + 0.5);
+    const int steps = static_cast<int>(std::lround(options.seconds * 60));
     const auto begin = std::chrono::steady_clock::now();
     bool down = false;
     for (int i = 0; i < steps; ++i) {

@@ -15,7 +15,7 @@ namespace {
 // The corners of a crooked tetrahedron: along no face that meshes have.
 constexpr std::array<Vec3, 4> ways{
     {{0.5257, 0.6113, 0.5915}, {-0.7482, 0.1301, 0.6506}, {0.3137, -0.8819, 0.352}, {-0.091, 0.1405, -0.9859}}};
-constexpr double far_more = 20; // times
+constexpr double far_more = 20; // times what the nudge and rounding can make
 
 } // namespace
 

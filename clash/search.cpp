@@ -107,8 +107,8 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
     }
     Soundness sound;
     for (Clash& clash : clashes)
-        if (clash.contacts == 0 && !options.stop() && !(sound.of(parts[clash.a]) && sound.of(parts[clash.b])))
-            clash.depth.reset();
+        if (clash.contacts == 0 && (options.stop() || !sound.of(parts[clash.a]) || !sound.of(parts[clash.b])))
+            clash.depth.reset(); // also where the search ended before it is known
     std::sort(clashes.begin(), clashes.end(), [](const Clash& p, const Clash& q) {
         const auto rank = [](const Clash& c) { return -c.depth.value_or(1e-300); }; // any depth is more
         return std::tuple(rank(p), p.a, p.b) < std::tuple(rank(q), q.a, q.b);

@@ -109,7 +109,8 @@ std::string summary(const Result& result) {
                                    result.pairs == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
     if (result.without_depth() > 0)
-        text += fmt::format("; {} without a depth, as a part is open or intersects itself", result.without_depth());
+        text += fmt::format("; {} without a depth, as one of the parts is no sound solid (see raycontact mesh)",
+                            result.without_depth());
     if (const auto open = result.open(); !open.empty())
         text += fmt::format("; open, so that nothing is inside: {}", some_of(open));
     if (result.faults() > 0)
@@ -198,8 +199,9 @@ void add_clash(CLI::App& app) {
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(
         "A clash has the depth of its deepest contact and that contact's point, which is in both parts. Parts touch\n"
-        "if they share a point and nothing more. Where one of the parts is open or intersects itself, there may be no\n"
-        "depth; these come after those with a depth. Parts stay where their files place them.\n"
+        "if they share a point and nothing more. Where one of the parts is open, intersects itself or winds the wrong\n"
+        "way somewhere, there may be no depth; these come after those with one. Parts stay where their files place "
+        "them.\n"
         "Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 3 clashes found (--check).");
     command->callback([options] { run_clash(*options); });
 }

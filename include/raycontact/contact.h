@@ -17,7 +17,7 @@ enum class VertexBody : std::uint8_t { a = 0, b = 1 };
 /// What of the source is in contact.
 enum class Feature : std::uint8_t {
     vertex = 0, ///< a vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)
-    edge = 1,   ///< an end of a piece of an edge that lies inside the other mesh (docs/edges.md)
+    edge = 1,   ///< an end, or the middle, of a piece of an edge that lies inside the other mesh (docs/edges.md)
     inside = 2, ///< the whole body lies inside the other mesh; its deepest vertex stands for it
 };
 
@@ -28,12 +28,13 @@ struct Contact {
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a; ///< whose vertex or edge it is
     Feature feature = Feature::vertex;
-    bool is_new = true;         ///< the last step had no contact with this key in this pair
-    std::uint32_t crossing = 0; ///< of an edge: which end it is, see edge_start; 0 for other features
+    bool is_new = true; ///< the last step had no contact with this key in this pair
+    std::uint32_t crossing =
+        0; ///< of an edge: which end it is, see edge_start, of a middle the first; 0 for other features
     /// Source vertex, index of its file. Of an edge: 3 x its lowest triangle in the file + its first corner there.
     std::uint32_t vertex = 0;
     std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file
-    Vec3 point;                    ///< the source vertex, or the end of the piece; world frame, metres
+    Vec3 point;                    ///< the source vertex, or the end or middle of the piece; world frame, metres
     std::array<float, 3> normal{}; ///< unit, world frame, from A to B
     float depth = 0;               ///< > 0, metres along the normal (section 3.2: r . n)
     float ray_length = 0;          ///< |r|, metres from the point to the hit

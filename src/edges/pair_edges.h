@@ -3,7 +3,7 @@
 
 #include "edges/crossings.h"
 #include "edges/feature_contact.h"
-#include "edges/regions.h"
+#include "mesh/disjoint_sets.h"
 
 #include <array>
 #include <span>
@@ -63,6 +63,13 @@ private:
         std::uint32_t number; ///< among all
         Vec3 point;
     };
+    /// A crossing on the line in which a flat face of either body meet.
+    struct OnCurve {
+        std::uint64_t faces; ///< of a in the upper half, of b in the lower
+        double at;           ///< along the line
+        std::uint32_t node;  ///< the crossing's number among all
+        Vec3 point;          ///< frame of b
+    };
     /// How far a region must move to leave the target by a face's plane.
     struct Extent {
         std::uint32_t region;
@@ -80,9 +87,9 @@ private:
     static void list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
                             std::span<const Speaker> speakers, std::uint32_t first_node, bool concave,
                             std::vector<Piece>& pieces);
-    void join_crossings(const SourceMesh& placed, std::span<const Crossing> crossings, std::uint32_t first_node,
-                        bool source_first);
-    void join_vertices(const ShapeData& source, std::size_t side);
+    void list_curves(const std::array<SourceMesh, 2>& placed, std::size_t side, std::uint32_t first_node);
+    void join_curves(const SourceMesh& a_in_b);
+    void join_vertices(const SourceMesh& placed, std::size_t side);
     void speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
     static Candidate candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face);
     void choose(const SourceMesh& placed, const Piece& piece);
@@ -99,10 +106,12 @@ private:
     std::array<std::vector<Crossing>, 2> crossings_;
     std::array<std::vector<Speaker>, 2> speakers_; ///< by vertex
     std::array<std::vector<Piece>, 2> pieces_;
-    Regions regions_;
+    DisjointSets regions_;            ///< crossings and vertices that belong together
+    std::vector<OnCurve> curves_;     ///< of both sides
     std::vector<RegionPoint> points_; ///< of one side, by region
     std::vector<Extent> extents_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;   ///< of one side: edges, by their vertices
     std::vector<std::pair<std::uint32_t, FeatureContact>> quiet_;    ///< of one side: vertices for which an edge speaks
     std::vector<const Speaker*> loudest_;                            ///< of one side: by region, the deepest first
     std::vector<Choice> choices_;                                    ///< of one side

@@ -326,6 +326,20 @@ TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
         }
 }
 
+// Both ends of a body are pressed into opposite walls: two places, each with its own way out, though one flat rim, long
+// edges and the diagonals of flat faces run from one to the other.
+TEST(exact_cases, a_body_pressed_between_two_walls) {
+    const auto tray = Shape::make(tray_solid());
+    for (const double e : {1e-5, 1e-4, 1e-3, 1e-2})
+        for (const double half_width : {0.1, 0.7})
+            for (const double top : {0.8, 1.1}) {
+                const auto block = box(0.8 + e, half_width, 0.2);
+                const auto contacts = collide(*tray, {}, *block, at(0, 0.01, top - 0.2));
+                EXPECT_GE(contacts.size(), 4u);
+                for (const Contact& c : contacts) EXPECT_LT(double(c.depth), 2 * e) << words_of(c);
+            }
+}
+
 TEST(exact_cases, a_plate_pierced_straight_is_left_by_one_side) {
     const auto plate = box(1, 1, 0.005), cube = box(0.1, 0.1, 0.1);
     for (const double z : {-0.05, -0.01, 0.0, 0.01, 0.05}) {

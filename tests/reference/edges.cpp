@@ -154,6 +154,8 @@ public:
         return longest <= 0.1 * small;
     }
 
+    double edge_length(const Edge& edge) const { return length(source.vertices[edge.to] - source.vertices[edge.from]); }
+
     // touching: a vertex of the pair is in contact.
     void cross_all(bool touching) {
         for (const Edge& edge : edges) {
@@ -214,7 +216,12 @@ public:
             for (const End& end : piece.ends)
                 if (end.vertex != none) ends[end.vertex] = true;
         }
+        std::set<std::pair<std::uint32_t, std::uint32_t>> crossed; // or long ones in a flat face, which may be
+        for (std::size_t e = 0; e < edges.size(); ++e)
+            if (!crossings[e].empty() || (!edges[e].sharp && edge_length(edges[e]) > 0.1 * small))
+                crossed.insert(std::minmax(edges[e].from, edges[e].to));
         for (const auto& [v, w] : source.edges) {
+            if (crossed.contains(std::minmax(v, w))) continue;
             if (contact[v] && (contact[w] || ends[w])) graph.join(nodes[v], nodes[w]);
             if (contact[w] && ends[v]) graph.join(nodes[v], nodes[w]);
         }
@@ -584,27 +591,39 @@ std::vector<std::uint32_t> flat_faces(const OneWay& side) {
     return graph.flood();
 }
 
-// Crossings that share a flat face of each body.
+// A crossing on the line in which two flat faces meet.
+struct OnLine {
+    double at;
+    std::uint32_t node;
+    auto operator<=>(const OnLine&) const = default;
+};
+
+// Crossings that share a flat face of each body: along their line the first and second, the third and fourth, ...
 void join_curves(const OneWay& of_a, const OneWay& of_b, Graph& graph) {
     const std::vector<std::uint32_t> flat_a = flat_faces(of_a), flat_b = flat_faces(of_b);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first; // by flat faces of a and of b
-    const auto join = [&](std::uint32_t face_a, std::uint32_t face_b, std::uint32_t node) {
-        const auto [at, fresh] = first.try_emplace({flat_a[face_a], flat_b[face_b]}, node);
-        if (!fresh) graph.join(at->second, node);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<OnLine>> lines; // by flat faces of a and of b
+    const auto along = [&](std::uint32_t a, std::uint32_t b) {                    // frame of b
+        return cross(rotate_back(of_a.target_pose, rotate(of_a.source_pose, of_a.source.face_normals[a])),
+                     of_b.source.face_normals[b]);
+    };
+    const auto add = [&](std::uint32_t face_a, std::uint32_t face_b, const Vec3& point, std::uint32_t node) {
+        const std::uint32_t a = flat_a[face_a], b = flat_b[face_b];
+        lines[{a, b}].push_back({dot(point, along(a, b)), node});
     };
     for (std::size_t e = 0; e < of_a.edges.size(); ++e)
         for (const Crossing& c : of_a.crossings[e])
             for (const std::uint32_t face : of_a.edges[e].faces)
-                if (face != none) join(face, c.face, c.node);
+                if (face != none) add(face, c.face, c.point, c.node);
     for (std::size_t e = 0; e < of_b.edges.size(); ++e)
         for (const Crossing& c : of_b.crossings[e])
             for (const std::uint32_t face : of_b.edges[e].faces)
-                if (face != none) join(c.face, face, c.node);
+                if (face != none) add(c.face, face, of_b.to_source(c.point), c.node);
+    for (auto& [faces, line] : lines) {
+        const bool in_twos = line.size() % 2 == 0 && length(along(faces.first, faces.second)) > 1e-6;
+        if (in_twos) std::sort(line.begin(), line.end());
+        for (std::size_t i = 1; i < line.size(); i += in_twos ? 2 : 1) graph.join(line[i - 1].node, line[i].node);
+    }
 }
-
-} // namespace
-
-namespace {
 
 std::vector<ReferenceContact> find_with(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
                                         Direction direction, bool with_concave) {

@@ -15,6 +15,7 @@
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 
 #include <bit>
@@ -122,6 +123,10 @@ const btStridingMeshInterface* interface_of(const btCollisionShape& shape) {
         return static_cast<const btBvhTriangleMeshShape&>(shape).getMeshInterface();
     case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
         return static_cast<const btScaledBvhTriangleMeshShape&>(shape).getChildShape()->getMeshInterface();
+    case GIMPACT_SHAPE_PROXYTYPE:
+        return static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE
+                   ? static_cast<const btGImpactMeshShape&>(shape).getMeshInterface()
+                   : nullptr;
     default:
         return nullptr;
     }
@@ -245,13 +250,7 @@ btVector3 scaling_of(const btCollisionShape& shape) {
 
 std::vector<int> triangles_of_parts(const btCollisionShape& shape) {
     std::vector<int> counts;
-    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
-        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
-        if (g.getGImpactShapeType() != CONST_GIMPACT_TRIMESH_SHAPE) return counts;
-        const auto& whole = static_cast<const btGImpactMeshShape&>(g);
-        for (int i = 0; i < whole.getMeshPartCount(); ++i)
-            counts.push_back(whole.getMeshPart(i)->getPrimitiveManager()->get_primitive_count());
-    } else if (const btStridingMeshInterface* mesh = interface_of(shape)) {
+    if (const btStridingMeshInterface* mesh = interface_of(shape)) {
         for (int i = 0; i < mesh->getNumSubParts(); ++i) counts.push_back(Part(*mesh, i).triangle_count);
     }
     return counts;
@@ -266,7 +265,13 @@ int first_part(const btCollisionShape& shape) {
 }
 
 Form form_of(const btCollisionShape& shape) {
-    Form form{shape.getShapeType(), btVector3(0, 0, 0), 0};
+    Form form;
+    form.type = shape.getShapeType();
+    const auto take_box = [&] {
+        shape.getAabb(btTransform::getIdentity(), form.low, form.high);
+        form.low.setW(0);
+        form.high.setW(0);
+    };
     switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
         form.size = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
@@ -286,25 +291,31 @@ Form form_of(const btCollisionShape& shape) {
     case CONVEX_HULL_SHAPE_PROXYTYPE:
         form.size = shape.getLocalScaling();
         form.count = static_cast<const btConvexHullShape&>(shape).getNumPoints();
-        shape.getAabb(btTransform::getIdentity(), form.low, form.high);
-        form.low.setW(0);
-        form.high.setW(0);
+        take_box();
         break;
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
         form.size = shape.getLocalScaling();
         form.count = static_cast<const btMultiSphereShape&>(shape).getSphereCount();
+        take_box();
         break;
     case SPHERE_SHAPE_PROXYTYPE:
     case CAPSULE_SHAPE_PROXYTYPE:
         break; // read anew in every step
+    case TERRAIN_SHAPE_PROXYTYPE:
+        form.size = scaling_of(shape);
+        take_box();
+        break;
     default:
         form.size = scaling_of(shape);
         if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) {
             form.data = own->shape().get();
-        } else if (const btStridingMeshInterface* mesh = interface_of(shape); mesh && mesh->getNumSubParts() > 0) {
-            const Part part(*mesh, 0);
-            form.data = part.vertices;
-            form.count = part.triangle_count;
+        } else if (const btStridingMeshInterface* mesh = interface_of(shape)) {
+            form.data = mesh;
+            const auto* array = dynamic_cast<const btTriangleIndexVertexArray*>(mesh);
+            if (array && array->getIndexedMeshArray().size() > 0) {
+                form.vertices = array->getIndexedMeshArray()[0].m_vertexBase;
+                form.count = array->getIndexedMeshArray()[0].m_numTriangles;
+            }
         }
     }
     form.size.setW(0);

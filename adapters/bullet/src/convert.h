@@ -47,16 +47,17 @@ std::vector<int> triangles_of_parts(const btCollisionShape& shape);
 int first_part(const btCollisionShape& shape);
 
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
-/// address of a deleted one.
+/// address of a deleted one; where all of this is the same, too, refresh() must be called.
 struct Form {
     int type = INVALID_SHAPE_PROXYTYPE;
     btVector3 size{0, 0, 0}; ///< scaling or dimensions
     int count = 0;           ///< points of a hull, balls of a multi-sphere, triangles of a mesh; the axis of others
-    btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< box of a hull
-    const void* data = nullptr;            ///< where a mesh has its vertices; a Shape
+    btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< box of a hull, multi-sphere or field
+    const void* data = nullptr;            ///< a mesh's interface, or Shape
+    const void* vertices = nullptr;        ///< of its first part, where the interface tells without a lock
     friend bool operator==(const Form& a, const Form& b) {
         return a.type == b.type && a.size == b.size && a.count == b.count && a.low == b.low && a.high == b.high
-               && a.data == b.data;
+               && a.data == b.data && a.vertices == b.vertices;
     }
 };
 Form form_of(const btCollisionShape& shape);

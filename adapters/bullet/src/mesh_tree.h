@@ -14,7 +14,7 @@
 namespace raycontact::bullet {
 
 /// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres. They
-/// are made when they are first asked for, on any thread: meshes that meet only meshes never need them.
+/// are made when they are first asked for, on any thread: a mesh of Bullet's that meets only meshes never needs them.
 class MeshTree {
 public:
     explicit MeshTree(const Shape& shape);
