@@ -38,7 +38,8 @@ btTransform bullet_pose(const Pose& pose) {
     btMatrix3x3 basis;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
-            basis[row][column] = btScalar(pose.rotation[static_cast<std::size_t>(3 * row + column)]);
+            basis[row][column] =
+                btScalar(pose.rotation[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)]);
     return btTransform(basis, bullet_vector(pose.translation));
 }
 

@@ -4,6 +4,7 @@
 #include <raycontact/error.h>
 
 #include <algorithm>
+#include <ranges>
 #include <system_error>
 
 namespace fs = std::filesystem;
@@ -28,7 +29,7 @@ OutFolder::OutFolder(const fs::path& folder) : folder_(folder) {
 OutFolder::~OutFolder() {
     files_.clear();
     std::error_code ignored;
-    for (auto at = made_.rbegin(); at != made_.rend(); ++at) fs::remove(*at, ignored);
+    for (const fs::path& inner : std::views::reverse(made_)) fs::remove(inner, ignored);
 }
 
 void OutFolder::claim(const std::string& name) {

@@ -72,6 +72,7 @@ std::vector<std::string> merged(const std::vector<std::string>& headings) {
         if (std::strtod(load.c_str(), nullptr) > std::strtod(same->most.c_str(), nullptr)) same->most = load;
     }
     std::vector<std::string> texts;
+    texts.reserve(all.size());
     for (const Merged& one : all)
         texts.push_back(one.before + one.least + (one.least == one.most ? "" : " to " + one.most) + one.after);
     return texts;

@@ -188,8 +188,9 @@ void StackWorld::step() {
 Pose StackWorld::pose(std::size_t body) const {
     const btTransform& at = state_->bodies[body + 1]->getWorldTransform();
     Pose pose;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) pose.rotation[static_cast<std::size_t>(3 * i + k)] = double(at.getBasis()[i][k]);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            pose.rotation[3 * i + k] = double(at.getBasis()[static_cast<int>(i)][static_cast<int>(k)]);
     pose.translation = {double(at.getOrigin().x()), double(at.getOrigin().y()), double(at.getOrigin().z())};
     return pose;
 }
