@@ -4,7 +4,6 @@
 #include <raycontact/error.h>
 
 #include <algorithm>
-#include <ranges>
 #include <system_error>
 
 namespace fs = std::filesystem;
@@ -29,7 +28,7 @@ OutFolder::OutFolder(const fs::path& folder) : folder_(folder) {
 OutFolder::~OutFolder() {
     files_.clear();
     std::error_code ignored;
-    for (const fs::path& inner : std::views::reverse(made_)) fs::remove(inner, ignored);
+    std::for_each(made_.rbegin(), made_.rend(), [&](const fs::path& inner) { fs::remove(inner, ignored); });
 }
 
 void OutFolder::claim(const std::string& name) {

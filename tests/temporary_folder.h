@@ -27,7 +27,7 @@ public:
     const std::filesystem::path& path() const { return path_; }
     /// The file's path.
     std::filesystem::path write(const std::string& name, std::string_view text) const {
-        const std::filesystem::path file = path_ / name;
+        std::filesystem::path file = path_ / name;
         std::ofstream stream(file, std::ios::binary);
         stream.write(text.data(), static_cast<std::streamsize>(text.size()));
         if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());

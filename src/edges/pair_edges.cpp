@@ -213,7 +213,7 @@ void PairEdges::join_vertices(const SourceMesh& placed, std::size_t side) {
     crossed_.clear();
     for (const Crossing& c : crossings_[side]) {
         const auto [start, stop] = ends_of(source, c.edge);
-        crossed_.push_back(std::minmax(start, stop));
+        crossed_.emplace_back(std::minmax(start, stop));
     }
     std::sort(crossed_.begin(), crossed_.end());
     const double near = SourceMesh::small_face * placed.size;

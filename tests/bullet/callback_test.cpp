@@ -236,7 +236,8 @@ struct TwoParts {
     bool lies_over(const btVector3& p, int part, int triangle) const {
         btVector3 corner[3];
         for (int k = 0; k < 3; ++k) {
-            const btScalar* v = vertices.data() + part * 15 + 3 * indices[static_cast<std::size_t>(3 * triangle + k)];
+            const btScalar* v = vertices.data() + part * 15
+                                + 3 * indices[3 * static_cast<std::size_t>(triangle) + static_cast<std::size_t>(k)];
             corner[k].setValue(v[0], v[1], 0);
         }
         for (int k = 0; k < 3; ++k) {

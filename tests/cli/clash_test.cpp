@@ -69,7 +69,7 @@ protected:
     }
     /// The clashes, one a line.
     std::vector<json> clashes(std::vector<std::string> arguments) const {
-        arguments.push_back("--json");
+        arguments.emplace_back("--json");
         const ProgramResult result = run(arguments);
         EXPECT_EQ(result.status, 0) << result.err;
         return json_lines(result.out);

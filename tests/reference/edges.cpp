@@ -595,7 +595,9 @@ std::vector<std::uint32_t> flat_faces(const OneWay& side) {
 struct OnLine {
     double at;
     std::uint32_t node;
-    auto operator<=>(const OnLine&) const = default;
+    friend bool operator<(const OnLine& p, const OnLine& q) {
+        return std::pair(p.at, p.node) < std::pair(q.at, q.node);
+    }
 };
 
 // Crossings that share a flat face of each body: along their line the first and second, the third and fourth, ...
