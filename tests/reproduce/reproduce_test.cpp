@@ -10,6 +10,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <thread>
 
 #include <sys/wait.h>
@@ -29,7 +30,11 @@ std::string text_of(const fs::path& file) {
 
 std::map<fs::path, fs::file_time_type> times_of(const fs::path& folder) {
     std::map<fs::path, fs::file_time_type> times;
-    for (const auto& entry : fs::directory_iterator(folder)) times[entry.path()] = entry.last_write_time();
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        std::error_code renamed; // by the program, while it writes
+        const fs::file_time_type time = entry.last_write_time(renamed);
+        if (!renamed) times[entry.path()] = time;
+    }
     return times;
 }
 
