@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/edges.h"
 
+#include "reference/graph.h"
 #include "reference/ray.h"
 #include "reference/side.h"
+#include "reference/solid_edges.h"
 #include "reference/vector.h"
 
 #include <scenes/random.h>
@@ -21,47 +23,6 @@
 namespace raycontact::reference {
 
 namespace {
-
-constexpr std::uint32_t none = 0xffffffffu;
-
-// An edge of a solid as the rule numbers it.
-struct Edge {
-    std::uint32_t number = 0;           ///< 3 x its lowest triangle of the file + its corner there
-    std::uint32_t from = 0, to = 0;     ///< vertices
-    std::uint32_t faces[2] = {0, none}; ///< its lowest triangle, the other one; none at a border
-    bool sharp = true;
-    bool concave = false;
-};
-
-bool in_one_direction(const Vec3& n, const Vec3& m) {
-    return dot(n, m) > 0 && length(cross(n, m)) <= 4e-5;
-}
-
-// In the order of their numbers.
-std::vector<Edge> edges_of(const Solid& solid) {
-    std::vector<std::uint32_t> order(solid.triangles.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](auto s, auto t) { return solid.triangle_index[s] < solid.triangle_index[t]; });
-    std::map<std::array<std::uint32_t, 2>, std::size_t> found;
-    std::vector<Edge> edges;
-    for (const std::uint32_t t : order)
-        for (std::uint32_t c = 0; c < 3; ++c) {
-            const std::uint32_t from = solid.triangles[t][c], to = solid.triangles[t][(c + 1) % 3];
-            const std::array<std::uint32_t, 2> ends{std::min(from, to), std::max(from, to)};
-            const auto [at, fresh] = found.try_emplace(ends, edges.size());
-            if (fresh) {
-                edges.push_back({3 * solid.triangle_index[t] + c, from, to, {t, none}, true, false});
-                continue;
-            }
-            Edge& edge = edges[at->second];
-            edge.faces[1] = t;
-            edge.sharp = !in_one_direction(solid.face_normals[edge.faces[0]], solid.face_normals[t]);
-            const Vec3 opposite = solid.vertices[solid.triangles[t][(c + 2) % 3]];
-            edge.concave = dot(solid.face_normals[edge.faces[0]], opposite - solid.vertices[from]) > 0;
-        }
-    return edges;
-}
 
 Vec3 shake(std::uint32_t vertex) {
     std::uint64_t state = vertex;
@@ -90,40 +51,6 @@ struct End {
 struct Piece {
     std::uint32_t edge = 0;
     End ends[2];
-};
-
-// Marks connected nodes, one flood after the other.
-class Graph {
-public:
-    std::uint32_t add() {
-        near_.emplace_back();
-        return static_cast<std::uint32_t>(near_.size() - 1);
-    }
-    void join(std::uint32_t x, std::uint32_t y) {
-        near_[x].push_back(y);
-        near_[y].push_back(x);
-    }
-    std::vector<std::uint32_t> flood() const {
-        std::vector<std::uint32_t> region(near_.size(), none);
-        for (std::uint32_t first = 0; first < near_.size(); ++first) {
-            if (region[first] != none) continue;
-            std::vector<std::uint32_t> open{first};
-            region[first] = first;
-            while (!open.empty()) {
-                const std::uint32_t node = open.back();
-                open.pop_back();
-                for (const std::uint32_t next : near_[node])
-                    if (region[next] == none) {
-                        region[next] = first;
-                        open.push_back(next);
-                    }
-            }
-        }
-        return region;
-    }
-
-private:
-    std::vector<std::vector<std::uint32_t>> near_;
 };
 
 // One direction of the pair: the edges of a source against a target, in the target's frame, minus its centre.
