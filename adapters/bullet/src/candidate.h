@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <convert.h>
 #include <raycontact/bullet/dispatcher.h>
 
 namespace raycontact::bullet {
-
-/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a convex shape.
-struct PlaceName {
-    int part = -1, index = -1;
-    friend bool operator==(const PlaceName&, const PlaceName&) = default;
-};
 
 /// A contact in Bullet's terms, not yet part of a manifold. World frame, metres.
 struct Candidate {

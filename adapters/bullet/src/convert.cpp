@@ -248,20 +248,20 @@ btVector3 scaling_of(const btCollisionShape& shape) {
     }
 }
 
-std::vector<int> triangles_of_parts(const btCollisionShape& shape) {
-    std::vector<int> counts;
-    if (const btStridingMeshInterface* mesh = interface_of(shape)) {
-        for (int i = 0; i < mesh->getNumSubParts(); ++i) counts.push_back(Part(*mesh, i).triangle_count);
+PlaceName name_of_triangle(const btCollisionShape& shape, int triangle) {
+    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
+        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART)
+            return {static_cast<const btGImpactMeshShapePart&>(g).getPart(), triangle};
     }
-    return counts;
-}
-
-int first_part(const btCollisionShape& shape) {
-    if (shape.getShapeType() != GIMPACT_SHAPE_PROXYTYPE) return 0;
-    const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
-    return g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART
-               ? static_cast<const btGImpactMeshShapePart&>(g).getPart()
-               : 0;
+    PlaceName name{0, triangle};
+    const btStridingMeshInterface* mesh = interface_of(shape);
+    for (; mesh && name.part < mesh->getNumSubParts(); ++name.part) {
+        const int count = Part(*mesh, name.part).triangle_count;
+        if (name.index < count) break;
+        name.index -= count;
+    }
+    return name;
 }
 
 Form form_of(const btCollisionShape& shape) {

@@ -41,10 +41,13 @@ constexpr unsigned bit(Kind kind) {
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
-/// How many triangles each sub-part of a mesh has; empty where the shape has no parts. Triangles are counted through.
-std::vector<int> triangles_of_parts(const btCollisionShape& shape);
-/// The number of the first of them: not 0 for a part of a GImpact mesh that is a shape of its own.
-int first_part(const btCollisionShape& shape);
+/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a shape without triangles.
+struct PlaceName {
+    int part = -1, index = -1;
+    friend bool operator==(const PlaceName&, const PlaceName&) = default;
+};
+/// Of a mesh or field. triangle: counted through all sub-parts.
+PlaceName name_of_triangle(const btCollisionShape& shape, int triangle);
 
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
 /// address of a deleted one; where all of this is the same, too, refresh() must be called.

@@ -81,14 +81,9 @@ const MeshTree::Boxes& MeshTree::boxes() const {
         Boxes made;
         Builder(*this, made).build(0, static_cast<std::uint32_t>(triangles_.size()));
         made.nodes.shrink_to_fit();
-        if (vertices_.size() <= exact_bounds) {
-            for (const btVector3& v : vertices_) made.cover.push_back({v, btVector3(0, 0, 0)});
-        } else {
-            for (const Node& node : made.nodes) {
-                if (node.begin != node.end)
-                    made.cover.push_back(
-                        {(node.low + node.high) * btScalar(0.5), (node.high - node.low) * btScalar(0.5)});
-            }
+        for (const Node& node : made.nodes) {
+            if (node.begin != node.end)
+                made.cover.push_back({(node.low + node.high) * btScalar(0.5), (node.high - node.low) * btScalar(0.5)});
         }
         boxes_ = std::move(made);
     });
@@ -143,11 +138,16 @@ void MeshTree::bounds(const btTransform& transform, btVector3& low, btVector3& h
     for (int axis = 0; axis < 3; ++axis) {
         const btScalar x = basis[axis].x(), y = basis[axis].y(), z = basis[axis].z();
         btScalar least = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
-        for (const Cover& c : boxes().cover) {
-            const btScalar p = x * c.centre.x() + y * c.centre.y() + z * c.centre.z();
-            const btScalar r = btFabs(x) * c.half.x() + btFabs(y) * c.half.y() + btFabs(z) * c.half.z();
+        const auto add = [&](const btVector3& centre, btScalar r) {
+            const btScalar p = x * centre.x() + y * centre.y() + z * centre.z();
             least = p - r < least ? p - r : least;
             most = p + r > most ? p + r : most;
+        };
+        if (vertices_.size() <= exact_bounds) {
+            for (const btVector3& v : vertices_) add(v, 0);
+        } else {
+            for (const Cover& c : boxes().cover)
+                add(c.centre, btFabs(x) * c.half.x() + btFabs(y) * c.half.y() + btFabs(z) * c.half.z());
         }
         low[axis] = least + transform.getOrigin()[axis];
         high[axis] = most + transform.getOrigin()[axis];

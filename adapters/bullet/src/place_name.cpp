@@ -15,13 +15,7 @@ bool has_triangles(const Leaf& leaf) {
 
 PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
     if (!has_triangles(leaf)) return {};
-    PlaceName name{first_part(*leaf.shape), triangle};
-    for (const int count : triangles_of_parts(*leaf.shape)) {
-        if (name.index < count) break;
-        name.index -= count;
-        ++name.part;
-    }
-    return name;
+    return name_of_triangle(*leaf.shape, triangle);
 }
 
 PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {

@@ -13,6 +13,16 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+void identify(btManifoldResult& result, bool first_is_a, const PlaceName& first, const PlaceName& second) {
+    const PlaceName &a = first_is_a ? first : second, &b = first_is_a ? second : first;
+    result.setShapeIdentifiersA(a.part, a.index);
+    result.setShapeIdentifiersB(b.part, b.index);
+}
+
+} // namespace
+
 btVector3 normal_of(const Contact& c) {
     return btVector3(c.normal[0], c.normal[1], c.normal[2]);
 }
@@ -30,16 +40,6 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
               });
     return leaves;
 }
-
-namespace {
-
-void identify(btManifoldResult& result, bool first_is_a, const PlaceName& first, const PlaceName& second) {
-    const PlaceName &a = first_is_a ? first : second, &b = first_is_a ? second : first;
-    result.setShapeIdentifiersA(a.part, a.index);
-    result.setShapeIdentifiersB(b.part, b.index);
-}
-
-} // namespace
 
 void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btDispatcherInfo& info,
                   btManifoldResult& result) {
