@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/duplicates.h>
 
+#include <clash/askew.h>
+
 #include "mesh/vector.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 namespace raycontact::clash {
 
 namespace {
-
-// Unit, and no mesh is alike along them.
-constexpr std::array<Vec3, 3> directions{
-    {{0.5257, 0.6113, 0.5915}, {-0.7482, 0.1301, 0.6506}, {0.3137, -0.8819, 0.352}}};
-
-double size_of(const Shape& shape) {
-    return length(shape.box_max() - shape.box_min());
-}
 
 // Mostly this one vertex tells them apart.
 bool has_first_vertex(const Part& b, const Part& a, double tolerance) {
@@ -38,15 +31,15 @@ std::vector<double> sorted_heights(const Part& part, const Vec3& origin, const V
 } // namespace
 
 // Points that agree to a tolerance have heights along any direction that agree, sorted, to that tolerance, whatever
-// their order; others differ along one of three directions that no mesh follows.
+// their order; others differ along one of several directions that no mesh follows.
 bool are_duplicates(const Part& a, const Part& b) {
     if (a.shape->vertices().size() != b.shape->vertices().size()
         || a.shape->triangles().size() != b.shape->triangles().size())
         return false;
-    const double tolerance = 1e-6 * std::max(size_of(*a.shape), size_of(*b.shape));
+    const double tolerance = 1e-6 * smaller_size(a, b);
     if (!has_first_vertex(b, a, tolerance)) return false;
     const Vec3 origin = transform_point(a.pose, a.shape->centre());
-    return std::ranges::all_of(directions, [&](const Vec3& direction) {
+    return std::ranges::all_of(askew, [&](const Vec3& direction) {
         return std::ranges::equal(sorted_heights(a, origin, direction), sorted_heights(b, origin, direction),
                                   [&](double p, double q) { return std::fabs(p - q) <= tolerance; });
     });

@@ -18,7 +18,4 @@ constexpr double noise = 1e-6, shallow = 2e-3;
 /// least depth, if that is far more than the nudge and than the depth without; else none.
 std::vector<Contact> contacts_when_nudged(const Part& a, const Part& b, double depth);
 
-double smaller_size(const Part& a, const Part& b);
-double deepest_of(const std::vector<Contact>& contacts);
-
 } // namespace raycontact::clash

@@ -59,6 +59,11 @@ std::string without_name(const std::string& message, const std::string& name) {
 
 } // namespace
 
+double smaller_size(const Part& a, const Part& b) {
+    const auto size = [](const Shape& shape) { return length(shape.box_max() - shape.box_min()); };
+    return std::min(size(*a.shape), size(*b.shape));
+}
+
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
     std::vector<Part> parts;
     std::vector<std::filesystem::path> file_of;

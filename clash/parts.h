@@ -19,6 +19,9 @@ struct Part : AssemblyPart {
     std::string fault; ///< why it cannot be tested; empty: it can
 };
 
+/// The diagonal of the smaller part's box, metres. Both have shapes.
+double smaller_size(const Part& a, const Part& b);
+
 /// The parts of all files, in their order (load_assembly). Where several have the same name, the file is set before it,
 /// or a number is added. Throws InputError as load_mesh().
 std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files);

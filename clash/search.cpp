@@ -51,20 +51,25 @@ std::optional<Clash> clash_of(const PartPair& pair, const Part& a, const Part& b
     return clash;
 }
 
-/// Whether each part's mesh is closed, does not intersect itself and winds outward. Looked into once for each mesh.
-class Soundness {
-public:
-    bool of(const Part& part) {
-        const auto [known, is_new] = known_.try_emplace(part.mesh.get());
-        if (is_new)
-            known->second =
-                part.shape->report().closed && verdict_of(prepare_mesh(*part.mesh, Repair::allowed).report).good;
-        return known->second;
-    }
-
-private:
-    std::unordered_map<const Mesh*, bool> known_;
-};
+/// Parts without a contact touch if both are sound: closed, wound outward and not self-intersecting. Otherwise, and
+/// where the search is stopped before that is known, they have no depth. Looks into each mesh once.
+void drop_unknown_depths(std::vector<Clash>& clashes, const std::vector<Part>& parts, Executor& executor,
+                         const std::function<bool()>& stop) {
+    std::unordered_map<const Mesh*, std::size_t> places;
+    std::vector<const Part*> asked;
+    for (const Clash& clash : clashes)
+        for (const std::size_t i : {clash.a, clash.b})
+            if (clash.contacts == 0 && places.try_emplace(parts[i].mesh.get(), asked.size()).second)
+                asked.push_back(&parts[i]);
+    std::vector<char> sound(asked.size(), 0);
+    executor.run(static_cast<std::uint32_t>(asked.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end && !stop(); ++i)
+            sound[i] = asked[i]->shape->report().closed && verdict_of(prepare_mesh(*asked[i]->mesh).report).good;
+    });
+    const auto is_sound = [&](std::size_t part) { return sound[places.at(parts[part].mesh.get())] != 0; };
+    for (Clash& clash : clashes)
+        if (clash.contacts == 0 && !(is_sound(clash.a) && is_sound(clash.b))) clash.depth.reset();
+}
 
 } // namespace
 
@@ -105,10 +110,7 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
             if (clash) clashes.push_back(*clash);
         options.progress(first + some.size(), asked.size());
     }
-    Soundness sound;
-    for (Clash& clash : clashes)
-        if (clash.contacts == 0 && (options.stop() || !sound.of(parts[clash.a]) || !sound.of(parts[clash.b])))
-            clash.depth.reset(); // also where the search ended before it is known
+    drop_unknown_depths(clashes, parts, executor, options.stop);
     std::sort(clashes.begin(), clashes.end(), [](const Clash& p, const Clash& q) {
         const auto rank = [](const Clash& c) { return -c.depth.value_or(1e-300); }; // any depth is more
         return std::tuple(rank(p), p.a, p.b) < std::tuple(rank(q), q.a, q.b);

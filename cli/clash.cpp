@@ -8,7 +8,6 @@
 #include "cli/stop.h"
 
 #include <clash/coloured.h>
-#include <clash/nudged.h>
 #include <clash/parts.h>
 #include <clash/search.h>
 #include <output/out_file.h>

@@ -67,6 +67,12 @@ protected:
         arguments.insert(arguments.begin(), "clash");
         return run_program(arguments, folder_.path());
     }
+    /// The one clash that there is.
+    json only_clash(const std::vector<std::string>& files) const {
+        const auto found = clashes(files);
+        EXPECT_EQ(found.size(), 1u);
+        return found.empty() ? json::object() : found[0];
+    }
     /// The clashes, one a line.
     std::vector<json> clashes(std::vector<std::string> arguments) const {
         arguments.emplace_back("--json");
@@ -146,18 +152,16 @@ TEST_F(Clash, TouchingPartsCanBeIgnored) {
 TEST_F(Clash, OneInsideAnother) {
     write_cube("box.obj", 0);
     write_cube("hidden.obj", 0.1, 0.2);
-    const auto found = clashes({"box.obj", "hidden.obj"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_GT(found[0]["depth"].get<double>(), 0.2);
+    const json found = only_clash({"box.obj", "hidden.obj"});
+    EXPECT_GT(found["depth"].get<double>(), 0.2);
 }
 
 TEST_F(Clash, TheSamePartTwice) {
     write_assembly("all.gltf", {{"p", 0}, {"p", 0}});
-    const auto found = clashes({"all.gltf"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0]["a"], "p #1");
-    EXPECT_EQ(found[0]["duplicate"], true);
-    EXPECT_NEAR(found[0]["depth"].get<double>(), 1, 1e-5) << "a whole part deep, not a hair";
+    const json found = only_clash({"all.gltf"});
+    EXPECT_EQ(found["a"], "p #1");
+    EXPECT_EQ(found["duplicate"], true);
+    EXPECT_NEAR(found["depth"].get<double>(), 1, 1e-5) << "a whole part deep, not a hair";
     EXPECT_NE(run({"all.gltf"}).out.find("(the same part in the same place)"), std::string::npos);
 }
 
@@ -166,10 +170,9 @@ TEST_F(Clash, ACopyWithItsVerticesInAnotherOrderOrTurnedIsADuplicate) {
     folder_.write("b.obj", "v 3.5 .5 .5\nv 2.5 .5 .5\nv 3.5 -.5 .5\nv 2.5 -.5 .5\nv 3.5 .5 -.5\nv 2.5 .5 -.5\n"
                            "v 3.5 -.5 -.5\nv 2.5 -.5 -.5\n"
                            "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n");
-    const auto found = clashes({"a.obj", "b.obj"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0]["duplicate"], true);
-    EXPECT_NEAR(found[0]["depth"].get<double>(), 1, 1e-5);
+    const json found = only_clash({"a.obj", "b.obj"});
+    EXPECT_EQ(found["duplicate"], true);
+    EXPECT_NEAR(found["depth"].get<double>(), 1, 1e-5);
 }
 
 TEST_F(Clash, PartsWhoseFacesCoincideHaveTheirDepth) {
@@ -178,10 +181,9 @@ TEST_F(Clash, PartsWhoseFacesCoincideHaveTheirDepth) {
     folder_.write("cut.obj", "v -.5 -.5 -.5\nv .5 -.5 -.5\nv -.5 .5 -.5\nv .5 .5 -.5\nv -.5 -.5 .5\nv .5 -.5 .5\n"
                              "v -.5 .5 .5\nv .3 .5 .5\nv .5 .3 .5\nv .5 .5 .3\n"
                              "f 1 3 4 2\nf 5 6 9 8 7\nf 1 2 6 5\nf 3 7 8 10 4\nf 1 5 7 3\nf 2 4 10 9 6\nf 8 9 10\n");
-    const auto found = clashes({"cube.obj", "cut.obj"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0]["duplicate"], false);
-    EXPECT_GT(found[0]["depth"].get<double>(), 0.5);
+    const json found = only_clash({"cube.obj", "cut.obj"});
+    EXPECT_EQ(found["duplicate"], false);
+    EXPECT_GT(found["depth"].get<double>(), 0.5);
 }
 
 TEST_F(Clash, OpenPartsThatCrossHaveNoDepthAndAreNotIgnored) {
@@ -225,10 +227,9 @@ TEST_F(Clash, FittedCopiesOnlyTouch) {
     };
     write_prism("l.obj", {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}});
     write_prism("turned.obj", {{3, 2}, {1, 2}, {1, 1}, {2, 1}, {2, 0}, {3, 0}});
-    const auto found = clashes({"l.obj", "turned.obj"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0]["depth"], 0.0);
-    EXPECT_EQ(found[0]["duplicate"], false);
+    const json found = only_clash({"l.obj", "turned.obj"});
+    EXPECT_EQ(found["depth"], 0.0);
+    EXPECT_EQ(found["duplicate"], false);
 }
 
 TEST_F(Clash, CheckIsForScripts) {
