@@ -63,6 +63,8 @@ public:
     /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several
     /// meet.
     std::span<const std::array<std::uint32_t, 3>> neighbours() const;
+    /// The lowest triangle at each vertex, or no_triangle where none is.
+    std::span<const std::uint32_t> vertex_triangles() const;
     static constexpr std::uint32_t no_triangle = 0xffffffffu;
 
     std::uint64_t memory_bytes() const;

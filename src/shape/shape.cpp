@@ -162,6 +162,9 @@ std::span<const float> Shape::exit_distances() const {
 std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const {
     return data_->neighbours;
 }
+std::span<const std::uint32_t> Shape::vertex_triangles() const {
+    return data_->vertex_triangle;
+}
 
 std::uint64_t Shape::memory_bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };

@@ -90,15 +90,6 @@ const MeshTree::Boxes& MeshTree::boxes() const {
     return boxes_;
 }
 
-std::uint32_t MeshTree::triangle_at(std::uint32_t vertex) const {
-    std::call_once(found_, [this] {
-        triangle_at_.assign(vertices_.size(), 0);
-        for (std::size_t t = triangles_.size(); t-- > 0;)
-            for (const std::uint32_t v : triangles_[t]) triangle_at_[v] = static_cast<std::uint32_t>(t);
-    });
-    return triangle_at_[vertex];
-}
-
 bool MeshTree::triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const {
     const auto& t = triangles_[index];
     btVector3 a = vertices_[t[0]], b = a;

@@ -22,9 +22,6 @@ public:
     const btVector3& vertex(std::uint32_t index) const { return vertices_[index]; }
     const std::array<std::uint32_t, 3>& triangle(std::uint32_t index) const { return triangles_[index]; }
 
-    /// The lowest triangle at a vertex; 0 where none is. All are found when first asked for, on any thread.
-    std::uint32_t triangle_at(std::uint32_t vertex) const;
-
     /// Calls visit(triangle) for each triangle whose own box overlaps [low, high].
     template <class Visit>
     void overlapping(const btVector3& low, const btVector3& high, Visit&& visit) const {
@@ -77,8 +74,6 @@ private:
     std::vector<std::array<std::uint32_t, 3>> triangles_;
     mutable std::once_flag made_;
     mutable Boxes boxes_; ///< after made_
-    mutable std::once_flag found_;
-    mutable std::vector<std::uint32_t> triangle_at_; ///< by vertex, after found_
 };
 
 } // namespace raycontact::bullet

@@ -26,7 +26,8 @@ PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
     const auto at = std::lower_bound(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(key.vertex));
     if (at == vertices.end() || *at != static_cast<std::uint32_t>(key.vertex)) return {};
     const std::uint32_t triangle =
-        leaf.converted.tree->triangle_at(static_cast<std::uint32_t>(std::distance(vertices.begin(), at)));
+        shape.vertex_triangles()[static_cast<std::size_t>(std::distance(vertices.begin(), at))];
+    if (triangle == Shape::no_triangle) return {};
     return name_of_triangle(leaf, static_cast<int>(shape.triangle_index()[triangle]));
 }
 
