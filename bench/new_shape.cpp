@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it takes to begin with a new mesh: Bullet's own btBvhTriangleMeshShape, a raycontact::Shape, the first Bullet
-// step with it and how much longer that takes than the next, one query of two copies, the same with their files read,
-// and what is made beside later steps.
+// What it takes to begin with a new mesh: Bullet's own btBvhTriangleMeshShape, a raycontact::Shape, how much longer
+// than the next the dispatch takes that meets it, in a world that runs and in one that begins with it, one query of two
+// copies, the same with their files read, and what is made beside later steps.
 // Milliseconds, medians, by turns.
 // Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
 #include <raycontact/bullet/dispatcher.h>
@@ -19,6 +19,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -62,29 +63,57 @@ struct BulletMesh {
     }
 };
 
-/// Two objects of Bullet's own mesh shape, a little in each other. The first dispatch converts the shape; what it takes
-/// longer than the next is what the step waits for it.
-struct Dispatches {
-    double first, next;
+/// A world of Bullet's and pairs of one of its own mesh shapes, two objects a little in each other.
+class World {
+public:
+    /// Adds a pair, far from the others.
+    void add(btBvhTriangleMeshShape& shape, double size) {
+        for (int i = 0; i < 2; ++i) {
+            btCollisionObject& object = *m_objects.emplace_back(std::make_unique<btCollisionObject>());
+            object.setCollisionShape(&shape);
+            object.setCollisionFlags(0);
+            object.getWorldTransform().setOrigin(
+                btVector3(btScalar(0.8 * size * i), btScalar(10 * size) * btScalar((m_objects.size() - 1) / 2), 0));
+            m_world.addCollisionObject(&object);
+        }
+    }
+    ~World() {
+        for (const auto& object : m_objects) m_world.removeCollisionObject(object.get());
+    }
+    World() = default;
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    void prepare() { m_dispatcher.prepare(); }
+
+    double dispatch() {
+        const double time = milliseconds_of([&] { m_world.performDiscreteCollisionDetection(); });
+        if (2 * m_dispatcher.stats().mesh_pairs != m_objects.size())
+            throw std::runtime_error("the two meshes were not tested");
+        return time;
+    }
+
+private:
+    btDefaultCollisionConfiguration m_configuration;
+    rc::bullet::CollisionDispatcher m_dispatcher{&m_configuration};
+    btDbvtBroadphase m_broadphase;
+    btCollisionWorld m_world{&m_dispatcher, &m_broadphase, &m_configuration};
+    std::vector<std::unique_ptr<btCollisionObject>> m_objects;
 };
-Dispatches dispatch_twice(btBvhTriangleMeshShape& shape, double size) {
-    btDefaultCollisionConfiguration configuration;
-    rc::bullet::CollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btCollisionWorld world(&dispatcher, &broadphase, &configuration);
-    btCollisionObject ground, moving;
-    for (btCollisionObject* object : {&ground, &moving}) object->setCollisionShape(&shape);
-    ground.setCollisionFlags(0);
-    moving.setCollisionFlags(0);
-    moving.getWorldTransform().setOrigin(btVector3(btScalar(0.8 * size), 0, 0));
-    world.addCollisionObject(&ground);
-    world.addCollisionObject(&moving);
-    const double first = milliseconds_of([&] { world.performDiscreteCollisionDetection(); });
-    const double next = milliseconds_of([&] { world.performDiscreteCollisionDetection(); });
-    if (dispatcher.stats().mesh_pairs != 1) throw std::runtime_error("the two meshes were not tested");
-    world.removeCollisionObject(&moving);
-    world.removeCollisionObject(&ground);
-    return {first, next};
+
+/// How much longer the dispatch takes that meets a new shape, and makes it, than the next. `old`: a shape that the
+/// world has been with for some steps, or null for a world that begins with the new one.
+double wait_for(btBvhTriangleMeshShape& shape, btBvhTriangleMeshShape* old, double size) {
+    World world;
+    if (old) {
+        world.add(*old, 1);
+        world.dispatch();
+        world.prepare(); // or its accelerators are made beside the dispatch that is timed
+        for (int i = 0; i < 3; ++i) world.dispatch();
+    }
+    world.add(shape, size);
+    const double first = world.dispatch();
+    return first - world.dispatch();
 }
 
 void write_obj(const rc::Mesh& mesh, const std::filesystem::path& file) {
@@ -97,20 +126,20 @@ void write_obj(const rc::Mesh& mesh, const std::filesystem::path& file) {
 
 void measure(std::uint32_t triangles, int rounds) {
     const rc::Mesh mesh = rc::scenes::scene_model("sphere", triangles).mesh;
-    BulletMesh bullet(mesh);
+    BulletMesh bullet(mesh), other(rc::scenes::scene_model("torus", 200).mesh);
+    btBvhTriangleMeshShape old(&other.array, true);
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("raycontact_bench_" + std::to_string(triangles) + ".obj");
     write_obj(mesh, file);
-    std::vector<double> own, make, dispatch, wait, prepare, query, read;
+    std::vector<double> own, make, wait, begin, prepare, query, read;
     for (int i = 0; i < rounds; ++i) {
         std::unique_ptr<btBvhTriangleMeshShape> shape;
         own.push_back(milliseconds_of([&] { shape = std::make_unique<btBvhTriangleMeshShape>(&bullet.array, true); }));
         std::shared_ptr<const rc::Shape> made;
         make.push_back(milliseconds_of([&] { made = rc::Shape::make(mesh); }));
         const double size = made->box_max().x - made->box_min().x;
-        const Dispatches dispatches = dispatch_twice(*shape, size);
-        dispatch.push_back(dispatches.first);
-        wait.push_back(dispatches.first - dispatches.next);
+        begin.push_back(wait_for(*shape, nullptr, size));
+        wait.push_back(wait_for(*shape, &old, size));
         const auto ask = [&](const rc::Mesh& one, const rc::Mesh& two) {
             const auto a = rc::Shape::make(one), b = rc::Shape::make(two);
             if (rc::collide(*a, {}, *b, {.translation = {0.8 * size, 0, 0}}, {.threads = 0}).empty())
@@ -121,9 +150,9 @@ void measure(std::uint32_t triangles, int rounds) {
         prepare.push_back(milliseconds_of([&] { made->prepare(); }));
     }
     std::filesystem::remove(file);
-    std::printf("%9zu  %10.2f  %10.2f %5.2f  %10.2f  %10.2f %5.2f  %10.2f  %10.2f  %10.2f\n", mesh.triangles.size(),
-                median(own), median(make), median(make) / median(own), median(dispatch), median(wait),
-                median(wait) / median(own), median(query), median(read), median(prepare));
+    std::printf("%9zu  %10.2f  %10.2f %5.2f  %9.2f %5.2f  %9.2f %5.2f  %10.2f  %10.2f  %10.2f\n", mesh.triangles.size(),
+                median(own), median(make), median(make) / median(own), median(wait), median(wait) / median(own),
+                median(begin), median(begin) / median(own), median(query), median(read), median(prepare));
     std::fflush(stdout);
 }
 
@@ -135,9 +164,9 @@ int main(int argc, char** argv) try {
         rounds = std::max(1, std::atoi(argv[2]));
     else if (argc > 1)
         throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N]");
-    std::printf(
-        "triangles  Bullet BVH  Shape::make      first dispatch  waits for it      two and a query  files read  "
-        "prepare()  (ms)\n");
+    std::printf("triangles  Bullet BVH  Shape::make       a world waits    a new one waits  two, a query  files read  "
+                "prepare()  "
+                "(ms)\n");
     for (const std::uint32_t triangles : {200u, 902u, 4000u, 20000u, 82000u, 327680u}) measure(triangles, rounds);
     return 0;
 } catch (const std::exception& error) {

@@ -102,12 +102,15 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
     std::mutex mutex;
     std::size_t done = 0;
     Executor executor(threads);
+    // Where there are enough meshes, each is one thread's.
+    const std::uint32_t of_one = wanted.size() < executor.threads() ? threads : 1;
     executor.run(static_cast<std::uint32_t>(wanted.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end && !stop(); ++i) {
             std::shared_ptr<const Shape> shape;
             std::string fault;
             try {
-                shape = Shape::make(prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology));
+                shape = Shape::make(
+                    prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology, of_one), of_one);
             } catch (const InputError& error) {
                 fault = without_name(error.what(), wanted[i]->name);
             }

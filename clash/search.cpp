@@ -62,9 +62,13 @@ void drop_unknown_depths(std::vector<Clash>& clashes, const std::vector<Part>& p
             if (clash.contacts == 0 && places.try_emplace(parts[i].mesh.get(), asked.size()).second)
                 asked.push_back(&parts[i]);
     std::vector<char> sound(asked.size(), 0);
+    const std::uint32_t of_one = asked.size() < executor.threads() ? executor.threads() : 1;
+    const auto is_good = [&](const Mesh& mesh) {
+        return verdict_of(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, of_one).report).good;
+    };
     executor.run(static_cast<std::uint32_t>(asked.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end && !stop(); ++i)
-            sound[i] = asked[i]->shape->report().closed && verdict_of(prepare_mesh(*asked[i]->mesh).report).good;
+            sound[i] = asked[i]->shape->report().closed && is_good(*asked[i]->mesh);
     });
     const auto is_sound = [&](std::size_t part) { return sound[places.at(parts[part].mesh.get())] != 0; };
     for (Clash& clash : clashes)

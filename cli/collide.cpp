@@ -39,7 +39,7 @@ struct CollideCommand {
 /// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
 class ShapeCache {
 public:
-    explicit ShapeCache(Nesting nesting) : nesting_(nesting) {}
+    ShapeCache(Nesting nesting, std::uint32_t threads) : nesting_(nesting), threads_(threads) {}
     std::shared_ptr<const Shape> get(const PairBody& body) {
         auto& shape = shapes_[{body.file.string(), body.scale}];
         if (!shape) shape = make(body);
@@ -59,13 +59,14 @@ private:
                     throw InputError(body.file.string() + fmt::format(": too large to be scaled by {}", body.scale));
                 }
             }
-            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_, Check::topology));
+            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_, Check::topology, threads_), threads_);
         } catch (const InputError& error) {
             throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
         }
     }
 
     Nesting nesting_;
+    std::uint32_t threads_;
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
 
@@ -73,9 +74,13 @@ Json to_json(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
+const char* name_of(Feature feature) {
+    constexpr const char* names[] = {"vertex", "edge", "inside"};
+    return names[static_cast<std::size_t>(feature)];
+}
+
 Json to_json(const Contact& contact) {
-    constexpr const char* features[] = {"vertex", "edge", "inside"};
-    return {{"feature", features[static_cast<std::size_t>(contact.feature)]},
+    return {{"feature", name_of(contact.feature)},
             {"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
             {"vertex", contact.vertex},
             {"triangle", contact.triangle},
@@ -112,14 +117,15 @@ void print_table(std::size_t index, const QueryPair& pair, bool intersecting, st
     std::cout << fmt::format("intersecting, {} contact{}, deepest {:.6g} m\n", contacts.size(),
                              contacts.size() == 1 ? "" : "s", deepest->depth);
     const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
-    std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "vertex", "triangle",
-                             "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)", "normal from a to b");
+    std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "feature", "number",
+                             "triangle", "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)",
+                             "normal from a to b");
     for (const Contact& c : contacts) {
-        std::cout << fmt::format("  {:<4} {:>8} {:>8}  {:>12.6g} {:>12.6g}{}  {:>12.6g} {:>12.6g} {:>12.6g}  "
+        std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12.6g} {:>12.6g}{}  {:>12.6g} {:>12.6g} {:>12.6g}  "
                                  "{:>9.6f} {:>9.6f} {:>9.6f}\n",
-                                 c.vertex_body == VertexBody::a ? "a" : "b", c.vertex, c.triangle, c.depth,
-                                 c.ray_length, weight(fmt::format("{:.6g}", c.weight)), c.point.x, c.point.y, c.point.z,
-                                 c.normal[0], c.normal[1], c.normal[2]);
+                                 c.vertex_body == VertexBody::a ? "a" : "b", name_of(c.feature), c.vertex, c.triangle,
+                                 c.depth, c.ray_length, weight(fmt::format("{:.6g}", c.weight)), c.point.x, c.point.y,
+                                 c.point.z, c.normal[0], c.normal[1], c.normal[2]);
     }
 }
 
@@ -190,7 +196,7 @@ std::vector<QueryPair> query_of(const CollideCommand& options) {
 void collide(const CollideCommand& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
-    ShapeCache shapes(options.nested.value_or(Nesting::as_wound));
+    ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.settings.threads);
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }

@@ -167,6 +167,7 @@ raycontact::Settings recorded_unless_given(const CLI::App& command, const raycon
     keep("--method", &Settings::method);
     keep("--caster", &Settings::caster);
     keep("--direction", &Settings::direction);
+    keep("--features", &Settings::features);
     keep("--displacement-threshold", &Settings::displacement_threshold);
     keep("--confidence", &Settings::confidence);
     keep("--culling-distance", &Settings::culling_distance);

@@ -81,6 +81,8 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
         result["contacts_compared"] = wrong.contacts_compared;
     }
     result["recorded_method"] = to_string(recorded.method);
+    result["recorded_direction"] = to_string(recorded.direction);
+    result["recorded_features"] = to_string(recorded.features);
     work.put(result);
     put_settings(result, settings);
     return result;
@@ -95,7 +97,10 @@ std::string hash_for_a_person(const Json& s) {
     if (s["hash_reproduced"].get<bool>())
         return hash + ", as recorded" + (other_method ? " with method " + recorded : "");
     return hash + ", recorded was " + s["recorded_hash"].get<std::string>()
-           + (s["hash_expected"].get<bool>() ? "" : " with other settings (method " + recorded + ")");
+           + (s["hash_expected"].get<bool>()
+                  ? ""
+                  : fmt::format(" with other settings (method {}, direction {}, features {})", recorded,
+                                s["recorded_direction"].get<std::string>(), s["recorded_features"].get<std::string>()));
 }
 
 std::string for_a_person(const Json& s) {
@@ -226,7 +231,7 @@ void add_replay(CLI::App& app) {
     command->add_flag("--json", given->json, "print one JSON object on stdout");
     add_common_options(*command, given->settings);
     command->footer(
-        "What decides the contacts (method, caster, direction, thresholds) is the recording's unless given.\n"
+        "What decides the contacts (method, caster, direction, features, thresholds) is the recording's unless given.\n"
         "Methods standard and certified find the same contacts, so either reproduces the other's hash.\n"
         "A hash that should have been reproduced and was not is a failed run.\n"
         + std::string(stop_footer));

@@ -98,7 +98,7 @@ void Recorder::step() {
     State& s = *state_;
     if (!recording::must_agree(s.settings, s.scene.settings()))
         throw InputError(
-            "Recorder::step: method, direction or thresholds of the scene have changed; a recording has one "
+            "Recorder::step: method, direction, features or thresholds of the scene have changed; a recording has one "
             "set of them, so begin another");
     s.follow_bodies();
     s.hash.add(s.writer.steps(), s.scene.contacts());

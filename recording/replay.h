@@ -69,8 +69,8 @@ struct ReplayOptions {
     std::function<bool()> stop;                  ///< asked after each step; true: the replay ends there
 };
 
-/// Whether contacts found with `used` must be those found with `recorded`: method, direction and thresholds are the
-/// same, or both methods are among those that find what `standard` finds.
+/// Whether contacts found with `used` must be those found with `recorded`: direction and features are the same, and
+/// method and thresholds, too, unless both methods find what `standard` finds.
 bool must_agree(const Settings& recorded, const Settings& used);
 
 /// Detection only, over all recorded steps, or up to where it was stopped. Throws InputError for a damaged recording or

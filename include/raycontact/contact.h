@@ -29,8 +29,9 @@ struct Contact {
     VertexBody vertex_body = VertexBody::a; ///< whose vertex or edge it is
     Feature feature = Feature::vertex;
     bool is_new = true; ///< the last step had no contact with this key in this pair
-    std::uint32_t crossing =
-        0; ///< of an edge: which end it is, see edge_start, of a middle the first; 0 for other features
+    /// Of an edge: the number of the crossing at this end, or edge_start or edge_end. Of the middle of a piece: its
+    /// first crossing. Other features: 0.
+    std::uint32_t crossing = 0;
     /// Source vertex, index of its file. Of an edge: 3 x its lowest triangle in the file + its first corner there.
     std::uint32_t vertex = 0;
     std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file

@@ -48,8 +48,8 @@ struct MeshReport {
 
 /// Whether prepare_mesh may change anything beyond welding for connectivity.
 enum class Repair {
-    allowed, ///< drop degenerate and duplicate triangles, never so that a closed edge opens (where a degenerate one
-             ///< joins a corner to the side of a triangle on which it lies, that triangle is split there); make
+    allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
+             ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner); make
              ///< windings agree; turn components as Nesting has it
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
@@ -80,9 +80,10 @@ struct PreparedMesh {
     MeshReport report;
 };
 
-/// Welds, checks and, where allowed, repairs. Throws InputError when no triangle with an area is left.
+/// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError when no
+/// triangle with an area is left.
 PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound,
-                          Check check = Check::full);
+                          Check check = Check::full, std::uint32_t threads = 0);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
 /// itself.

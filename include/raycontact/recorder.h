@@ -36,8 +36,9 @@ public:
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
 
-    /// After each Scene::step(). Throws InputError when method, direction or thresholds were changed since the start,
-    /// and std::runtime_error naming the file when it cannot be written (a full disk, more than the 4 GiB of a .glb).
+    /// After each Scene::step(). Throws InputError when method, direction, features or thresholds were changed since
+    /// the start, and std::runtime_error naming the file when it cannot be written (a full disk, more than the 4 GiB of
+    /// a .glb).
     void step();
     /// Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards.
     void finish();

@@ -19,16 +19,17 @@ class Executor;
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
 class Shape : public std::enable_shared_from_this<Shape> {
 public:
-    /// From a prepared mesh. Deterministic: equal input gives equal bits. Throws InputError for a mesh without area.
-    static std::shared_ptr<const Shape> make(const PreparedMesh& mesh);
+    /// From a prepared mesh. threads 0: one per core. Deterministic: equal input gives equal bits, whatever the
+    /// threads. Throws InputError for a mesh without area.
+    static std::shared_ptr<const Shape> make(const PreparedMesh& mesh, std::uint32_t threads = 0);
     /// From a mesh, prepared with all repairs allowed; report() says which were made.
-    static std::shared_ptr<const Shape> make(const Mesh& mesh);
+    static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 
     ~Shape();
     Shape(const Shape&) = delete;
     Shape& operator=(const Shape&) = delete;
 
-    /// Makes what only speeds up later steps (docs/performance.md): several times the work of make(). A Scene has it
+    /// Makes what only speeds up later steps (docs/performance.md): 10 to 45 times the work of make(). A Scene has it
     /// made beside its steps for shapes that meet others in more than one step, so nobody needs to call this; call it
     /// where the first steps must be as fast as the later ones, or where counts of work must repeat exactly. No contact
     /// of `standard` or `certified` depends on it. threads 0: one per core. Does nothing the second time.

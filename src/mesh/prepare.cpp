@@ -117,13 +117,13 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, LazyBvh& bvh,
 }
 
 /// Few triangles are done before other threads wake.
-Executor executor_for(std::size_t triangles) {
-    return Executor(triangles < 512 ? 1 : 0);
+Executor executor_for(std::size_t triangles, std::uint32_t threads = 0) {
+    return Executor(triangles < 512 ? 1 : threads);
 }
 
 } // namespace
 
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Check check) {
+PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Check check, std::uint32_t threads) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
@@ -138,7 +138,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
-    Executor executor = executor_for(prepared.triangles.size());
+    Executor executor = executor_for(prepared.triangles.size(), threads);
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");

@@ -49,13 +49,13 @@ Shape::Shape(std::unique_ptr<ShapeData> data)
     : data_(std::move(data)), accelerators_(std::make_unique<AcceleratorSlot>()) {}
 Shape::~Shape() = default;
 
-std::shared_ptr<const Shape> Shape::make(const Mesh& mesh) {
-    return make(prepare_mesh(mesh));
+std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads) {
+    return make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, threads), threads);
 }
 
-std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh) {
+std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t threads) {
     const FloatEnvironment environment;
-    Executor executor(mesh.triangles.size() < few_triangles ? 1 : 0);
+    Executor executor(mesh.triangles.size() < few_triangles ? 1 : threads);
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
         throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");

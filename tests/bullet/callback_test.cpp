@@ -6,6 +6,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
 
 #include <gtest/gtest.h>
 
@@ -262,11 +263,8 @@ bool note_added(btManifoldPoint& p, const btCollisionObjectWrapper* a, int part0
     return false;
 }
 
-// Users look up a material by them.
-TEST(Callbacks, AddedNamesSubPartsAndTrianglesOnBothSides) {
-    TestWorld w;
-    TwoParts level;
-    const btRigidBody& floor = w.add(std::make_unique<btBvhTriangleMeshShape>(&level.array, true), 0, at(0, 0, 0));
+/// What is told of a floor of two sub-parts, and of what lies on it.
+void expect_named(TestWorld& w, const TwoParts& level, const btRigidBody& floor) {
     const btRigidBody& box = w.add_mesh(Shape::make(box_mesh(1, 1, 0.4)), 5, at(-0.3, 0.1, 0.2));
     const btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.3)), 5, at(2.9, 0.4, 0.3));
     for (const auto& body : w.bodies)
@@ -296,6 +294,21 @@ TEST(Callbacks, AddedNamesSubPartsAndTrianglesOnBothSides) {
     EXPECT_EQ(parts, (std::set<int>{0, 1}));
     EXPECT_GT(of_box, 0u);
     EXPECT_GT(of_ball, 0u);
+}
+
+// Users look up a material by them.
+TEST(Callbacks, AddedNamesSubPartsAndTrianglesOnBothSides) {
+    TwoParts level;
+    TestWorld w;
+    expect_named(w, level, w.add(std::make_unique<btBvhTriangleMeshShape>(&level.array, true), 0, at(0, 0, 0)));
+}
+
+TEST(Callbacks, AddedNamesThePartsOfAGImpactMesh) {
+    TwoParts level;
+    TestWorld w;
+    auto shape = std::make_unique<btGImpactMeshShape>(&level.array);
+    shape->updateBound();
+    expect_named(w, level, w.add(std::move(shape), 0, at(0, 0, 0)));
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 
 namespace raycontact::test {
 namespace {
@@ -35,28 +36,103 @@ TEST(Removal, LeavesNoManifoldAndNoBody) {
     EXPECT_EQ(w.dispatcher.scene().body_count(), 0u); // the ground has nobody to meet
 }
 
-TEST(Removal, ANewShapeAtTheAddressOfTheOldOneIsSeen) {
-    TestWorld w;
-    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
-    btRigidBody& body = w.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 5, at(0, 0, 0.3));
-    alignas(btConvexHullShape) std::byte place[sizeof(btConvexHullShape)];
-    const auto hull = [&](double half) {
-        auto* made = new (place) btConvexHullShape;
-        for (int i = 0; i < 8; ++i)
-            made->addPoint(btVector3(btScalar(i & 1 ? half : -half), btScalar(i & 2 ? half : -half),
-                                     btScalar(i & 4 ? half : -half)));
-        body.setCollisionShape(made);
-        return made;
-    };
-    btConvexHullShape* made = hull(0.3);
-    w.steps(60);
-    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.3, 0.02);
-    made->~btConvexHullShape();
-    made = hull(0.5); // as many points
-    w.steps(120);
-    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.5, 0.02);
-    w.remove(body);
-    made->~btConvexHullShape();
+/// A body takes a shape, lies down with it, and then another of the same class made where the first was.
+class ReplacedInPlace {
+public:
+    template <class S, class... Arguments>
+    S& make(Arguments&&... arguments) {
+        static_assert(sizeof(S) <= sizeof place_ && alignof(S) <= 16);
+        if (shape_) shape_->~btCollisionShape();
+        S* made = new (static_cast<void*>(place_)) S(std::forward<Arguments>(arguments)...);
+        shape_ = made;
+        return *made;
+    }
+    /// How high the body's origin comes to lie.
+    double rest(int steps = 120) {
+        body_.setCollisionShape(shape_);
+        body_.setWorldTransform(at(0, 0, 0.6));
+        body_.setLinearVelocity(btVector3(0, 0, 0));
+        body_.setAngularVelocity(btVector3(0, 0, 0));
+        w_.steps(steps);
+        return double(body_.getWorldTransform().getOrigin().z());
+    }
+    ~ReplacedInPlace() {
+        w_.remove(body_);
+        shape_->~btCollisionShape();
+    }
+    ReplacedInPlace() { w_.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5)); }
+    ReplacedInPlace(const ReplacedInPlace&) = delete;
+    ReplacedInPlace& operator=(const ReplacedInPlace&) = delete;
+
+private:
+    TestWorld w_;
+    btRigidBody& body_ = w_.add(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 5, at(0, 0, 30));
+    alignas(16) std::byte place_[1024];
+    btCollisionShape* shape_ = nullptr;
+};
+
+void add_corners(btConvexHullShape& hull, double half) {
+    for (int i = 0; i < 8; ++i)
+        hull.addPoint(
+            btVector3(btScalar(i & 1 ? half : -half), btScalar(i & 2 ? half : -half), btScalar(i & 4 ? half : -half)));
+}
+
+TEST(Removal, ANewHullAtTheAddressOfTheOldOneIsSeen) {
+    ReplacedInPlace body;
+    add_corners(body.make<btConvexHullShape>(), 0.3);
+    EXPECT_NEAR(body.rest(), 0.3, 0.02);
+    add_corners(body.make<btConvexHullShape>(), 0.5); // as many points
+    EXPECT_NEAR(body.rest(), 0.5, 0.02);
+}
+
+TEST(Removal, ANewBoxAtTheAddressOfTheOldOneIsSeen) {
+    ReplacedInPlace body;
+    for (const double half : {0.3, 0.5}) {
+        body.make<btBoxShape>(btVector3(1, 1, btScalar(half)));
+        EXPECT_NEAR(body.rest(), half, 0.02);
+    }
+}
+
+TEST(Removal, ANewCylinderOrConeAtTheAddressOfTheOldOneIsSeen) {
+    ReplacedInPlace body;
+    const btVector3 half(btScalar(0.5), btScalar(0.3), btScalar(0.5));
+    body.make<btCylinderShape>(half); // stands along y, so it lies on its side
+    EXPECT_NEAR(body.rest(), 0.5, 0.02);
+    body.make<btCylinderShape>(btVector3(btScalar(0.4), btScalar(0.3), btScalar(0.4)));
+    EXPECT_NEAR(body.rest(), 0.4, 0.02);
+    body.make<btCylinderShapeZ>(btVector3(btScalar(0.4), btScalar(0.4), btScalar(0.3))); // another class
+    EXPECT_NEAR(body.rest(), 0.3, 0.02);
+    body.make<btConeShapeZ>(btScalar(0.5), btScalar(0.4)); // half its height under its origin
+    EXPECT_NEAR(body.rest(), 0.2, 0.02);
+    body.make<btConeShapeZ>(btScalar(0.5), btScalar(0.6));
+    EXPECT_NEAR(body.rest(), 0.3, 0.02);
+}
+
+TEST(Removal, ANewBallCapsuleOrMultiSphereAtTheAddressOfTheOldOneIsSeen) {
+    ReplacedInPlace body;
+    for (const double radius : {0.3, 0.5}) {
+        body.make<btSphereShape>(btScalar(radius));
+        EXPECT_NEAR(body.rest(), radius, 0.01);
+    }
+    for (const double radius : {0.2, 0.4}) {
+        body.make<btCapsuleShapeX>(btScalar(radius), btScalar(1));
+        EXPECT_NEAR(body.rest(), radius, 0.01);
+    }
+    // Three balls flat on the floor, so that no edge of two speaks.
+    const btVector3 centres[] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+    for (const double radius : {0.2, 0.35}) {
+        const btScalar radii[] = {btScalar(radius), btScalar(radius), btScalar(radius)};
+        body.make<btMultiSphereShape>(centres, radii, 3);
+        EXPECT_NEAR(body.rest(), radius, 0.02);
+    }
+}
+
+TEST(Removal, ANewMeshShapeAtTheAddressOfTheOldOneIsSeen) {
+    ReplacedInPlace body;
+    for (const double height : {0.6, 0.9}) {
+        body.make<bullet::MeshShape>(Shape::make(box_mesh(1, 1, height)));
+        EXPECT_NEAR(body.rest(), height / 2, 0.02);
+    }
 }
 
 TEST(Removal, BodiesComeBack) {

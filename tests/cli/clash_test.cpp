@@ -186,6 +186,21 @@ TEST_F(Clash, PartsWhoseFacesCoincideHaveTheirDepth) {
     EXPECT_GT(found["depth"].get<double>(), 0.5);
 }
 
+// Less than 1e-6 of the size is rounding; what is more has its depth, down to the coordinates' own.
+TEST_F(Clash, ShallowOverlapsHaveTheirDepth) {
+    write_cube("a.obj", 0);
+    for (const double overlap : {1e-2, 1e-3, 1e-4, 1e-5}) {
+        write_cube("b.obj", 1 - overlap);
+        const json found = only_clash({"a.obj", "b.obj"});
+        EXPECT_NEAR(found["depth"].get<double>(), overlap, 1e-6);
+        EXPECT_GT(found["contacts"], 0) << overlap;
+    }
+    write_cube("b.obj", 0.7 - 1e-5, 0.4); // no face of it coincides with one of a
+    const json smaller = only_clash({"a.obj", "b.obj"});
+    EXPECT_NEAR(smaller["depth"].get<double>(), 1e-5, 1e-6);
+    EXPECT_NEAR(smaller["normal"][0].get<double>(), 1, 1e-6);
+}
+
 TEST_F(Clash, OpenPartsThatCrossHaveNoDepthAndAreNotIgnored) {
     folder_.write("lying.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
     folder_.write("upright.obj", "v -1 0.1 -1\nv 1 0.1 -1\nv 1 0.1 1\nv -1 0.1 1\nf 1 2 3 4\n");

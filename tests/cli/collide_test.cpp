@@ -275,6 +275,9 @@ TEST_F(Collide, TwoFilesAndTheTable) {
     const auto table = run_program({"collide", "cube.obj", "moved.obj", "--features", "vertices"}, folder_.path());
     EXPECT_EQ(table.status, 0);
     EXPECT_NE(table.out.find("2 contacts, deepest 0.2 m"), std::string::npos) << table.out;
+    EXPECT_NE(table.out.find("\n  a    vertex         6 "), std::string::npos) << table.out;
+    const auto edges = run_program({"collide", "cube.obj", "moved.obj"}, folder_.path());
+    EXPECT_NE(edges.out.find("\n  a    edge "), std::string::npos) << edges.out;
     EXPECT_NE(run_vertices(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.2 m"), std::string::npos);
 }
 

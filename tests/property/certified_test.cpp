@@ -284,7 +284,7 @@ TEST(certified, eventful_scenes) {
                 guests.pop_back();
             }
             if (random.below(20) == 0) {
-                const Direction direction = directions[random.below(3)];
+                const Direction direction = directions[random.below(static_cast<std::uint32_t>(std::size(directions)))];
                 const bool same = random.below(2) == 0; // all that was kept is dropped even so
                 const double threshold = thresholds[random.below(std::size(thresholds))];
                 triplet.each([&](Scene& scene) {

@@ -209,7 +209,8 @@ private:
         constexpr Method methods[] = {Method::standard, Method::iterative, Method::predictive, Method::certified};
         if (random_.below(2)) changed.method = methods[random_.below(4)];
         if (random_.below(2)) changed.features = random_.below(2) ? Features::edges : Features::vertices;
-        if (random_.below(2)) changed.direction = directions[random_.below(3)];
+        if (random_.below(2))
+            changed.direction = directions[random_.below(static_cast<std::uint32_t>(std::size(directions)))];
         if (random_.below(3) == 0) changed.caster = random_.below(2) ? Caster::bvh : Caster::basic;
         if (random_.below(3) == 0) changed.skip_outside = random_.below(2) != 0;
         if (random_.below(2)) {

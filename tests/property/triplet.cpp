@@ -49,7 +49,7 @@ Settings some_settings(Random& random) {
     Settings settings;
     settings.threads = 1;
     settings.skip_outside = random.below(4) != 0; // now and then every ray is cast
-    settings.direction = directions[random.below(3)];
+    settings.direction = directions[random.below(static_cast<std::uint32_t>(std::size(directions)))];
     settings.features = random.below(4) == 0 ? Features::edges : Features::vertices;
     return settings;
 }

@@ -61,7 +61,7 @@ TEST_P(ReplayOfMethod, ReproducesTheHash) {
         const json again = replayed(words);
         for (const char* key :
              {"scene", "seed", "steps", "bodies", "pairs_max", "contacts", "ray_length", "penetration_max", "method",
-              "direction", "devices", "hash", "contacts_new", "contacts_lost"})
+              "direction", "features", "devices", "hash", "contacts_new", "contacts_lost"})
             EXPECT_EQ(again.at(key), run.at(key)) << key;
         for (const char* key : {"wall_ms", "step_ms", "narrow_ms", "caster", "pair_bytes_max", "rays"})
             EXPECT_TRUE(again.contains(key)) << key;
@@ -96,6 +96,22 @@ TEST_F(ReplayProgram, ReproducesTheHashOfAWeightedRun) {
     EXPECT_NE(ray.at("hash"), run.at("hash"));
     EXPECT_EQ(ray.at("contacts"), run.at("contacts"));
     EXPECT_EQ(ray.at("hash_expected"), false);
+}
+
+TEST_F(ReplayProgram, ReproducesTheHashOfARunOfVertices) {
+    const json run = record("a.glb", {"--features", "vertices"});
+    const json again = replayed({"a.glb"});
+    EXPECT_EQ(again.at("features"), "vertices");
+    EXPECT_EQ(again.at("recorded_features"), "vertices");
+    EXPECT_EQ(again.at("hash"), run.at("hash"));
+    EXPECT_EQ(again.at("hash_expected"), true);
+    const json edges = replayed({"a.glb", "--features", "edges"});
+    EXPECT_NE(edges.at("hash"), run.at("hash"));
+    EXPECT_EQ(edges.at("hash_expected"), false);
+    const auto text = replay({"a.glb", "--features", "edges"});
+    EXPECT_NE(text.out.find("with other settings (method certified, direction ray, features vertices)"),
+              std::string::npos)
+        << text.out;
 }
 
 TEST_P(ReplayOfMethod, UsesTheRecordedSettingsUnlessOthersAreGiven) {

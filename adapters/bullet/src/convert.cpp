@@ -322,6 +322,11 @@ Form form_of(const btCollisionShape& shape) {
     return form;
 }
 
+Converted ShapeCache::convert(const Mesh& mesh, Repair repair) const {
+    const auto shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_), threads_);
+    return {shape, std::make_shared<const MeshTree>(*shape)};
+}
+
 // By its numbers: the stand-in is not made to find out whether it is there.
 Converted ShapeCache::get_convex(const btCollisionShape& shape) {
     std::vector<btScalar> numbers = surface_numbers(shape);
@@ -335,10 +340,7 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
     }
     Entry entry;
     const Mesh mesh = stand_in(shape);
-    if (!mesh.triangles.empty()) {
-        entry.converted.shape = Shape::make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::topology));
-        entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
-    }
+    if (!mesh.triangles.empty()) entry.converted = convert(mesh, Repair::allowed);
     entry.numbers = std::move(numbers);
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;
@@ -360,8 +362,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     Entry entry;
     // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
-    entry.converted.shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology));
-    entry.converted.tree = std::make_shared<const MeshTree>(*entry.converted.shape);
+    entry.converted = convert(mesh, repair);
     entry.mesh = std::move(mesh);
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;

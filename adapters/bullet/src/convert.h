@@ -69,6 +69,8 @@ Form form_of(const btCollisionShape& shape);
 /// empty or damaged mesh interface.
 class ShapeCache {
 public:
+    /// threads: of those that make a shape; 0: one per core.
+    explicit ShapeCache(std::uint32_t threads) : threads_(threads) {}
     /// `shape` is of kind mesh, field or convex.
     Converted get(const btCollisionShape& shape);
     /// Call it once a dispatch: drops shapes that no body has used for a while.
@@ -83,7 +85,9 @@ private:
         std::uint64_t used = 0;
     };
     Converted get_convex(const btCollisionShape& shape);
+    Converted convert(const Mesh& mesh, Repair repair) const;
 
+    std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
     std::uint64_t now_ = 0;
 };

@@ -56,7 +56,7 @@ void each_leaf(const btCollisionShape& shape, const btTransform& local, Visit&& 
 /// The objects in use and their bodies in the scene. Never iterated, so no address decides an order.
 class Objects {
 public:
-    Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex) {}
+    Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex), shapes_(scene.settings().threads) {}
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
     /// poses to the scene once per `dispatch`.

@@ -18,8 +18,9 @@ enum class Bounds {
 };
 
 /// A RayContact shape as a Bullet collision shape, moving or not. Bullet takes the body's origin for its centre of
-/// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. Convex shapes, compounds of them, rays
-/// and sweeps are tested by Bullet's own algorithms; meshes, planes and height fields through CollisionDispatcher.
+/// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. CollisionDispatcher tests it against
+/// meshes, planes, height fields and, unless ConvexShapes::bullet is set, Bullet's convex shapes; Bullet's own
+/// algorithms do ray and sweep tests.
 ATTRIBUTE_ALIGNED16(class) MeshShape : public btConcaveShape {
 public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
