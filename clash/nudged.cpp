@@ -5,9 +5,8 @@
 
 #include "mesh/vector.h"
 
-#include <raycontact/collide.h>
-
 #include <algorithm>
+#include <numeric>
 
 namespace raycontact::clash {
 
@@ -15,7 +14,7 @@ namespace {
 
 constexpr double far_more = 20; // times what the nudge and rounding can make
 
-double deepest_of(const std::vector<Contact>& contacts) {
+double deepest_of(std::span<const Contact> contacts) {
     double deepest = 0;
     for (const Contact& contact : contacts) deepest = std::max(deepest, double(contact.depth));
     return deepest;
@@ -23,15 +22,37 @@ double deepest_of(const std::vector<Contact>& contacts) {
 
 } // namespace
 
-std::vector<Contact> contacts_when_nudged(const Part& a, const Part& b, double depth) {
-    const double by = 2 * noise * smaller_size(a, b), least = far_more * std::max(by, depth);
-    std::vector<Contact> shallowest;
+std::vector<std::vector<Contact>> contacts_when_nudged(Scene& scene, std::span<const ShallowPair> pairs) {
+    std::vector<std::vector<Contact>> shallowest(pairs.size());
+    std::vector<std::size_t> left(pairs.size());
+    std::iota(left.begin(), left.end(), std::size_t{0});
     for (const Vec3& way : askew) {
-        Pose pose = b.pose;
-        pose.translation = pose.translation + by * way;
-        std::vector<Contact> contacts = collide(*a.shape, a.pose, *b.shape, pose);
-        if (deepest_of(contacts) < least) return {};
-        if (shallowest.empty() || deepest_of(contacts) < deepest_of(shallowest)) shallowest = std::move(contacts);
+        std::vector<Pair> list;
+        list.reserve(left.size());
+        for (const std::size_t i : left) {
+            const Part& b = *pairs[i].b;
+            Pose pose = b.pose;
+            pose.translation = pose.translation + 2 * noise * smaller_size(*pairs[i].a, b) * way;
+            list.emplace_back(pairs[i].body_a, scene.add(b.shape, pose)); // a later slot: normals still run from a to b
+        }
+        scene.step(list);
+        std::vector<std::size_t> deep;
+        for (std::size_t k = 0; k < left.size(); ++k) {
+            const ShallowPair& pair = pairs[left[k]];
+            const double by = 2 * noise * smaller_size(*pair.a, *pair.b);
+            const std::span<const Contact> contacts = scene.contacts(list[k].first, list[k].second);
+            std::vector<Contact>& least = shallowest[left[k]];
+            if (deepest_of(contacts) < far_more * std::max(by, pair.depth)) {
+                least.clear();
+                continue;
+            }
+            if (least.empty() || deepest_of(contacts) < deepest_of(least))
+                least.assign(contacts.begin(), contacts.end());
+            deep.push_back(left[k]);
+        }
+        for (const auto& [a, nudged] : list) scene.remove(nudged);
+        left = std::move(deep);
+        if (left.empty()) break;
     }
     return shallowest;
 }

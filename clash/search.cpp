@@ -30,25 +30,35 @@ Clash clash_of(const PartPair& pair, std::span<const Contact> contacts) {
     return clash;
 }
 
-/// Nothing where they share no point.
-std::optional<Clash> clash_of(const PartPair& pair, const Part& a, const Part& b, std::span<const Contact> contacts) {
-    Clash clash = clash_of(pair, contacts);
+bool has_inside(const Part& part) {
+    return part.shape->report().closed && part.shape->report().oriented;
+}
+
+/// What a pair's contacts tell.
+struct Answer {
+    std::optional<Clash> clash; ///< none: they share no point
+    double depth = 0;           ///< of the contacts
+    bool may_coincide = false;  ///< so that contacts_when_nudged() decides
+};
+
+Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<const Contact> contacts) {
+    // Contacts of two open parts tell of sheets behind each other, which may be apart.
+    const bool sheets = !has_inside(a) && !has_inside(b);
+    Answer answer{clash_of(pair, contacts), 0, false};
+    Clash& clash = *answer.clash;
     const double depth = *clash.depth, size = smaller_size(a, b);
-    if (depth <= shallow * size) {
-        const auto shared = depth <= noise * size ? common_point(*a.shape, a.pose, *b.shape, b.pose) : clash.point;
-        if (!shared && contacts.empty()) return {};
-        std::vector<Contact> nudged;
-        if (a.shape->report().closed && b.shape->report().closed) nudged = contacts_when_nudged(a, b, depth);
-        if (!nudged.empty()) {
-            clash = clash_of(pair, nudged);
-        } else if (depth <= noise * size) {
-            const Vec3 point = shared ? *shared : clash.point;
-            clash = clash_of(pair, {});
-            clash.point = point;
-        }
+    answer.depth = depth;
+    std::optional<Vec3> shared;
+    if (sheets || depth <= noise * size) shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
+    if (!shared && (sheets || contacts.empty())) return {};
+    answer.may_coincide = depth <= shallow * size && a.shape->report().closed && b.shape->report().closed;
+    if (depth <= noise * size) {
+        const Vec3 point = shared ? *shared : clash.point;
+        clash = clash_of(pair, {});
+        clash.point = point;
     }
     clash.duplicate = are_duplicates(a, b);
-    return clash;
+    return answer;
 }
 
 /// Parts without a contact touch if both are sound: closed, wound outward and not self-intersecting. Otherwise, and
@@ -104,14 +114,28 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
         list.reserve(some.size());
         for (const auto& [a, b] : some) list.emplace_back(bodies.at(a), bodies.at(b));
         scene.step(list);
-        std::vector<std::optional<Clash>> found(some.size());
+        std::vector<Answer> answers(some.size());
         executor.run(static_cast<std::uint32_t>(some.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
             for (std::uint32_t i = begin; i < end && !options.stop(); ++i)
-                found[i] = clash_of(some[i], parts[some[i].a], parts[some[i].b],
-                                    scene.contacts(list[i].first, list[i].second));
+                answers[i] = answer_of(some[i], parts[some[i].a], parts[some[i].b],
+                                       scene.contacts(list[i].first, list[i].second));
         });
-        for (const std::optional<Clash>& clash : found)
-            if (clash) clashes.push_back(*clash);
+        std::vector<ShallowPair> shallow_pairs;
+        std::vector<Clash*> shallow_clashes;
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            if (!answers[i].may_coincide) continue;
+            shallow_pairs.push_back({&parts[some[i].a], &parts[some[i].b], list[i].first, answers[i].depth});
+            shallow_clashes.push_back(&*answers[i].clash);
+        }
+        const auto nudged = contacts_when_nudged(scene, shallow_pairs);
+        for (std::size_t i = 0; i < nudged.size(); ++i) {
+            Clash& clash = *shallow_clashes[i];
+            const bool duplicate = clash.duplicate;
+            if (!nudged[i].empty()) clash = clash_of({clash.a, clash.b}, nudged[i]);
+            clash.duplicate = duplicate;
+        }
+        for (const Answer& answer : answers)
+            if (answer.clash) clashes.push_back(*answer.clash);
         options.progress(first + some.size(), asked.size());
     }
     drop_unknown_depths(clashes, parts, executor, options.stop);

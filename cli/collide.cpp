@@ -104,6 +104,10 @@ void print_json(std::size_t index, bool intersecting, std::span<const Contact> c
     std::cout << line.dump() << '\n';
 }
 
+bool has_inside(const Shape& shape) {
+    return shape.report().closed && shape.report().oriented;
+}
+
 void print_table(std::size_t index, const QueryPair& pair, bool intersecting, std::span<const Contact> contacts,
                  bool weighted) {
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
@@ -114,8 +118,9 @@ void print_table(std::size_t index, const QueryPair& pair, bool intersecting, st
     }
     const auto deepest = std::max_element(contacts.begin(), contacts.end(),
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
-    std::cout << fmt::format("intersecting, {} contact{}, deepest {:.6g} m\n", contacts.size(),
-                             contacts.size() == 1 ? "" : "s", deepest->depth);
+    std::cout << fmt::format("{}, {} contact{}{}, deepest {:.6g} m\n", intersecting ? "intersecting" : "apart",
+                             contacts.size(), contacts.size() == 1 ? "" : "s",
+                             intersecting ? "" : " of open meshes, each behind the other", deepest->depth);
     const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
     std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "feature", "number",
                              "triangle", "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)",
@@ -148,8 +153,10 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
         while (end < contacts.size() && contacts[end].body_a == slot_of(list[i].first)) ++end;
         const auto own = contacts.subspan(begin, end - begin);
         const auto [a, b] = list[i];
+        // A contact shows that they intersect, unless neither has an inside.
+        const bool solid = has_inside(scene.shape(a)) || has_inside(scene.shape(b));
         const bool intersecting =
-            !own.empty() || intersects(scene.shape(a), scene.pose(a), scene.shape(b), scene.pose(b));
+            (solid && !own.empty()) || intersects(scene.shape(a), scene.pose(a), scene.shape(b), scene.pose(b));
         json ? print_json(first + i, intersecting, own)
              : print_table(first + i, pairs[i], intersecting, own, settings.direction == Direction::weighted);
         begin = end;

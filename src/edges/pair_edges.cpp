@@ -158,6 +158,7 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
     std::sort(points_.begin(), points_.end(), [](const RegionPoint& p, const RegionPoint& q) {
         return std::pair(p.region, p.number) < std::pair(q.region, q.number);
     });
+    last_extent_.assign(points_.size(), NONE);
     std::sort(loudest_.begin(), loudest_.end(), [](const Speaker* p, const Speaker* q) {
         if (p->region != q->region) return p->region < q->region;
         return p->depth != q->depth ? p->depth > q->depth : p->vertex < q->vertex;
@@ -319,11 +320,14 @@ void PairEdges::speak(const ShapeData& target, VertexBody source, const Choice& 
 
 double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height,
                          double enough) {
-    for (const Extent& known : extents_)
-        if (known.region == region && known.normal == normal && known.height == height) return known.metres;
     const auto less = [](const RegionPoint& p, std::uint32_t r) { return p.region < r; };
     const auto begin = std::lower_bound(points_.begin(), points_.end(), region, less);
     const auto end = std::lower_bound(begin, points_.end(), region + 1, less);
+    std::uint32_t& last = last_extent_[static_cast<std::size_t>(begin - points_.begin())];
+    for (std::uint32_t i = last; i != NONE; i = extents_[i].next) {
+        const Extent& known = extents_[i];
+        if (known.region == region && known.normal == normal && known.height == height) return known.metres;
+    }
     const auto count = static_cast<std::size_t>(end - begin);
     const std::size_t asked = std::min(count, most_points);
     const auto point_at = [&](std::size_t i) -> const Vec3& {
@@ -349,7 +353,8 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
         metres = std::max(metres, way_out(placed.target, point, normal, height));
         if (metres >= enough) return metres;
     }
-    extents_.push_back({region, normal, height, metres});
+    extents_.push_back({region, normal, height, metres, last});
+    last = static_cast<std::uint32_t>(extents_.size() - 1);
     return metres;
 }
 

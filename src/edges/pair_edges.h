@@ -76,6 +76,7 @@ private:
         Vec3 normal;
         double height; ///< of the plane
         double metres;
+        std::uint32_t next; ///< the extent of that region found before, or NONE
     };
 
     /// concave: whether concave edges speak, too.
@@ -110,6 +111,7 @@ private:
     std::vector<OnCurve> curves_;     ///< of both sides
     std::vector<RegionPoint> points_; ///< of one side, by region
     std::vector<Extent> extents_;
+    std::vector<std::uint32_t> last_extent_;                         ///< by the first of a region's points_, or NONE
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
     std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;   ///< of one side: edges, by their vertices
     std::vector<std::pair<std::uint32_t, FeatureContact>> quiet_;    ///< of one side: vertices for which an edge speaks

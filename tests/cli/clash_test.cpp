@@ -214,6 +214,21 @@ TEST_F(Clash, OpenPartsThatCrossHaveNoDepthAndAreNotIgnored) {
     EXPECT_NE(result.err.find("open, so that nothing is inside: lying.obj, upright.obj"), std::string::npos);
 }
 
+TEST_F(Clash, OpenPartsBehindEachOtherAreNoClash) {
+    folder_.write("tent.obj", "v 0 0 1\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\nf 1 4 5\nf 1 5 2\n");
+    folder_.write("sheet.obj", "v -.1 -.1 .2\nv .1 -.1 .2\nv .1 .1 .2\nv -.1 .1 .2\nf 4 3 2 1\n");
+    const ProgramResult result = run({"tent.obj", "sheet.obj"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.out.find("0 clashes among 2 parts (1 pair of touching boxes)"), std::string::npos) << result.out;
+    // They do have contacts: a vertex of one sees the other from behind.
+    const ProgramResult pair = run_program({"collide", "tent.obj", "sheet.obj"}, folder_.path());
+    EXPECT_NE(pair.out.find(": apart, "), std::string::npos) << pair.out;
+    EXPECT_NE(pair.out.find(" of open meshes, each behind the other, deepest "), std::string::npos) << pair.out;
+    const json line = json::parse(run_program({"collide", "tent.obj", "sheet.obj", "--json"}, folder_.path()).out);
+    EXPECT_EQ(line["colliding"], true);
+    EXPECT_EQ(line["intersecting"], false);
+}
+
 TEST_F(Clash, NamesAreUnique) {
     write_assembly("all.gltf", {{"bolt", 0}, {"bolt", 0.5}, {"bolt #1", 1}, {"", 1.4}});
     std::filesystem::create_directory(folder_.path() / "other");
