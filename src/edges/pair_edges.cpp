@@ -14,8 +14,8 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 // Ends are pulled into their piece by this part of the smaller body, so that a ray from there starts inside.
 constexpr double pull = 1e-3, most_pull = 0.01;
-// An end beside vertices in contact speaks from this part of their depth on.
-constexpr double loud = 0.5;
+// An end beside vertices in contact is a contact from this part of their depth on.
+constexpr double comparable = 0.5;
 // Depths are equal if they differ by less: what was equal before vertices were moved by a hair may differ by two.
 constexpr double few_hairs = 3;
 // Of faces equally deep the one that looks most this way decides: of two that are not parallel, always the same.
@@ -76,34 +76,35 @@ void PairEdges::ask(const std::array<SourceMesh, 2>& placed,
     const std::array<std::uint32_t, 2> first{0, static_cast<std::uint32_t>(crossings_[0].size())};
     auto node = static_cast<std::uint32_t>(crossings_[0].size() + crossings_[1].size());
     for (std::size_t side = 0; side < 2; ++side) {
-        list_speakers(placed[side], vertices[side], node, speakers_[side]);
-        list_pieces(placed[side], crossings_[side], speakers_[side], first[side], concave, pieces_[side]);
+        list_vertices(placed[side], vertices[side], node, vertices_[side]);
+        list_pieces(placed[side], crossings_[side], vertices_[side], first[side], concave, pieces_[side]);
     }
     regions_.reset(node);
     curves_.clear(); // a step that failed half-way left some
     for (std::size_t side = 0; side < 2; ++side) list_curves(placed, side, first[side]);
     join_curves(placed[0]);
     for (std::size_t side = 0; side < 2; ++side) join_vertices(placed[side], side);
-    for (std::size_t side = 0; side < 2; ++side) speak(placed[side], side, found);
+    for (std::size_t side = 0; side < 2; ++side) give_contacts(placed[side], side, found);
 }
 
-void PairEdges::list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
-                              std::uint32_t& node, std::vector<Speaker>& speakers) {
-    speakers.clear();
+void PairEdges::list_vertices(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
+                              std::uint32_t& node, std::vector<VertexContact>& in_contact) {
+    in_contact.clear();
     for (const kernels::LocalContact& c : vertices)
-        speakers.push_back({c.vertex, c.triangle, double(c.distance) * double(c.facing), placed.vertex(c.vertex), 0});
-    std::sort(speakers.begin(), speakers.end(), [](const Speaker& p, const Speaker& q) { return p.vertex < q.vertex; });
-    for (Speaker& speaker : speakers) speaker.region = node++;
+        in_contact.push_back({c.vertex, c.triangle, double(c.distance) * double(c.facing), placed.vertex(c.vertex), 0});
+    std::sort(in_contact.begin(), in_contact.end(),
+              [](const VertexContact& p, const VertexContact& q) { return p.vertex < q.vertex; });
+    for (VertexContact& vertex_contact : in_contact) vertex_contact.region = node++;
 }
 
 void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const Speaker> speakers, std::uint32_t first_node, bool concave,
+                            std::span<const VertexContact> in_contact, std::uint32_t first_node, bool concave,
                             std::vector<Piece>& pieces) {
     pieces.clear();
-    const auto speaker_of = [&](std::uint32_t vertex) -> const Speaker* {
-        const auto at = std::lower_bound(speakers.begin(), speakers.end(), vertex,
-                                         [](const Speaker& s, std::uint32_t v) { return s.vertex < v; });
-        return at != speakers.end() && at->vertex == vertex ? &*at : nullptr;
+    const auto contact_at = [&](std::uint32_t vertex) -> const VertexContact* {
+        const auto at = std::lower_bound(in_contact.begin(), in_contact.end(), vertex,
+                                         [](const VertexContact& s, std::uint32_t v) { return s.vertex < v; });
+        return at != in_contact.end() && at->vertex == vertex ? &*at : nullptr;
     };
     for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
         const std::uint32_t edge = crossings[begin].edge;
@@ -125,41 +126,41 @@ void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> 
                 piece.faces[0] = own[k - 1].face;
                 piece.ends[0] = {origin + (p + by) * along, NONE, static_cast<std::uint32_t>(k - 1), nullptr};
             } else {
-                piece.ends[0] = {origin, start, edge_start, speaker_of(start)};
+                piece.ends[0] = {origin, start, edge_start, contact_at(start)};
             }
             if (leaves) {
                 piece.faces[1] = own[k].face;
                 piece.ends[1] = {origin + (q - by) * along, NONE, static_cast<std::uint32_t>(k), nullptr};
             } else {
-                piece.ends[1] = {origin + along, stop, edge_end, speaker_of(stop)};
+                piece.ends[1] = {origin + along, stop, edge_end, contact_at(stop)};
             }
             pieces.push_back(piece);
         }
     }
 }
 
-void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found) {
+void PairEdges::give_contacts(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found) {
     points_.clear();
-    loudest_.clear();
+    deepest_.clear();
     extents_.clear();
-    quiet_.clear();
+    at_vertices_.clear();
     choices_.clear();
-    for (Speaker& speaker : speakers_[side]) {
-        speaker.region = regions_.of(speaker.region);
-        points_.push_back({speaker.region, static_cast<std::uint32_t>(points_.size()), speaker.point});
-        loudest_.push_back(&speaker);
+    for (VertexContact& vertex_contact : vertices_[side]) {
+        vertex_contact.region = regions_.of(vertex_contact.region);
+        points_.push_back({vertex_contact.region, static_cast<std::uint32_t>(points_.size()), vertex_contact.point});
+        deepest_.push_back(&vertex_contact);
     }
     for (Piece& piece : pieces_[side]) {
         piece.region = regions_.of(piece.region);
         for (const End& end : piece.ends)
-            if (end.speaker == nullptr)
+            if (end.vertex_contact == nullptr)
                 points_.push_back({piece.region, static_cast<std::uint32_t>(points_.size()), end.point});
     }
     std::sort(points_.begin(), points_.end(), [](const RegionPoint& p, const RegionPoint& q) {
         return std::pair(p.region, p.number) < std::pair(q.region, q.number);
     });
     last_extent_.assign(points_.size(), NONE);
-    std::sort(loudest_.begin(), loudest_.end(), [](const Speaker* p, const Speaker* q) {
+    std::sort(deepest_.begin(), deepest_.end(), [](const VertexContact* p, const VertexContact* q) {
         if (p->region != q->region) return p->region < q->region;
         return p->depth != q->depth ? p->depth > q->depth : p->vertex < q->vertex;
     });
@@ -171,13 +172,13 @@ void PairEdges::speak(const SourceMesh& placed, std::size_t side, std::vector<Fe
         while (end < choices_.size() && choices_[end].piece->region == choices_[begin].piece->region) ++end;
         agree(placed, std::span(choices_).subspan(begin, end - begin));
     }
-    for (const Choice& choice : choices_) speak(placed.target, static_cast<VertexBody>(side), choice, found);
-    // Several edges may speak for one vertex: the lowest does.
-    std::sort(quiet_.begin(), quiet_.end(), [](const auto& p, const auto& q) {
+    for (const Choice& choice : choices_) give_contacts(placed.target, static_cast<VertexBody>(side), choice, found);
+    // Several edges may have a contact at one vertex: the lowest counts.
+    std::sort(at_vertices_.begin(), at_vertices_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
     });
-    for (std::size_t i = 0; i < quiet_.size(); ++i)
-        if (i == 0 || quiet_[i].first != quiet_[i - 1].first) found.push_back(quiet_[i].second);
+    for (std::size_t i = 0; i < at_vertices_.size(); ++i)
+        if (i == 0 || at_vertices_[i].first != at_vertices_[i - 1].first) found.push_back(at_vertices_[i].second);
 }
 
 PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face) {
@@ -195,11 +196,14 @@ PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Pie
 void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
     const ShapeData& target = placed.target;
     for (std::size_t k = 0; k < 2; ++k) {
-        const Speaker* speaker = piece.ends[k].speaker;
-        if (speaker == nullptr) continue;
-        // On a fine mesh nearly every piece begins at a vertex in contact and leaves through the rim: it is silent.
-        const Vec3 normal = normal_of(target, speaker->face);
-        if (dot(target.corner(speaker->face, 0) - piece.ends[1 - k].point, normal) < loud * speaker->depth) return;
+        const VertexContact* vertex_contact = piece.ends[k].vertex_contact;
+        if (vertex_contact == nullptr) continue;
+        // On a fine mesh nearly every piece begins at a vertex in contact and leaves through the border of the contact:
+        // it gives none.
+        const Vec3 normal = normal_of(target, vertex_contact->face);
+        if (dot(target.corner(vertex_contact->face, 0) - piece.ends[1 - k].point, normal)
+            < comparable * vertex_contact->depth)
+            return;
     }
 
     std::array<Candidate, 5> candidates;
@@ -232,7 +236,7 @@ void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
     }
     double deepest = 0;
     for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
-    if (count == 0 || deepest < loud * loudness(piece.region)) return;
+    if (count == 0 || deepest < comparable * vertex_depth(piece.region)) return;
 
     // What is equal is so to a few hairs, by which vertices were moved: rounding decides nothing. No region is
     // shallower than its piece: from the shallowest on, the rest need not be asked.
@@ -272,33 +276,35 @@ void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
     while (region[shallowest].metres >= least + few_hairs * placed.hair) ++shallowest;
     std::uint32_t face = region[shallowest].by.face;
     least = region[shallowest].metres;
-    if (const Speaker* speaker = loudest(region[0].piece->region); speaker && speaker->depth < loud * most) {
-        const Vec3 normal = normal_of(placed.target, speaker->face);
-        const double height = dot(placed.target.corner(speaker->face, 0), normal);
-        const double metres = extent(placed, speaker->region, normal, height, least);
+    if (const VertexContact* vertex_contact = deepest_vertex(region[0].piece->region);
+        vertex_contact && vertex_contact->depth < comparable * most) {
+        const Vec3 normal = normal_of(placed.target, vertex_contact->face);
+        const double height = dot(placed.target.corner(vertex_contact->face, 0), normal);
+        const double metres = extent(placed, vertex_contact->region, normal, height, least);
         if (metres < least - few_hairs * placed.hair) {
             least = metres;
-            face = speaker->face;
+            face = vertex_contact->face;
         }
     }
-    if (!(least < loud * most)) return;
+    if (!(least < comparable * most)) return;
     for (Choice& choice : region) {
-        if (!(least < loud * choice.metres)) continue;
+        if (!(least < comparable * choice.metres)) continue;
         const Candidate other = candidate_of(placed, *choice.piece, face);
         if (other.deeper() > 0) choice = {choice.piece, other, least};
     }
 }
 
-void PairEdges::speak(const ShapeData& target, VertexBody source, const Choice& choice,
-                      std::vector<FeatureContact>& found) {
+void PairEdges::give_contacts(const ShapeData& target, VertexBody source, const Choice& choice,
+                              std::vector<FeatureContact>& found) {
     const Piece& piece = *choice.piece;
     const Candidate& by = choice.by;
-    const double enough = loudest(piece.region) ? loud * choice.metres : 0;
+    const double enough = deepest_vertex(piece.region) ? comparable * choice.metres : 0;
     if (piece.ends[0].is_crossing() && piece.ends[1].is_crossing()) {
         // Where round bodies cross, both ends lie on the target's surface, and the edge is deep between them.
         const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
         const double depth = way_out(target, middle, by.normal, by.height);
-        if (depth > enough && loud * depth > std::max(by.depths[0], by.depths[1]) && static_cast<float>(depth) > 0) {
+        if (depth > enough && comparable * depth > std::max(by.depths[0], by.depths[1])
+            && static_cast<float>(depth) > 0) {
             found.push_back(
                 {source, Feature::edge, piece.edge, piece.ends[0].crossing, by.face, middle, by.normal, depth});
             return;
@@ -306,15 +312,16 @@ void PairEdges::speak(const ShapeData& target, VertexBody source, const Choice& 
     }
     for (std::size_t k = 0; k < 2; ++k) {
         const End &end = piece.ends[k], &other = piece.ends[1 - k];
-        // Above a vertex for which this piece speaks, the crossing adds nothing.
-        if (end.is_crossing() && !other.is_crossing() && by.depths[k] < loud * by.depths[1 - k]) continue;
-        if (end.speaker != nullptr || !(by.depths[k] > enough) || !(static_cast<float>(by.depths[k]) > 0)) continue;
+        // Above a vertex at which this piece has a contact, the crossing adds nothing.
+        if (end.is_crossing() && !other.is_crossing() && by.depths[k] < comparable * by.depths[1 - k]) continue;
+        if (end.vertex_contact != nullptr || !(by.depths[k] > enough) || !(static_cast<float>(by.depths[k]) > 0))
+            continue;
         const FeatureContact contact{source,  Feature::edge, piece.edge, end.crossing,
                                      by.face, end.point,     by.normal,  by.depths[k]};
         if (end.is_crossing())
             found.push_back(contact);
         else
-            quiet_.emplace_back(end.vertex, contact);
+            at_vertices_.emplace_back(end.vertex, contact);
     }
 }
 
@@ -358,10 +365,10 @@ double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const V
     return metres;
 }
 
-const PairEdges::Speaker* PairEdges::loudest(std::uint32_t region) const {
-    const auto at = std::lower_bound(loudest_.begin(), loudest_.end(), region,
-                                     [](const Speaker* s, std::uint32_t r) { return s->region < r; });
-    return at != loudest_.end() && (*at)->region == region ? *at : nullptr;
+const PairEdges::VertexContact* PairEdges::deepest_vertex(std::uint32_t region) const {
+    const auto at = std::lower_bound(deepest_.begin(), deepest_.end(), region,
+                                     [](const VertexContact* s, std::uint32_t r) { return s->region < r; });
+    return at != deepest_.end() && (*at)->region == region ? *at : nullptr;
 }
 
 } // namespace raycontact

@@ -22,7 +22,7 @@ public:
 
 private:
     /// A vertex in contact.
-    struct Speaker {
+    struct VertexContact {
         std::uint32_t vertex;
         std::uint32_t face; ///< of the target, that its ray met
         double depth;
@@ -34,7 +34,7 @@ private:
         Vec3 point; ///< pulled a little into the piece
         std::uint32_t vertex = NONE;
         std::uint32_t crossing = 0; ///< Contact::crossing
-        const Speaker* speaker = nullptr;
+        const VertexContact* vertex_contact = nullptr;
         bool is_crossing() const { return vertex == NONE; }
     };
     /// A piece of an edge inside the target.
@@ -52,7 +52,7 @@ private:
         std::array<double, 2> depths; ///< of both ends of the piece
         double deeper() const { return depths[0] > depths[1] ? depths[0] : depths[1]; }
     };
-    /// The face by which a piece speaks.
+    /// The face by which a piece gives contacts.
     struct Choice {
         const Piece* piece;
         Candidate by;
@@ -79,44 +79,45 @@ private:
         std::uint32_t next; ///< the extent of that region found before, or NONE
     };
 
-    /// concave: whether concave edges speak, too.
+    /// concave: whether concave edges have pieces, too.
     void ask(const std::array<SourceMesh, 2>& placed,
              const std::array<std::span<const kernels::LocalContact>, 2>& vertices, bool concave,
              std::vector<FeatureContact>& found);
-    static void list_speakers(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
-                              std::uint32_t& node, std::vector<Speaker>& speakers);
+    static void list_vertices(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
+                              std::uint32_t& node, std::vector<VertexContact>& in_contact);
     static void list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const Speaker> speakers, std::uint32_t first_node, bool concave,
+                            std::span<const VertexContact> in_contact, std::uint32_t first_node, bool concave,
                             std::vector<Piece>& pieces);
     void list_curves(const std::array<SourceMesh, 2>& placed, std::size_t side, std::uint32_t first_node);
     void join_curves(const SourceMesh& a_in_b);
     void join_vertices(const SourceMesh& placed, std::size_t side);
-    void speak(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
+    void give_contacts(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
     static Candidate candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face);
     void choose(const SourceMesh& placed, const Piece& piece);
     void agree(const SourceMesh& placed, std::span<Choice> region);
-    void speak(const ShapeData& target, VertexBody source, const Choice& choice, std::vector<FeatureContact>& found);
+    void give_contacts(const ShapeData& target, VertexBody source, const Choice& choice,
+                       std::vector<FeatureContact>& found);
     double extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height, double enough);
     /// The deepest vertex contact of this side in a region; null: none.
-    const Speaker* loudest(std::uint32_t region) const;
-    double loudness(std::uint32_t region) const {
-        const Speaker* speaker = loudest(region);
-        return speaker ? speaker->depth : 0;
+    const VertexContact* deepest_vertex(std::uint32_t region) const;
+    double vertex_depth(std::uint32_t region) const {
+        const VertexContact* vertex_contact = deepest_vertex(region);
+        return vertex_contact ? vertex_contact->depth : 0;
     }
 
     std::array<std::vector<Crossing>, 2> crossings_;
-    std::array<std::vector<Speaker>, 2> speakers_; ///< by vertex
+    std::array<std::vector<VertexContact>, 2> vertices_; ///< by vertex
     std::array<std::vector<Piece>, 2> pieces_;
     DisjointSets regions_;            ///< crossings and vertices that belong together
     std::vector<OnCurve> curves_;     ///< of both sides
     std::vector<RegionPoint> points_; ///< of one side, by region
     std::vector<Extent> extents_;
-    std::vector<std::uint32_t> last_extent_;                         ///< by the first of a region's points_, or NONE
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;   ///< of one side: edges, by their vertices
-    std::vector<std::pair<std::uint32_t, FeatureContact>> quiet_;    ///< of one side: vertices for which an edge speaks
-    std::vector<const Speaker*> loudest_;                            ///< of one side: by region, the deepest first
-    std::vector<Choice> choices_;                                    ///< of one side
+    std::vector<std::uint32_t> last_extent_;                            ///< by the first of a region's points_, or NONE
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_;    ///< of one side: vertex, node
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;      ///< of one side: edges, by their vertices
+    std::vector<std::pair<std::uint32_t, FeatureContact>> at_vertices_; ///< of one side: contacts of edges at vertices
+    std::vector<const VertexContact*> deepest_;                         ///< of one side: by region, the deepest first
+    std::vector<Choice> choices_;                                       ///< of one side
 };
 
 } // namespace raycontact

@@ -73,7 +73,8 @@ void PairEdges::join_curves(const SourceMesh& a_in_b) {
 void PairEdges::join_vertices(const SourceMesh& placed, std::size_t side) {
     const ShapeData& source = placed.source;
     at_vertex_.clear();
-    for (const Speaker& speaker : speakers_[side]) at_vertex_.emplace_back(speaker.vertex, speaker.region);
+    for (const VertexContact& vertex_contact : vertices_[side])
+        at_vertex_.emplace_back(vertex_contact.vertex, vertex_contact.region);
     for (const Piece& piece : pieces_[side]) {
         if (piece.ends[0].is_crossing() && piece.ends[1].is_crossing()) regions_.join(piece.region - 1, piece.region);
         for (const End& end : piece.ends)
@@ -91,25 +92,28 @@ void PairEdges::join_vertices(const SourceMesh& placed, std::size_t side) {
     }
     std::sort(crossed_.begin(), crossed_.end());
     const double near = SourceMesh::small_face * placed.size;
-    const auto join_along = [&](std::uint32_t t, std::size_t k, const Speaker& speaker) {
+    const auto join_along = [&](std::uint32_t t, std::size_t k, const VertexContact& vertex_contact) {
         const std::uint32_t p = source.mesh.triangles[t][k], q = source.mesh.triangles[t][(k + 1) % 3];
-        const std::uint32_t vertex = p == speaker.vertex ? q : p;
+        const std::uint32_t vertex = p == vertex_contact.vertex ? q : p;
         if (!is_sharp(source, t, k) && length(source.point(p) - source.point(q)) > near) return;
         const auto at = std::lower_bound(at_vertex_.begin(), at_vertex_.end(), std::pair{vertex, 0u});
         if (at == at_vertex_.end() || at->first != vertex) return;
-        const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(vertex, speaker.vertex);
-        if (!std::binary_search(crossed_.begin(), crossed_.end(), edge)) regions_.join(at->second, speaker.region);
+        const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(vertex, vertex_contact.vertex);
+        if (!std::binary_search(crossed_.begin(), crossed_.end(), edge))
+            regions_.join(at->second, vertex_contact.region);
     };
-    for (const Speaker& speaker : speakers_[side]) {
-        const std::uint32_t begin = source.vertex_triangle[speaker.vertex];
+    for (const VertexContact& vertex_contact : vertices_[side]) {
+        const std::uint32_t begin = source.vertex_triangle[vertex_contact.vertex];
         // Around the vertex; where a border ends that, the other way round, too.
         std::uint32_t t = begin;
         for (const std::size_t way : {0u, 2u}) {
             for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
                 const auto& corners = source.mesh.triangles[t];
-                const std::size_t c = corners[0] == speaker.vertex ? 0 : corners[1] == speaker.vertex ? 1 : 2;
-                join_along(t, c, speaker);
-                join_along(t, (c + 2) % 3, speaker);
+                const std::size_t c = corners[0] == vertex_contact.vertex   ? 0
+                                      : corners[1] == vertex_contact.vertex ? 1
+                                                                            : 2;
+                join_along(t, c, vertex_contact);
+                join_along(t, (c + 2) % 3, vertex_contact);
                 t = source.neighbours[t][(c + way) % 3];
                 if (t == begin) break;
             }

@@ -154,8 +154,8 @@ public:
         }
     }
 
-    std::vector<ReferenceContact> speak(const std::vector<std::uint32_t>& region, VertexBody body,
-                                        Direction direction) {
+    std::vector<ReferenceContact> contacts_of(const std::vector<std::uint32_t>& region, VertexBody body,
+                                              Direction direction) {
         gather_points(region);
         std::vector<std::optional<Choice>> choices;
         for (const Piece& piece : pieces) choices.push_back(choose(piece, region[piece.ends[0].node]));
@@ -370,7 +370,7 @@ private:
         return list;
     }
 
-    // The middle of a piece between two crossings, and its way out, if it speaks for both.
+    // The middle of a piece between two crossings, and its way out, if it stands for both.
     std::optional<std::pair<std::uint32_t, double>> deep_middle(const Piece& piece, const Choice& choice) {
         const auto& [first, last] = piece.ends;
         if (first.vertex != none || last.vertex != none) return {};
@@ -381,7 +381,7 @@ private:
         return std::pair(middle, out);
     }
 
-    bool at_a_rim(const Piece& piece) const {
+    bool leaves_by_the_border(const Piece& piece) const {
         for (const int k : {0, 1}) {
             const End& end = piece.ends[k];
             if (end.vertex == none || !contact[end.vertex]) continue;
@@ -394,7 +394,7 @@ private:
     }
 
     std::optional<Choice> choose(const Piece& piece, std::uint32_t region) {
-        if (at_a_rim(piece)) return {};
+        if (leaves_by_the_border(piece)) return {};
         Choice choice;
         choice.deepest = deepest_.contains(region) ? deepest_.at(region) : 0;
         const auto candidates = candidates_of(piece);
@@ -423,7 +423,7 @@ private:
 
     // Step 5: a region that leaves by another face at once.
     void agree(std::vector<std::optional<Choice>>& choices, const std::vector<std::uint32_t>& region) {
-        std::map<std::uint32_t, std::vector<std::size_t>> of_region; // pieces that speak
+        std::map<std::uint32_t, std::vector<std::size_t>> of_region; // pieces that give contacts
         for (std::size_t i = 0; i < pieces.size(); ++i)
             if (choices[i]) of_region[region[pieces[i].ends[0].node]].push_back(i);
         for (const auto& [name, list] : of_region) {
@@ -568,8 +568,8 @@ std::vector<ReferenceContact> find_with(const Solid& a, const Pose& pose_a, cons
     }
     join_curves(of_a, of_b, graph);
     const auto region = graph.flood();
-    std::vector<ReferenceContact> contacts = of_a.speak(region, VertexBody::a, direction);
-    const std::vector<ReferenceContact> others = of_b.speak(region, VertexBody::b, direction);
+    std::vector<ReferenceContact> contacts = of_a.contacts_of(region, VertexBody::a, direction);
+    const std::vector<ReferenceContact> others = of_b.contacts_of(region, VertexBody::b, direction);
     contacts.insert(contacts.end(), others.begin(), others.end());
     if (!with_concave && contacts.empty() && !touching && (of_a.crosses() || of_b.crosses()))
         return find_with(a, pose_a, b, pose_b, direction, true);

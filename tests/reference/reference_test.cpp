@@ -220,7 +220,7 @@ TEST(reference_edges, of_crossed_bars) {
 }
 
 TEST(reference_edges, of_a_box_in_a_box) {
-    // Nothing crosses: the deepest vertex of the small box speaks, towards the nearest wall, x = 1.
+    // Nothing crosses: the deepest vertex of the small box is the contact, towards the nearest wall, x = 1.
     const auto contacts =
         find_edges(solid(box_mesh({1, 1, 1})), {}, solid(box_mesh({0.25, 0.25, 0.25})), at(0.5, 0, 0.125));
     ASSERT_EQ(contacts.size(), 1u);
