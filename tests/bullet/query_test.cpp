@@ -80,7 +80,7 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
     Settings settings;
     settings.threads = 1;
-    bullet::ShapeCache shapes;
+    bullet::ShapeCache shapes(1);
     bullet::Queries queries(settings, shapes, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
