@@ -147,6 +147,23 @@ TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
     EXPECT_EQ(contacts(plate, ball, at(0, 0, 0.28)).size(), 1u);
 }
 
+TEST(Round, ARadiusOfNothingIsPushedOut) {
+    for (const bool ball : {true, false}) {
+        TestWorld w;
+        const btRigidBody& box = w.add_mesh(Shape::make(box_mesh(4, 4, 4)), 0, at(0, 0, 0));
+        std::unique_ptr<btCollisionShape> shape = std::make_unique<btCapsuleShape>(btScalar(0), btScalar(1));
+        if (ball) shape = std::make_unique<btSphereShape>(btScalar(0));
+        const auto found = contacts(converted(Shape::make(box_mesh(4, 4, 4))), *shape, at(0.2, 0.1, 1.7));
+        ASSERT_EQ(found.size(), ball ? 1u : 2u);
+        EXPECT_NEAR(double(found[0].distance), -0.3, 1e-5);
+        EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+        w.add(std::move(shape), 1, at(0.2, 0.1, 1.7));
+        w.steps(1);
+        EXPECT_EQ(w.dispatcher.stats().contacts, found.size()) << ball;
+        EXPECT_EQ(box.getWorldTransform(), at(0, 0, 0));
+    }
+}
+
 /// Rolls without sliding along x for 10 m; gives the way sideways and the speed that is left.
 void roll(TestWorld& w, btRigidBody& ball, double radius, double& aside, double& speed) {
     ball.setLinearVelocity(btVector3(2, 0, 0));

@@ -210,7 +210,8 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
 /// An end so deep inside that no surface is in its reach: the nearest way out, found by growing steps.
 void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, std::vector<Found>& out) {
     if (!contains(*mesh.shape, to_vec(centre))) return;
-    const btScalar most = 4 * btScalar(mesh.shape->radius()) + limit;
+    const btScalar size = btScalar(mesh.shape->radius()), most = 4 * size + limit;
+    limit = btMax(limit, btScalar(1e-3) * size); // a radius of 0 would not grow
     while (out.empty() && limit < most) {
         limit *= 2;
         Neighbourhood(mesh, centre, centre, limit).of_end(centre, out);
