@@ -3,6 +3,7 @@
 #include "test_world.h"
 
 #include <query.h>
+#include <raycontact/error.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
@@ -10,6 +11,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace raycontact::test {
 namespace {
@@ -95,6 +100,92 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     EXPECT_EQ(manifold->getNumContacts(), 4);
     EXPECT_EQ(queries.scene().body_count(), 0u);
     w.dispatcher.releaseManifold(manifold);
+}
+
+/// Notes depths, and calls `then` for each.
+struct Noted : btCollisionWorld::ContactResultCallback {
+    std::vector<btScalar> depths;
+    std::function<void()> then = [] {};
+    btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        depths.push_back(p.getDistance());
+        then();
+        return 0;
+    }
+};
+
+TEST(Query, ACallbackMayAskAboutAnotherPair) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(table(), 0, at(0, 0, 0.39));
+    btRigidBody& ring = w.add_mesh(torus(), 0, at(3, 0, 0));
+    btRigidBody& box = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(3.4, 0.1, 0.2));
+    Noted alone, other, nested;
+    w.world.contactPairTest(&high, &low, alone);
+    w.world.contactPairTest(&ring, &box, other);
+    ASSERT_EQ(alone.depths.size(), 16u);
+    ASSERT_FALSE(other.depths.empty());
+    nested.then = [&] {
+        Noted inner;
+        w.world.contactPairTest(&ring, &box, inner);
+        EXPECT_EQ(inner.depths, other.depths);
+    };
+    w.world.contactPairTest(&high, &low, nested);
+    EXPECT_EQ(nested.depths, alone.depths);
+}
+
+TEST(Query, ACallbackMayThrow) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(table(), 0, at(0, 0, 0.39));
+    // One of these is Bullet's pair of leaves.
+    auto both = std::make_unique<btCompoundShape>();
+    both->addChildShape(at(0, 0, 0.3), &w.keep(std::make_unique<btBoxShape>(btVector3(1, 1, 1))));
+    both->addChildShape(at(0, 0, 9), &w.keep(std::make_unique<bullet::MeshShape>(table())));
+    btRigidBody& compound = w.add(std::move(both), 0, at(0, 0, 0));
+    btRigidBody& ball = w.add(std::make_unique<btCompoundShape>(), 0, at(0, 0, 0));
+    static_cast<btCompoundShape*>(ball.getCollisionShape())
+        ->addChildShape(at(0, 0, 1.3), &w.keep(std::make_unique<btSphereShape>(btScalar(0.4))));
+    static_cast<btCompoundShape*>(ball.getCollisionShape())
+        ->addChildShape(at(9, 0, 0), &w.keep(std::make_unique<bullet::MeshShape>(table())));
+    const int manifolds = w.dispatcher.getNumManifolds();
+    for (const auto& [a, b] : {std::pair(&high, &low), std::pair(&compound, &ball)}) {
+        Noted noted;
+        noted.then = [] { throw std::runtime_error("enough"); };
+        EXPECT_THROW(w.world.contactPairTest(a, b, noted), std::runtime_error);
+        EXPECT_EQ(w.dispatcher.getNumManifolds(), manifolds);
+        noted.then = [] {};
+        noted.depths.clear();
+        w.world.contactPairTest(a, b, noted);
+        EXPECT_FALSE(noted.depths.empty());
+    }
+}
+
+TEST(Query, WhatThrowsLeavesNoBody) {
+    struct Throwing : btManifoldResult {
+        using btManifoldResult::btManifoldResult;
+        void addContactPoint(const btVector3&, const btVector3&, btScalar) override {
+            throw std::runtime_error("enough");
+        }
+    };
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
+    bullet::ShapeCache shapes(1);
+    bullet::Queries queries({}, shapes, bullet::ConvexShapes::ours, w.dispatcher);
+    btTransform sheared = high.getWorldTransform();
+    sheared.getBasis()[0][0] = btScalar(3);
+    for (const bool pose_is_bad : {false, true}) {
+        const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
+        const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high,
+                                         pose_is_bad ? sheared : high.getWorldTransform(), -1, -1);
+        Throwing result(&a, &b);
+        if (pose_is_bad)
+            EXPECT_THROW(queries.run(a, b, w.world.getDispatchInfo(), result), InputError);
+        else
+            EXPECT_THROW(queries.run(a, b, w.world.getDispatchInfo(), result), std::runtime_error);
+        EXPECT_EQ(queries.scene().body_count(), 0u);
+    }
 }
 
 TEST(Query, ContactPairTestWithPlaneBothWays) {

@@ -199,9 +199,15 @@ void CollisionDispatcher::State::visit(btBroadphasePair& pair, const btDispatche
 
 void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherInfo& info) {
     if (!PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair);
-    asking = true;
-    dispatcher.getNearCallback()(pair, dispatcher, info);
-    asking = false;
+    struct Asking {
+        bool& now;
+        explicit Asking(bool& flag) : now(flag) { now = true; }
+        ~Asking() { now = false; } // also if the callback throws
+    };
+    {
+        const Asking while_called(asking);
+        dispatcher.getNearCallback()(pair, dispatcher, info);
+    }
     PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
     if (!algorithm) return;
     if (algorithm->take_wanted()) {
@@ -222,7 +228,7 @@ btCollisionAlgorithm* CollisionDispatcher::findAlgorithm(const btCollisionObject
     btCollisionAlgorithmConstructionInfo info(this, -1);
     if (state_->asking && type == BT_CONTACT_POINT_ALGORITHMS && is_whole(*a) && is_whole(*b))
         return new (allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info);
-    return new (allocateCollisionAlgorithm(sizeof(QueryAlgorithm))) QueryAlgorithm(info, state_->queries, *a, *b);
+    return new (allocateCollisionAlgorithm(sizeof(QueryAlgorithm))) QueryAlgorithm(info, state_->queries);
 }
 
 // Prefetches the state of some pairs ahead: it lies scattered in memory, and the solver has used the caches since.
