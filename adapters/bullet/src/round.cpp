@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <axis.h>
 #include <round.h>
 #include <vectors.h>
 
@@ -9,6 +10,8 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 namespace raycontact::bullet {
@@ -219,6 +222,19 @@ void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, st
     std::erase_if(out, [](const Found& f) { return f.away > 0; });
 }
 
+/// What neither ends nor sides see: an axis inside the mesh between them.
+void add_axis(const Converted& mesh, const btVector3& a, const btVector3& b,
+              const std::array<std::span<const Found>, 2>& ends, std::vector<Found>& out) {
+    const MeshReport& report = mesh.shape->report();
+    std::array<bool, 2> known{};
+    for (std::size_t k = 0; k < 2; ++k)
+        known[k] = (report.closed && report.oriented)
+                   || std::any_of(ends[k].begin(), ends[k].end(), [](const Found& f) { return f.away < 0; });
+    static thread_local std::vector<WayOut> ways;
+    ways_out(mesh, a, b, known, ways);
+    for (const WayOut& way : ways) out.push_back({way.point, way.normal, -way.depth, way.triangle});
+}
+
 } // namespace
 
 Round round_of(const btCollisionShape& shape) {
@@ -274,6 +290,7 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     }
     if (first.empty()) deep_end(mesh, a, limit, first);
     if (second.empty() && round.balls > 1) deep_end(mesh, b, limit, second);
+    if (round.balls > 1) add_axis(mesh, a, b, {first, second}, found);
     give(0, first);
     give(1, second);
     give(2, found);
