@@ -270,7 +270,12 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
     if (!algorithm->state()) {
         // A record made here has no pair yet; PairState, made next, acquires it.
         objects.refresh(a, dispatch);
-        objects.refresh(b, dispatch);
+        try {
+            objects.refresh(b, dispatch);
+        } catch (...) {
+            objects.drop_unused(&a);
+            throw;
+        }
         algorithm->set_state(std::make_unique<PairState>(dispatcher, objects, &a, &b));
     }
     return *algorithm->state();

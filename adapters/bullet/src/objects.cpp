@@ -42,6 +42,15 @@ Object* Objects::find(const btCollisionObject& object) {
     return i == records_.end() ? nullptr : &i->second;
 }
 
+Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
+    try {
+        return refresh(object, records_[&object], dispatch);
+    } catch (...) {
+        drop_unused(&object);
+        throw;
+    }
+}
+
 Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     if (!unchanged(object, record)) make_leaves(object, record);
@@ -68,21 +77,26 @@ void Objects::expect(const btCollisionObject& object, const Object& record) {
 
 void Objects::make_leaves(const btCollisionObject& object, Object& record) {
     drop_bodies(record);
-    each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
-              [&](const btCollisionShape& shape, const btTransform& local) {
-                  Leaf leaf;
-                  leaf.shape = &shape;
-                  leaf.local = local;
-                  leaf.kind = kind_for_us(shape);
-                  if (in_scene(leaf.kind)) {
-                      leaf.form = form_of(shape);
-                      leaf.converted = shapes_.get(shape);
-                      if (leaf.converted.shape)
-                          leaf.body =
-                              scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
-                  }
-                  record.leaves.push_back(leaf);
-              });
+    const auto make = [&](const btCollisionShape& shape, const btTransform& local) {
+        Leaf leaf;
+        leaf.shape = &shape;
+        leaf.local = local;
+        leaf.kind = kind_for_us(shape);
+        if (in_scene(leaf.kind)) {
+            leaf.form = form_of(shape);
+            leaf.converted = shapes_.get(shape);
+            if (leaf.converted.shape)
+                leaf.body = scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
+        }
+        record.leaves.push_back(leaf);
+    };
+    try {
+        each_leaf(*object.getCollisionShape(), btTransform::getIdentity(), make);
+    } catch (...) { // of one child: those before it do not stay without it
+        drop_bodies(record);
+        record.version = 0;
+        throw;
+    }
     record.version = ++versions_;
     record.stale = false;
 }
@@ -98,10 +112,14 @@ void Objects::release(const btCollisionObject* object) {
     const auto i = records_.find(object);
     if (i == records_.end()) return;
     if (i->second.uses > 0) --i->second.uses;
-    if (i->second.uses == 0 && !i->second.pinned) {
-        drop_bodies(i->second);
-        records_.erase(i);
-    }
+    drop_unused(object);
+}
+
+void Objects::drop_unused(const btCollisionObject* object) {
+    const auto i = records_.find(object);
+    if (i == records_.end() || i->second.uses > 0 || i->second.pinned) return;
+    drop_bodies(i->second);
+    records_.erase(i);
 }
 
 void Objects::refresh_pinned(std::uint64_t dispatch) {
@@ -117,10 +135,7 @@ void Objects::pin(const btCollisionObject& object, bool pinned) {
             std::erase_if(pinned_, [&](const auto& one) { return one.first == &object; });
     }
     i->second.pinned = pinned;
-    if (!pinned && i->second.uses == 0) {
-        drop_bodies(i->second);
-        records_.erase(i);
-    }
+    drop_unused(&object);
 }
 
 } // namespace raycontact::bullet
