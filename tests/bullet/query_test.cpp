@@ -7,11 +7,14 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -186,6 +189,73 @@ TEST(Query, WhatThrowsLeavesNoBody) {
             EXPECT_THROW(queries.run(a, b, w.world.getDispatchInfo(), result), std::runtime_error);
         EXPECT_EQ(queries.scene().body_count(), 0u);
     }
+}
+
+/// Counts how often its triangles are read.
+struct CountedMesh : btTriangleMesh {
+    mutable int reads = 0;
+    explicit CountedMesh(const Shape& shape) {
+        const auto corner = [&](std::uint32_t v) {
+            const Vec3& p = shape.vertices()[v];
+            return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
+        };
+        for (const auto& t : shape.triangles()) addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
+    }
+    void getLockedReadOnlyVertexIndexBase(const unsigned char** vertices, int& vertex_count, PHY_ScalarType& type,
+                                          int& stride, const unsigned char** indices, int& index_stride, int& triangles,
+                                          PHY_ScalarType& index_type, int part) const override {
+        ++reads;
+        btTriangleMesh::getLockedReadOnlyVertexIndexBase(vertices, vertex_count, type, stride, indices, index_stride,
+                                                         triangles, index_type, part);
+    }
+};
+
+// In the hole of a ring, so that no triangle is looked up for a name.
+TEST(Query, AMeshOfBulletsIsReadOnce) {
+    CountedMesh mesh(*torus());
+    TestWorld w;
+    btRigidBody& ring = w.add(std::make_unique<btBvhTriangleMeshShape>(&mesh, true), 0, at(0, 0, 0));
+    btRigidBody& box = w.add_mesh(Shape::make(box_mesh(0.1, 0.1, 0.1)), 0, at(0, 0, 0));
+    Found found;
+    w.world.contactPairTest(&ring, &box, found);
+    const int once = mesh.reads;
+    for (int i = 0; i < 10; ++i) w.world.contactPairTest(&ring, &box, found);
+    EXPECT_EQ(mesh.reads, once);
+    EXPECT_EQ(found.count, 0);
+    w.dispatcher.refresh(ring);
+    w.world.contactPairTest(&ring, &box, found);
+    EXPECT_GT(mesh.reads, once);
+    // Scaled it is another mesh.
+    const int again = mesh.reads;
+    ring.getCollisionShape()->setLocalScaling(btVector3(2, 2, 2));
+    w.world.contactPairTest(&ring, &box, found);
+    EXPECT_GT(mesh.reads, again);
+}
+
+TEST(Query, WithoutADispatchOldShapesAreForgotten) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    bullet::ShapeCache shapes(1);
+    Settings settings;
+    settings.threads = 1;
+    bullet::Queries queries(settings, shapes, bullet::ConvexShapes::ours, w.dispatcher);
+    const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
+    std::vector<std::weak_ptr<const Shape>> made;
+    btBoxShape first(btVector3(1, 1, 1));
+    btCollisionObject object;
+    object.setCollisionShape(&first);
+    object.setWorldTransform(at(0, 0, 0.3));
+    btPersistentManifold* manifold = w.dispatcher.getNewManifold(&low, &object);
+    for (int i = 0; i < 2000; ++i) {
+        const btBoxShape box(btVector3(1, 1, 1) * btScalar(0.5 + 1e-4 * i));
+        const btCollisionObjectWrapper b(nullptr, &box, &object, object.getWorldTransform(), -1, -1);
+        btManifoldResult result(&a, &b);
+        result.setPersistentManifold(manifold);
+        queries.run(a, b, w.world.getDispatchInfo(), result);
+        made.push_back(shapes.get(box).shape);
+    }
+    EXPECT_LT(std::count_if(made.begin(), made.end(), [](const auto& shape) { return !shape.expired(); }), 1000);
+    w.dispatcher.releaseManifold(manifold);
 }
 
 TEST(Query, ContactPairTestWithPlaneBothWays) {

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -73,7 +74,12 @@ public:
     explicit ShapeCache(std::uint32_t threads) : threads_(threads) {}
     /// `shape` is of kind mesh, field or convex.
     Converted get(const btCollisionShape& shape);
-    /// Call it once a dispatch: drops shapes that no body has used for a while.
+    /// The same for a shape that is asked for again and again without a body: a mesh interface or field is read anew
+    /// only when its form or box changes, after forget(), or if it was not asked for in a while.
+    Converted get_again(const btCollisionShape& shape);
+    void forget(const btCollisionShape& shape) { known_.erase(&shape); }
+    /// Call it once a dispatch: drops shapes that no body has used for a while. Making shapes counts as time, too, so
+    /// that memory is bounded where nothing is ever dispatched.
     void sweep();
 
 private:
@@ -84,11 +90,19 @@ private:
         Converted converted;
         std::uint64_t used = 0;
     };
+    /// What get_again() knows by address.
+    struct Known {
+        Form form;
+        btVector3 low, high; ///< its box: a new mesh may lie where an old one lay
+        Converted converted;
+        std::uint64_t used = 0;
+    };
     Converted get_convex(const btCollisionShape& shape);
     Converted convert(const Mesh& mesh, Repair repair) const;
 
     std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
+    std::unordered_map<const btCollisionShape*, Known> known_;
     std::uint64_t now_ = 0;
 };
 

@@ -444,6 +444,9 @@ void CollisionDispatcher::remove_body(const btCollisionObject& object) {
 
 void CollisionDispatcher::refresh(const btCollisionObject& object) {
     if (Object* record = state_->objects.find(object)) record->stale = true;
+    if (object.getCollisionShape())
+        each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
+                  [&](const btCollisionShape& shape, const btTransform&) { state_->objects.shapes().forget(shape); });
 }
 
 void CollisionDispatcher::prepare() {

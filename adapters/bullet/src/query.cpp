@@ -77,7 +77,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
                        btManifoldResult& result) {
     const auto convert = [&](Placed& placed) {
         if (in_scene(placed.leaf.kind) && !placed.leaf.converted.shape)
-            placed.leaf.converted = shapes_.get(*placed.leaf.shape);
+            placed.leaf.converted = shapes_.get_again(*placed.leaf.shape);
     };
     if (a.leaf.kind == Kind::mesh || b.leaf.kind == Kind::mesh) {
         convert(a);
