@@ -103,9 +103,11 @@ void append(Mesh& mesh, const btStridingMeshInterface& interface, int index, con
 /// A height field is open: its faces must point up, or it would support bodies from below.
 struct FieldTriangles : btTriangleCallback {
     Mesh* mesh;
+    std::vector<PlaceName>* names;
     int up;
-    FieldTriangles(Mesh* m, int u) : mesh(m), up(u) {}
-    void processTriangle(btVector3* t, int, int) override {
+    FieldTriangles(Mesh* m, std::vector<PlaceName>* n, int u) : mesh(m), names(n), up(u) {}
+    void processTriangle(btVector3* t, int part, int index) override {
+        names->push_back({part, index});
         const auto base = static_cast<std::uint32_t>(mesh->vertices.size());
         for (int k = 0; k < 3; ++k) mesh->vertices.push_back({double(t[k].x()), double(t[k].y()), double(t[k].z())});
         const bool looks_up = (t[1] - t[0]).cross(t[2] - t[0])[up] > 0;
@@ -138,14 +140,15 @@ void append_gimpact(Mesh& mesh, const btGImpactMeshShapePart& part) {
     append(mesh, *manager->m_meshInterface, part.getPart(), part.getLocalScaling());
 }
 
-Mesh extract(const btCollisionShape& shape) {
+/// names: of a field's triangles, otherwise none.
+Mesh extract(const btCollisionShape& shape, std::vector<PlaceName>& names) {
     Mesh mesh;
     mesh.name = shape.getName();
     if (shape.getShapeType() == TERRAIN_SHAPE_PROXYTYPE) {
         const auto& field = static_cast<const btHeightfieldTerrainShape&>(shape);
         btVector3 low, high;
         field.getAabb(btTransform::getIdentity(), low, high);
-        FieldTriangles triangles(&mesh, field.getUpAxis());
+        FieldTriangles triangles(&mesh, &names, field.getUpAxis());
         field.processAllTriangles(&triangles, low, high);
     } else if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
         const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
@@ -350,12 +353,14 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
 Converted ShapeCache::get(const btCollisionShape& shape) {
     if (has_stand_in(shape)) return get_convex(shape);
     if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
-    Mesh mesh = extract(shape);
+    std::vector<PlaceName> names;
+    Mesh mesh = extract(shape, names);
     const std::uint64_t hash = content_hash(mesh);
     const auto [first, last] = entries_.equal_range(hash);
     for (auto i = first; i != last; ++i) {
+        const auto& known_names = i->second.converted.names;
         if (i->second.numbers.empty() && i->second.mesh.vertices == mesh.vertices
-            && i->second.mesh.triangles == mesh.triangles) {
+            && i->second.mesh.triangles == mesh.triangles && (known_names ? *known_names == names : names.empty())) {
             i->second.used = now_;
             return i->second.converted;
         }
@@ -365,6 +370,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
     entry.converted = convert(mesh, repair);
+    if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
     entry.mesh = std::move(mesh);
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;

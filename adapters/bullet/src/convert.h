@@ -16,11 +16,19 @@
 
 namespace raycontact::bullet {
 
+/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a shape without triangles.
+/// Of a height field Bullet's two numbers are twice the column, plus one in its second triangle, and the row.
+struct PlaceName {
+    int part = -1, index = -1;
+    friend bool operator==(const PlaceName&, const PlaceName&) = default;
+};
+
 /// A converted Bullet mesh, or a convex shape's stand-in: what RayContact and the tests of planes and balls need of it.
 /// Without a shape where a convex shape is flat.
 struct Converted {
     std::shared_ptr<const Shape> shape;
     std::shared_ptr<const MeshTree> tree;
+    std::shared_ptr<const std::vector<PlaceName>> names{}; ///< of a field's triangles; null of other shapes
 };
 
 /// What RayContact sees in a shape that is not a compound.
@@ -42,12 +50,7 @@ constexpr unsigned bit(Kind kind) {
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
-/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a shape without triangles.
-struct PlaceName {
-    int part = -1, index = -1;
-    friend bool operator==(const PlaceName&, const PlaceName&) = default;
-};
-/// Of a mesh or field. triangle: counted through all sub-parts.
+/// Of a mesh. triangle: counted through all sub-parts.
 PlaceName name_of_triangle(const btCollisionShape& shape, int triangle);
 
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
