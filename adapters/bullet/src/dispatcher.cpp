@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 namespace raycontact::bullet {
 
@@ -63,6 +64,13 @@ HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
     const bool plane_is_0 = a.kind == Kind::plane;
     const Leaf& plane = plane_is_0 ? a : b;
     return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
+}
+
+const ManifoldSettings& checked(const ManifoldSettings& settings) {
+    if (settings.keep_steps < 0 || settings.keep_steps > most_keep_steps)
+        throw InputError("ManifoldSettings::keep_steps is " + std::to_string(settings.keep_steps) + "; give 0 to "
+                         + std::to_string(most_keep_steps));
+    return settings;
 }
 
 void name_places(PairState& state) {
@@ -117,7 +125,8 @@ struct CollisionDispatcher::State {
 
 CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
                                          const ManifoldSettings& manifolds, ConvexShapes convex)
-    : btCollisionDispatcher(configuration), state_(std::make_unique<State>(*this, settings, manifolds, convex)) {}
+    : btCollisionDispatcher(configuration),
+      state_(std::make_unique<State>(*this, settings, checked(manifolds), convex)) {}
 
 CollisionDispatcher::~CollisionDispatcher() = default;
 
