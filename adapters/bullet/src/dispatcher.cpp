@@ -15,6 +15,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
 #include <optional>
@@ -98,6 +99,7 @@ struct CollisionDispatcher::State {
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
     PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
+    bool apart(const Leaf& a, const Leaf& b) const;
     std::optional<HalfSpace> face_between(const PairState& state, const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
@@ -292,12 +294,15 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
 
 void CollisionDispatcher::State::gather(PairState& state, const Object& a, const Object& b,
                                         const btDispatcherInfo& info) {
+    // The broad phase has tested the boxes of whole objects.
+    const bool several = a.leaves.size() > 1 || b.leaves.size() > 1;
     for (int i = 0; i < static_cast<int>(a.leaves.size()); ++i) {
         for (int j = 0; j < static_cast<int>(b.leaves.size()); ++j) {
             const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
             switch (work_for(la, lb)) {
             case Work::batch: {
+                if (several && apart(la, lb)) break;
                 if (const auto face = face_between(state, la, lb)) {
                     add_plane(state, i, j, la, lb, *face);
                     break;
@@ -323,6 +328,18 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             }
         }
     }
+}
+
+// Vertices reach an open mesh from beyond its box; other methods follow, and `continuous` expects, what is still apart.
+bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
+    const Settings& settings = scene.settings();
+    if (settings.continuous || (settings.method != Method::standard && settings.method != Method::certified))
+        return false;
+    for (const Leaf* leaf : {&a, &b}) {
+        const MeshReport& report = leaf->converted.shape->report();
+        if (!report.closed || !report.oriented) return false;
+    }
+    return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
 }
 
 // The batch alone knows other directions, and what is coming.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <objects.h>
+#include <vectors.h>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransformUtil.h>
@@ -14,6 +15,17 @@ Pose to_pose(const btTransform& transform) {
     const btVector3& t = transform.getOrigin();
     pose.translation = {static_cast<double>(t.x()), static_cast<double>(t.y()), static_cast<double>(t.z())};
     return pose;
+}
+
+void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVector3& high) {
+    const btVector3 least = to_bullet(shape.box_min()), most = to_bullet(shape.box_max());
+    const btVector3 middle = pose((least + most) / 2), half = (most - least) / 2;
+    const btVector3 extent =
+        half.dot3(pose.getBasis()[0].absolute(), pose.getBasis()[1].absolute(), pose.getBasis()[2].absolute());
+    const btScalar coordinates = half.length() + middle.length() + btScalar(shape.radius());
+    const btScalar slack = btScalar(1e-5) * coordinates;
+    low = middle - extent - btVector3(slack, slack, slack);
+    high = middle + extent + btVector3(slack, slack, slack);
 }
 
 Kind Objects::kind_for_us(const btCollisionShape& shape) const {
@@ -54,8 +66,11 @@ Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch
 Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     if (!unchanged(object, record)) make_leaves(object, record);
-    for (const Leaf& leaf : record.leaves) {
-        if (leaf.body != Leaf::no_body) scene_.set_pose(leaf.body, to_pose(object.getWorldTransform() * leaf.local));
+    for (Leaf& leaf : record.leaves) {
+        if (leaf.body == Leaf::no_body) continue;
+        const btTransform pose = object.getWorldTransform() * leaf.local;
+        scene_.set_pose(leaf.body, to_pose(pose));
+        find_box(*leaf.converted.shape, pose, leaf.low, leaf.high);
     }
     if (ahead_ > 0) expect(object, record);
     record.seen = dispatch;

@@ -21,8 +21,9 @@ struct Leaf {
     btTransform local = btTransform::getIdentity(); ///< leaf frame in the object's frame
     Form form;                                      ///< at conversion
     Kind kind = Kind::other;
-    Converted converted;   ///< mesh, field or convex
-    BodyId body = no_body; ///< in the scene; of the same kinds
+    Converted converted;                   ///< mesh, field or convex
+    BodyId body = no_body;                 ///< in the scene; of the same kinds
+    btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     static constexpr BodyId no_body = ~BodyId{0};
 };
 
@@ -99,5 +100,7 @@ private:
 };
 
 Pose to_pose(const btTransform& transform);
+/// The box of a shape in the world, from its own box, a little larger than rounding can make it.
+void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVector3& high);
 
 } // namespace raycontact::bullet
