@@ -6,11 +6,13 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -301,6 +303,58 @@ TEST(Callbacks, AddedNamesSubPartsAndTrianglesOnBothSides) {
     TwoParts level;
     TestWorld w;
     expect_named(w, level, w.add(std::make_unique<btBvhTriangleMeshShape>(&level.array, true), 0, at(0, 0, 0)));
+}
+
+// By two numbers of Bullet's own, neither of which counts the triangles.
+TEST(Callbacks, AddedNamesTrianglesOfAHeightFieldAsBulletDoes) {
+    struct Triangles : btTriangleCallback {
+        std::map<std::pair<int, int>, std::vector<btVector3>> by_name;
+        void processTriangle(btVector3* t, int part, int index) override { by_name[{part, index}].assign(t, t + 3); }
+        /// Whether the point lies over the triangle, to a millimetre.
+        bool lies_over(const btVector3& p, const std::pair<int, int>& name) const {
+            const std::vector<btVector3>& t = by_name.at(name);
+            btScalar sides[3];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const btVector3 side = t[(k + 1) % 3] - t[k], to = p - t[k];
+                sides[k] = side.x() * to.y() - side.y() * to.x();
+            }
+            const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+            return least > btScalar(-2e-3) || most < btScalar(2e-3);
+        }
+    };
+    const std::vector<btScalar> heights(11 * 7, btScalar(0));
+    TestWorld w;
+    auto shape =
+        std::make_unique<btHeightfieldTerrainShape>(11, 7, heights.data(), btScalar(-1), btScalar(1), 2, false);
+    Triangles triangles;
+    shape->processAllTriangles(&triangles, btVector3(-9, -9, -9), btVector3(9, 9, 9));
+    ASSERT_EQ(triangles.by_name.size(), 120u);
+    btRigidBody& field = w.add(std::move(shape), 0, at(0, 0, 0));
+    btRigidBody& box = w.add_mesh(Shape::make(box_mesh(3.3, 2.4, 0.4)), 5, at(1.7, -0.6, 0.19));
+    for (btRigidBody* body : {&field, &box})
+        body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+    added_places.clear();
+    gContactAddedCallback = note_added;
+    w.steps(1);
+    gContactAddedCallback = nullptr;
+    // And to those who ask.
+    struct Asked : btCollisionWorld::ContactResultCallback {
+        btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper* a, int part0, int index0,
+                                 const btCollisionObjectWrapper* b, int part1, int index1) override {
+            note_added(p, a, part0, index0, b, part1, index1);
+            return 0;
+        }
+    } asked;
+    w.world.contactPairTest(&field, &box, asked);
+    std::set<std::pair<int, int>> names;
+    for (const AddedPlace& place : added_places) {
+        if (place.object != &field) continue;
+        const std::pair name(place.part, place.index);
+        ASSERT_TRUE(triangles.by_name.contains(name)) << place.part << ", " << place.index;
+        EXPECT_TRUE(triangles.lies_over(place.point, name)) << place.part << ", " << place.index;
+        names.insert(name);
+    }
+    EXPECT_GE(names.size(), 4u); // of the four corners
 }
 
 TEST(Callbacks, AddedNamesThePartsOfAGImpactMesh) {

@@ -54,7 +54,7 @@ TEST(Convert, PartsOfEveryTypeOneAfterAnother) {
     mesh.addIndexedMesh(c.part(PHY_FLOAT, PHY_UCHAR), PHY_UCHAR);
     btBvhTriangleMeshShape shape(&mesh, true, false);
     ASSERT_EQ(kind_of(shape), Kind::mesh);
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     const auto converted = cache.get(shape);
     EXPECT_EQ(converted.shape->triangles().size(), 36u);
     EXPECT_EQ(converted.shape->vertices().size(), 24u);
@@ -72,7 +72,7 @@ TEST(Convert, EqualContentIsOneShape) {
     mb.addIndexedMesh(b.part(PHY_FLOAT, PHY_INTEGER));
     mc.addIndexedMesh(c.part(PHY_FLOAT, PHY_INTEGER));
     btBvhTriangleMeshShape sa(&ma, true), sb(&mb, true), sc(&mc, true);
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     EXPECT_EQ(cache.get(sa).shape, cache.get(sb).shape);
     EXPECT_NE(cache.get(sa).shape, cache.get(sc).shape);
     // Nobody holds them: gone after a while, made anew when asked for.
@@ -89,7 +89,7 @@ TEST(Convert, ScalingAndMirroring) {
     mesh.addIndexedMesh(a.part(PHY_FLOAT, PHY_INTEGER));
     btBvhTriangleMeshShape base(&mesh, true);
     const btScaledBvhTriangleMeshShape scaled(&base, btVector3(2, 3, -1));
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     const auto converted = cache.get(scaled);
     EXPECT_NEAR(converted.shape->report().volume, 6, 1e-5); // positive: windings turned with the mirror
     EXPECT_NEAR(converted.shape->box_max().y, 1.5, 1e-6);
@@ -108,7 +108,7 @@ TEST(Convert, BadMeshesAreNamed) {
     btTriangleIndexVertexArray mesh;
     mesh.addIndexedMesh(a.part(PHY_FLOAT, PHY_INTEGER));
     btBvhTriangleMeshShape shape(&mesh, true);
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     a.indices[5] = 77;
     try {
         cache.get(shape);

@@ -3,10 +3,13 @@
 #include "contact_events.h"
 #include "test_world.h"
 
+#include <raycontact/error.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
 
 namespace raycontact::test {
@@ -216,6 +219,37 @@ TEST(Manifold, SleepingPairsKeepTheirs) {
     body.activate(true);
     w.steps(1);
     EXPECT_EQ(w.dispatcher.stats().pairs, 1u);
+}
+
+TEST(Manifold, KeepStepsBeyondItsCounterIsRefused) {
+    btDefaultCollisionConfiguration configuration;
+    bullet::ManifoldSettings settings;
+    for (const int steps : {-1, 256, 1000000}) {
+        settings.keep_steps = steps;
+        try {
+            const bullet::CollisionDispatcher dispatcher(&configuration, {}, settings);
+            FAIL() << steps << " was taken";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("keep_steps"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("255"), std::string::npos) << error.what();
+        }
+    }
+    for (const int steps : {0, 255}) {
+        settings.keep_steps = steps;
+        EXPECT_NO_THROW(bullet::CollisionDispatcher(&configuration, {}, settings));
+    }
+    // Held all that time, and then no more.
+    TestWorld w({}, settings);
+    w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.399));
+    w.world.performDiscreteCollisionDetection();
+    body.setWorldTransform(at(0, 0, 0.405));
+    for (int i = 0; i < 255; ++i) {
+        w.world.performDiscreteCollisionDetection();
+        ASSERT_GT(w.dispatcher.stats().points_held, 0u) << i;
+    }
+    w.world.performDiscreteCollisionDetection();
+    EXPECT_EQ(w.dispatcher.stats().points, 0u);
 }
 
 TEST(Manifold, FilteredPairsAreLeftOut) {

@@ -3,13 +3,21 @@
 #include "test_world.h"
 
 #include <query.h>
+#include <raycontact/error.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace raycontact::test {
 namespace {
@@ -80,7 +88,7 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
     Settings settings;
     settings.threads = 1;
-    bullet::ShapeCache shapes;
+    bullet::ShapeCache shapes(1);
     bullet::Queries queries(settings, shapes, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
@@ -94,6 +102,159 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     }
     EXPECT_EQ(manifold->getNumContacts(), 4);
     EXPECT_EQ(queries.scene().body_count(), 0u);
+    w.dispatcher.releaseManifold(manifold);
+}
+
+/// Notes depths, and calls `then` for each.
+struct Noted : btCollisionWorld::ContactResultCallback {
+    std::vector<btScalar> depths;
+    std::function<void()> then = [] {};
+    btScalar addSingleResult(btManifoldPoint& p, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        depths.push_back(p.getDistance());
+        then();
+        return 0;
+    }
+};
+
+TEST(Query, ACallbackMayAskAboutAnotherPair) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(table(), 0, at(0, 0, 0.39));
+    btRigidBody& ring = w.add_mesh(torus(), 0, at(3, 0, 0));
+    btRigidBody& box = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(3.4, 0.1, 0.2));
+    Noted alone, other, nested;
+    w.world.contactPairTest(&high, &low, alone);
+    w.world.contactPairTest(&ring, &box, other);
+    ASSERT_EQ(alone.depths.size(), 16u);
+    ASSERT_FALSE(other.depths.empty());
+    nested.then = [&] {
+        Noted inner;
+        w.world.contactPairTest(&ring, &box, inner);
+        EXPECT_EQ(inner.depths, other.depths);
+    };
+    w.world.contactPairTest(&high, &low, nested);
+    EXPECT_EQ(nested.depths, alone.depths);
+}
+
+TEST(Query, ACallbackMayThrow) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(table(), 0, at(0, 0, 0.39));
+    // One of these is Bullet's pair of leaves.
+    auto both = std::make_unique<btCompoundShape>();
+    both->addChildShape(at(0, 0, 0.3), &w.keep(std::make_unique<btBoxShape>(btVector3(1, 1, 1))));
+    both->addChildShape(at(0, 0, 9), &w.keep(std::make_unique<bullet::MeshShape>(table())));
+    btRigidBody& compound = w.add(std::move(both), 0, at(0, 0, 0));
+    btRigidBody& ball = w.add(std::make_unique<btCompoundShape>(), 0, at(0, 0, 0));
+    static_cast<btCompoundShape*>(ball.getCollisionShape())
+        ->addChildShape(at(0, 0, 1.3), &w.keep(std::make_unique<btSphereShape>(btScalar(0.4))));
+    static_cast<btCompoundShape*>(ball.getCollisionShape())
+        ->addChildShape(at(9, 0, 0), &w.keep(std::make_unique<bullet::MeshShape>(table())));
+    const int manifolds = w.dispatcher.getNumManifolds();
+    for (const auto& [a, b] : {std::pair(&high, &low), std::pair(&compound, &ball)}) {
+        Noted noted;
+        noted.then = [] { throw std::runtime_error("enough"); };
+        EXPECT_THROW(w.world.contactPairTest(a, b, noted), std::runtime_error);
+        EXPECT_EQ(w.dispatcher.getNumManifolds(), manifolds);
+        noted.then = [] {};
+        noted.depths.clear();
+        w.world.contactPairTest(a, b, noted);
+        EXPECT_FALSE(noted.depths.empty());
+    }
+}
+
+TEST(Query, WhatThrowsLeavesNoBody) {
+    struct Throwing : btManifoldResult {
+        using btManifoldResult::btManifoldResult;
+        void addContactPoint(const btVector3&, const btVector3&, btScalar) override {
+            throw std::runtime_error("enough");
+        }
+    };
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
+    bullet::ShapeCache shapes(1);
+    bullet::Queries queries({}, shapes, bullet::ConvexShapes::ours, w.dispatcher);
+    btTransform sheared = high.getWorldTransform();
+    sheared.getBasis()[0][0] = btScalar(3);
+    for (const bool pose_is_bad : {false, true}) {
+        const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
+        const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high,
+                                         pose_is_bad ? sheared : high.getWorldTransform(), -1, -1);
+        Throwing result(&a, &b);
+        if (pose_is_bad)
+            EXPECT_THROW(queries.run(a, b, w.world.getDispatchInfo(), result), InputError);
+        else
+            EXPECT_THROW(queries.run(a, b, w.world.getDispatchInfo(), result), std::runtime_error);
+        EXPECT_EQ(queries.scene().body_count(), 0u);
+    }
+}
+
+/// Counts how often its triangles are read.
+struct CountedMesh : btTriangleMesh {
+    mutable int reads = 0;
+    explicit CountedMesh(const Shape& shape) {
+        const auto corner = [&](std::uint32_t v) {
+            const Vec3& p = shape.vertices()[v];
+            return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
+        };
+        for (const auto& t : shape.triangles()) addTriangle(corner(t[0]), corner(t[1]), corner(t[2]));
+    }
+    void getLockedReadOnlyVertexIndexBase(const unsigned char** vertices, int& vertex_count, PHY_ScalarType& type,
+                                          int& stride, const unsigned char** indices, int& index_stride, int& triangles,
+                                          PHY_ScalarType& index_type, int part) const override {
+        ++reads;
+        btTriangleMesh::getLockedReadOnlyVertexIndexBase(vertices, vertex_count, type, stride, indices, index_stride,
+                                                         triangles, index_type, part);
+    }
+};
+
+// In the hole of a ring, so that no triangle is looked up for a name.
+TEST(Query, AMeshOfBulletsIsReadOnce) {
+    CountedMesh mesh(*torus());
+    TestWorld w;
+    btRigidBody& ring = w.add(std::make_unique<btBvhTriangleMeshShape>(&mesh, true), 0, at(0, 0, 0));
+    btRigidBody& box = w.add_mesh(Shape::make(box_mesh(0.1, 0.1, 0.1)), 0, at(0, 0, 0));
+    Found found;
+    w.world.contactPairTest(&ring, &box, found);
+    const int once = mesh.reads;
+    for (int i = 0; i < 10; ++i) w.world.contactPairTest(&ring, &box, found);
+    EXPECT_EQ(mesh.reads, once);
+    EXPECT_EQ(found.count, 0);
+    w.dispatcher.refresh(ring);
+    w.world.contactPairTest(&ring, &box, found);
+    EXPECT_GT(mesh.reads, once);
+    // Scaled it is another mesh.
+    const int again = mesh.reads;
+    ring.getCollisionShape()->setLocalScaling(btVector3(2, 2, 2));
+    w.world.contactPairTest(&ring, &box, found);
+    EXPECT_GT(mesh.reads, again);
+}
+
+TEST(Query, WithoutADispatchOldShapesAreForgotten) {
+    TestWorld w;
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    bullet::ShapeCache shapes(1);
+    Settings settings;
+    settings.threads = 1;
+    bullet::Queries queries(settings, shapes, bullet::ConvexShapes::ours, w.dispatcher);
+    const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
+    std::vector<std::weak_ptr<const Shape>> made;
+    btBoxShape first(btVector3(1, 1, 1));
+    btCollisionObject object;
+    object.setCollisionShape(&first);
+    object.setWorldTransform(at(0, 0, 0.3));
+    btPersistentManifold* manifold = w.dispatcher.getNewManifold(&low, &object);
+    for (int i = 0; i < 2000; ++i) {
+        const btBoxShape box(btVector3(1, 1, 1) * btScalar(0.5 + 1e-4 * i));
+        const btCollisionObjectWrapper b(nullptr, &box, &object, object.getWorldTransform(), -1, -1);
+        btManifoldResult result(&a, &b);
+        result.setPersistentManifold(manifold);
+        queries.run(a, b, w.world.getDispatchInfo(), result);
+        made.push_back(shapes.get(box).shape);
+    }
+    EXPECT_LT(std::count_if(made.begin(), made.end(), [](const auto& shape) { return !shape.expired(); }), 1000);
     w.dispatcher.releaseManifold(manifold);
 }
 

@@ -243,6 +243,40 @@ TEST(Removal, MeshChangedInPlaceIsRefreshed) {
     EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.45, 0.02);
 }
 
+TEST(Removal, ACompoundWithABadChildLeavesNoBody) {
+    TestWorld w;
+    btTriangleMesh nothing;
+    const btVector3 low(-1, -1, -1), high(1, 1, 1);
+    auto& good = w.keep(std::make_unique<bullet::MeshShape>(table()));
+    auto& bad = w.keep(std::make_unique<btBvhTriangleMeshShape>(&nothing, false, low, high, false));
+    auto made = std::make_unique<btCompoundShape>();
+    btCompoundShape& compound = *made;
+    compound.addChildShape(at(0, 0, 0), &good);
+    compound.addChildShape(at(1, 0, 0), &bad);
+    const btRigidBody& body = w.add(std::move(made), 0, at(0, 0, 0));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_THROW(w.dispatcher.add_body(body), InputError);
+        EXPECT_EQ(w.dispatcher.scene().body_count(), 0u);
+    }
+    // Nor does what it meets.
+    w.add_mesh(table(), 1, at(0, 0, 0.79));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_THROW(w.world.performDiscreteCollisionDetection(), InputError);
+        EXPECT_EQ(w.dispatcher.scene().body_count(), 0u);
+    }
+    compound.removeChildShape(&bad);
+    w.world.performDiscreteCollisionDetection();
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 2u);
+    EXPECT_GT(w.touching(), 0);
+    // A child that goes bad later takes the object's bodies along until it is mended.
+    compound.addChildShape(at(1, 0, 0), &bad);
+    EXPECT_THROW(w.world.performDiscreteCollisionDetection(), InputError);
+    compound.removeChildShape(&bad);
+    w.world.performDiscreteCollisionDetection();
+    EXPECT_EQ(w.dispatcher.scene().body_count(), 2u);
+    EXPECT_GT(w.touching(), 0);
+}
+
 TEST(Removal, PoseNotFiniteIsNamed) {
     TestWorld w;
     btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));

@@ -122,6 +122,37 @@ TEST(Rest, OnCompoundOfMeshAndBox) {
     EXPECT_GT(body.getWorldTransform().getBasis()[2].z(), btScalar(0.999));
 }
 
+// Tiles of one compound, or a body each: the same contacts, of the tiles near by alone.
+TEST(Rest, OnCompoundOfManyTiles) {
+    TestWorld one, each;
+    const auto tile = Shape::make(box_mesh(0.5, 0.5, 0.2));
+    auto floor = std::make_unique<btCompoundShape>();
+    auto& mesh = one.keep(std::make_unique<bullet::MeshShape>(tile));
+    for (int i = 0; i < 20; ++i)
+        for (int k = 0; k < 20; ++k) {
+            const btTransform pose = at(0.5 * i - 5, 0.5 * k - 5, -0.1);
+            floor->addChildShape(pose, &mesh);
+            each.add_mesh(tile, 0, pose);
+        }
+    one.add(std::move(floor), 0, at(0, 0, 0));
+    btRigidBody& in_one = one.add_mesh(table(), 5, at(0, 0, 0.5));
+    btRigidBody& in_each = each.add_mesh(table(), 5, at(0, 0, 0.5));
+    std::uint64_t contacts = 0;
+    for (int i = 0; i < 50; ++i) {
+        btTransform pose = at(0.13 * i - 3, 0.3 - 0.07 * i, 0.38 - 0.002 * i);
+        pose.setRotation(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.02 * i)));
+        in_one.setWorldTransform(pose);
+        in_each.setWorldTransform(pose);
+        one.world.performDiscreteCollisionDetection();
+        each.world.performDiscreteCollisionDetection();
+        ASSERT_EQ(one.dispatcher.scene().contacts().size(), each.dispatcher.scene().contacts().size()) << i;
+        EXPECT_EQ(one.dispatcher.scene().stats().depth_max, each.dispatcher.scene().stats().depth_max) << i;
+        EXPECT_LE(one.dispatcher.stats().mesh_pairs, 25u) << i;
+        contacts += one.dispatcher.stats().contacts;
+    }
+    EXPECT_GT(contacts, 200u);
+}
+
 TEST(Rest, OnPlaneInsideCompound) {
     TestWorld w;
     auto compound = std::make_unique<btCompoundShape>();

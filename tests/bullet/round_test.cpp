@@ -3,6 +3,7 @@
 #include "test_world.h"
 
 #include <objects.h>
+#include <raycontact/collide.h>
 #include <round.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
@@ -11,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace raycontact::test {
@@ -145,6 +147,120 @@ TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
     // The far side of a thin plate is not met.
     const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
     EXPECT_EQ(contacts(plate, ball, at(0, 0, 0.28)).size(), 1u);
+}
+
+TEST(Round, ARadiusOfNothingIsPushedOut) {
+    for (const bool ball : {true, false}) {
+        TestWorld w;
+        const btRigidBody& box = w.add_mesh(Shape::make(box_mesh(4, 4, 4)), 0, at(0, 0, 0));
+        std::unique_ptr<btCollisionShape> shape = std::make_unique<btCapsuleShape>(btScalar(0), btScalar(1));
+        if (ball) shape = std::make_unique<btSphereShape>(btScalar(0));
+        const auto found = contacts(converted(Shape::make(box_mesh(4, 4, 4))), *shape, at(0.2, 0.1, 1.7));
+        ASSERT_EQ(found.size(), ball ? 1u : 2u);
+        EXPECT_NEAR(double(found[0].distance), -0.3, 1e-5);
+        EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+        w.add(std::move(shape), 1, at(0.2, 0.1, 1.7));
+        w.steps(1);
+        EXPECT_EQ(w.dispatcher.stats().contacts, found.size()) << ball;
+        EXPECT_EQ(box.getWorldTransform(), at(0, 0, 0));
+    }
+}
+
+TEST(Round, AxisThroughAPlateIsPushedOut) {
+    const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
+    const btCapsuleShapeZ capsule(btScalar(0.1), 2);
+    EXPECT_EQ(contacts(plate, capsule, at(0, 0, 0)).size(), 1u); // through a diagonal
+    auto found = contacts(plate, capsule, at(0.3, 0.1, 0.2));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(double(found[0].normal.x()), 1, 1e-5); // past the nearest edge
+    EXPECT_NEAR(double(found[0].distance), -(0.7 + 0.1), 1e-5);
+    found = contacts(plate, capsule, at(0.3, 0.1, 0.6)); // upwards is nearer: its lower end is 0.4 below
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+    EXPECT_NEAR(double(found[0].distance), -(0.405 + 0.1), 1e-5);
+    // And it gets there.
+    TestWorld w;
+    w.world.setGravity(btVector3(0, 0, 0));
+    w.add_mesh(Shape::make(box_mesh(2, 2, 0.01)), 0, at(0, 0, 0));
+    const btRigidBody& body =
+        w.add(std::make_unique<btCapsuleShapeZ>(btScalar(0.1), btScalar(2)), 1, at(0.3, 0.1, 0.2));
+    w.steps(120);
+    for (const auto& c : contacts(plate, capsule, body.getWorldTransform())) EXPECT_GT(double(c.distance), -0.01);
+    EXPECT_GT(double(body.getWorldTransform().getOrigin().x()), 1);
+}
+
+TEST(Round, RodAcrossAWallIsLiftedOntoIt) {
+    const auto shape = Shape::make(box_mesh(4, 0.1, 1));
+    const bullet::Converted wall = converted(shape);
+    const btCapsuleShape rod(btScalar(0.02), 1);
+    for (const double below : {0.01, 0.03, 0.2}) {
+        const auto found = contacts(wall, rod, at(0.3, 0, 0.5 - below));
+        ASSERT_EQ(found.size(), 1u) << below;
+        EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5) << below;
+        EXPECT_NEAR(double(found[0].distance), -(below + 0.02), 1e-5) << below;
+        EXPECT_LT(away(*shape, found[0].point), 0.05) << below;
+    }
+    TestWorld w;
+    w.add_mesh(shape, 0, at(0, 0, 0));
+    const btRigidBody& body = w.add(std::make_unique<btCapsuleShape>(btScalar(0.02), btScalar(1)), 1, at(0.3, 0, 0.47));
+    w.steps(60);
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.52, 0.01);
+    // Of two walls that it goes through it is out when it is out of both.
+    const bullet::Converted ring = converted(torus());
+    const auto both = contacts(ring, btCapsuleShapeX(btScalar(0.02), btScalar(3)), at(0, 0, 0.01));
+    ASSERT_EQ(both.size(), 2u);
+    for (const auto& c : both) EXPECT_GT(double(c.normal.z()), 0.9); // facets
+}
+
+// Of many poses, on a solid with a hole: a thin rod always has a contact, and moved by the deepest one again and
+// again it gets out.
+TEST(Round, NoAxisInsideIsWithoutAWayOut) {
+    const bullet::Converted mesh = converted(torus());
+    const btCapsuleShapeX rod(btScalar(0.01), 2);
+    const auto is_inside = [&](const btTransform& pose) {
+        constexpr int parts = 100;
+        for (int i = 0; i <= parts; ++i) {
+            const btVector3 p = pose(btVector3(btScalar(2.0 * i / parts - 1), 0, 0));
+            if (contains(*mesh.shape, {double(p.x()), double(p.y()), double(p.z())})) return true;
+        }
+        return false;
+    };
+    scenes::Random random(11);
+    int inside = 0, stuck = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto any = [&] { return btScalar(random.symmetric()); };
+        const btVector3 axis(any(), any(), any() + btScalar(1e-3)), centre(any(), any(), any());
+        btTransform pose(btQuaternion(axis.normalized(), 3 * any()), centre);
+        if (!is_inside(pose)) continue;
+        ++inside;
+        int moves = 0;
+        for (; moves < 50 && is_inside(pose); ++moves) {
+            const auto found = contacts(mesh, rod, pose);
+            ASSERT_FALSE(found.empty()) << i;
+            const auto& deepest = *std::min_element(
+                found.begin(), found.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
+            pose.setOrigin(pose.getOrigin() - deepest.distance * deepest.normal);
+        }
+        stuck += moves == 50;
+    }
+    EXPECT_GT(inside, 100);
+    EXPECT_LE(50 * stuck, inside); // wedged in the hole, where only a turn helps
+}
+
+TEST(Round, AxisThroughAnOpenSheetIsPushedToItsFront) {
+    Mesh sheet;
+    sheet.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const bullet::Converted floor = converted(Shape::make(sheet));
+    for (const double height : {0.3, 0.0, -0.3}) {
+        const auto found = contacts(floor, btCapsuleShapeZ(btScalar(0.05), btScalar(1)), at(0.2, 0.1, height));
+        ASSERT_EQ(found.size(), 1u) << height;
+        EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
+        EXPECT_NEAR(double(found[0].distance), height - 0.5 - 0.05, 1e-5);
+    }
+    // Beside it, and with an end just behind it, which has its contact by itself.
+    EXPECT_TRUE(contacts(floor, btCapsuleShapeZ(btScalar(0.05), btScalar(1)), at(1.2, 0.1, 0)).empty());
+    EXPECT_EQ(contacts(floor, btCapsuleShapeZ(btScalar(0.05), btScalar(1)), at(0.2, 0.1, 0.48)).size(), 1u);
 }
 
 /// Rolls without sliding along x for 10 m; gives the way sideways and the speed that is left.

@@ -195,7 +195,7 @@ TEST(StandIn, IsNearEverywhere) {
 }
 
 TEST(StandIn, IsMadeOnce) {
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     const btBoxShape a(btVector3(1, 2, 3)), b(btVector3(1, 2, 3)), other(btVector3(1, 2, 4));
     EXPECT_EQ(cache.get(a).shape, cache.get(b).shape);
     EXPECT_NE(cache.get(a).shape, cache.get(other).shape);
@@ -212,7 +212,7 @@ TEST(StandIn, FlatHullHasNone) {
     EXPECT_TRUE(bullet::stand_in(flat).triangles.empty());
     for (int i = 0; i < 5; ++i) flat.addPoint(btVector3(btScalar(i), btScalar(i * i), 0));
     EXPECT_TRUE(bullet::stand_in(flat).triangles.empty());
-    bullet::ShapeCache cache;
+    bullet::ShapeCache cache(1);
     EXPECT_EQ(cache.get(flat).shape, nullptr);
 }
 

@@ -103,9 +103,11 @@ void append(Mesh& mesh, const btStridingMeshInterface& interface, int index, con
 /// A height field is open: its faces must point up, or it would support bodies from below.
 struct FieldTriangles : btTriangleCallback {
     Mesh* mesh;
+    std::vector<PlaceName>* names;
     int up;
-    FieldTriangles(Mesh* m, int u) : mesh(m), up(u) {}
-    void processTriangle(btVector3* t, int, int) override {
+    FieldTriangles(Mesh* m, std::vector<PlaceName>* n, int u) : mesh(m), names(n), up(u) {}
+    void processTriangle(btVector3* t, int part, int index) override {
+        names->push_back({part, index});
         const auto base = static_cast<std::uint32_t>(mesh->vertices.size());
         for (int k = 0; k < 3; ++k) mesh->vertices.push_back({double(t[k].x()), double(t[k].y()), double(t[k].z())});
         const bool looks_up = (t[1] - t[0]).cross(t[2] - t[0])[up] > 0;
@@ -138,14 +140,15 @@ void append_gimpact(Mesh& mesh, const btGImpactMeshShapePart& part) {
     append(mesh, *manager->m_meshInterface, part.getPart(), part.getLocalScaling());
 }
 
-Mesh extract(const btCollisionShape& shape) {
+/// names: of a field's triangles, otherwise none.
+Mesh extract(const btCollisionShape& shape, std::vector<PlaceName>& names) {
     Mesh mesh;
     mesh.name = shape.getName();
     if (shape.getShapeType() == TERRAIN_SHAPE_PROXYTYPE) {
         const auto& field = static_cast<const btHeightfieldTerrainShape&>(shape);
         btVector3 low, high;
         field.getAabb(btTransform::getIdentity(), low, high);
-        FieldTriangles triangles(&mesh, field.getUpAxis());
+        FieldTriangles triangles(&mesh, &names, field.getUpAxis());
         field.processAllTriangles(&triangles, low, high);
     } else if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
         const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
@@ -338,6 +341,7 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
             return i->second.converted;
         }
     }
+    sweep();
     Entry entry;
     const Mesh mesh = stand_in(shape);
     if (!mesh.triangles.empty()) entry.converted = convert(mesh, Repair::allowed);
@@ -349,28 +353,53 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
 Converted ShapeCache::get(const btCollisionShape& shape) {
     if (has_stand_in(shape)) return get_convex(shape);
     if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
-    Mesh mesh = extract(shape);
+    std::vector<PlaceName> names;
+    Mesh mesh = extract(shape, names);
     const std::uint64_t hash = content_hash(mesh);
     const auto [first, last] = entries_.equal_range(hash);
     for (auto i = first; i != last; ++i) {
+        const auto& known_names = i->second.converted.names;
         if (i->second.numbers.empty() && i->second.mesh.vertices == mesh.vertices
-            && i->second.mesh.triangles == mesh.triangles) {
+            && i->second.mesh.triangles == mesh.triangles && (known_names ? *known_names == names : names.empty())) {
             i->second.used = now_;
             return i->second.converted;
         }
     }
+    sweep();
     Entry entry;
     // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
     entry.converted = convert(mesh, repair);
+    if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
     entry.mesh = std::move(mesh);
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;
 }
 
+Converted ShapeCache::get_again(const btCollisionShape& shape) {
+    // The others are found without reading many numbers, or without a mistake.
+    const bool read = !has_stand_in(shape) && !dynamic_cast<const MeshShape*>(&shape);
+    if (!read) return get(shape);
+    Known now;
+    now.form = form_of(shape);
+    shape.getAabb(btTransform::getIdentity(), now.low, now.high);
+    const auto found = known_.find(&shape);
+    if (found != known_.end() && found->second.form == now.form && found->second.low == now.low
+        && found->second.high == now.high) {
+        found->second.used = now_;
+        return found->second.converted;
+    }
+    sweep();
+    now.converted = get(shape);
+    now.used = now_;
+    known_[&shape] = now;
+    return now.converted;
+}
+
 void ShapeCache::sweep() {
     ++now_;
     if (now_ % 64 != 0) return;
+    std::erase_if(known_, [&](const auto& known) { return known.second.used + keep_dispatches < now_; });
     for (auto i = entries_.begin(); i != entries_.end();) {
         Entry& entry = i->second;
         if (entry.converted.shape.use_count() > 1) entry.used = now_;

@@ -11,15 +11,24 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace raycontact::bullet {
+
+/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a shape without triangles.
+/// Of a height field Bullet's two numbers are twice the column, plus one in its second triangle, and the row.
+struct PlaceName {
+    int part = -1, index = -1;
+    friend bool operator==(const PlaceName&, const PlaceName&) = default;
+};
 
 /// A converted Bullet mesh, or a convex shape's stand-in: what RayContact and the tests of planes and balls need of it.
 /// Without a shape where a convex shape is flat.
 struct Converted {
     std::shared_ptr<const Shape> shape;
     std::shared_ptr<const MeshTree> tree;
+    std::shared_ptr<const std::vector<PlaceName>> names{}; ///< of a field's triangles; null of other shapes
 };
 
 /// What RayContact sees in a shape that is not a compound.
@@ -41,12 +50,7 @@ constexpr unsigned bit(Kind kind) {
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
-/// A place on a shape as Bullet's callbacks name it: sub-part and triangle of a mesh; -1 of a shape without triangles.
-struct PlaceName {
-    int part = -1, index = -1;
-    friend bool operator==(const PlaceName&, const PlaceName&) = default;
-};
-/// Of a mesh or field. triangle: counted through all sub-parts.
+/// Of a mesh. triangle: counted through all sub-parts.
 PlaceName name_of_triangle(const btCollisionShape& shape, int triangle);
 
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
@@ -73,7 +77,12 @@ public:
     explicit ShapeCache(std::uint32_t threads) : threads_(threads) {}
     /// `shape` is of kind mesh, field or convex.
     Converted get(const btCollisionShape& shape);
-    /// Call it once a dispatch: drops shapes that no body has used for a while.
+    /// The same for a shape that is asked for again and again without a body: a mesh interface or field is read anew
+    /// only when its form or box changes, after forget(), or if it was not asked for in a while.
+    Converted get_again(const btCollisionShape& shape);
+    void forget(const btCollisionShape& shape) { known_.erase(&shape); }
+    /// Call it once a dispatch: drops shapes that no body has used for a while. Making shapes counts as time, too, so
+    /// that memory is bounded where nothing is ever dispatched.
     void sweep();
 
 private:
@@ -84,11 +93,19 @@ private:
         Converted converted;
         std::uint64_t used = 0;
     };
+    /// What get_again() knows by address.
+    struct Known {
+        Form form;
+        btVector3 low, high; ///< its box: a new mesh may lie where an old one lay
+        Converted converted;
+        std::uint64_t used = 0;
+    };
     Converted get_convex(const btCollisionShape& shape);
     Converted convert(const Mesh& mesh, Repair repair) const;
 
     std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
+    std::unordered_map<const btCollisionShape*, Known> known_;
     std::uint64_t now_ = 0;
 };
 

@@ -15,9 +15,11 @@
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 namespace raycontact::bullet {
 
@@ -65,6 +67,13 @@ HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
     return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
 }
 
+const ManifoldSettings& checked(const ManifoldSettings& settings) {
+    if (settings.keep_steps < 0 || settings.keep_steps > most_keep_steps)
+        throw InputError("ManifoldSettings::keep_steps is " + std::to_string(settings.keep_steps) + "; give 0 to "
+                         + std::to_string(most_keep_steps));
+    return settings;
+}
+
 void name_places(PairState& state) {
     for (Candidate& c : state.candidates) {
         const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(c.key.child0)];
@@ -90,6 +99,7 @@ struct CollisionDispatcher::State {
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
     PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
+    bool apart(const Leaf& a, const Leaf& b) const;
     std::optional<HalfSpace> face_between(const PairState& state, const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
@@ -117,7 +127,8 @@ struct CollisionDispatcher::State {
 
 CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
                                          const ManifoldSettings& manifolds, ConvexShapes convex)
-    : btCollisionDispatcher(configuration), state_(std::make_unique<State>(*this, settings, manifolds, convex)) {}
+    : btCollisionDispatcher(configuration),
+      state_(std::make_unique<State>(*this, settings, checked(manifolds), convex)) {}
 
 CollisionDispatcher::~CollisionDispatcher() = default;
 
@@ -199,9 +210,15 @@ void CollisionDispatcher::State::visit(btBroadphasePair& pair, const btDispatche
 
 void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherInfo& info) {
     if (!PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair);
-    asking = true;
-    dispatcher.getNearCallback()(pair, dispatcher, info);
-    asking = false;
+    struct Asking {
+        bool& now;
+        explicit Asking(bool& flag) : now(flag) { now = true; }
+        ~Asking() { now = false; } // also if the callback throws
+    };
+    {
+        const Asking while_called(asking);
+        dispatcher.getNearCallback()(pair, dispatcher, info);
+    }
     PairAlgorithm* algorithm = PairAlgorithm::of(pair.m_algorithm);
     if (!algorithm) return;
     if (algorithm->take_wanted()) {
@@ -222,7 +239,7 @@ btCollisionAlgorithm* CollisionDispatcher::findAlgorithm(const btCollisionObject
     btCollisionAlgorithmConstructionInfo info(this, -1);
     if (state_->asking && type == BT_CONTACT_POINT_ALGORITHMS && is_whole(*a) && is_whole(*b))
         return new (allocateCollisionAlgorithm(sizeof(PairAlgorithm))) PairAlgorithm(info);
-    return new (allocateCollisionAlgorithm(sizeof(QueryAlgorithm))) QueryAlgorithm(info, state_->queries, *a, *b);
+    return new (allocateCollisionAlgorithm(sizeof(QueryAlgorithm))) QueryAlgorithm(info, state_->queries);
 }
 
 // Prefetches the state of some pairs ahead: it lies scattered in memory, and the solver has used the caches since.
@@ -264,7 +281,12 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
     if (!algorithm->state()) {
         // A record made here has no pair yet; PairState, made next, acquires it.
         objects.refresh(a, dispatch);
-        objects.refresh(b, dispatch);
+        try {
+            objects.refresh(b, dispatch);
+        } catch (...) {
+            objects.drop_unused(&a);
+            throw;
+        }
         algorithm->set_state(std::make_unique<PairState>(dispatcher, objects, &a, &b));
     }
     return *algorithm->state();
@@ -272,12 +294,15 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
 
 void CollisionDispatcher::State::gather(PairState& state, const Object& a, const Object& b,
                                         const btDispatcherInfo& info) {
+    // The broad phase has tested the boxes of whole objects.
+    const bool several = a.leaves.size() > 1 || b.leaves.size() > 1;
     for (int i = 0; i < static_cast<int>(a.leaves.size()); ++i) {
         for (int j = 0; j < static_cast<int>(b.leaves.size()); ++j) {
             const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
             switch (work_for(la, lb)) {
             case Work::batch: {
+                if (several && apart(la, lb)) break;
                 if (const auto face = face_between(state, la, lb)) {
                     add_plane(state, i, j, la, lb, *face);
                     break;
@@ -303,6 +328,18 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             }
         }
     }
+}
+
+// Vertices reach an open mesh from beyond its box; other methods follow, and `continuous` expects, what is still apart.
+bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
+    const Settings& settings = scene.settings();
+    if (settings.continuous || (settings.method != Method::standard && settings.method != Method::certified))
+        return false;
+    for (const Leaf* leaf : {&a, &b}) {
+        const MeshReport& report = leaf->converted.shape->report();
+        if (!report.closed || !report.oriented) return false;
+    }
+    return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
 }
 
 // The batch alone knows other directions, and what is coming.
@@ -433,6 +470,9 @@ void CollisionDispatcher::remove_body(const btCollisionObject& object) {
 
 void CollisionDispatcher::refresh(const btCollisionObject& object) {
     if (Object* record = state_->objects.find(object)) record->stale = true;
+    if (object.getCollisionShape())
+        each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
+                  [&](const btCollisionShape& shape, const btTransform&) { state_->objects.shapes().forget(shape); });
 }
 
 void CollisionDispatcher::prepare() {

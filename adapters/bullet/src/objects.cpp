@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <objects.h>
+#include <vectors.h>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransformUtil.h>
@@ -14,6 +15,17 @@ Pose to_pose(const btTransform& transform) {
     const btVector3& t = transform.getOrigin();
     pose.translation = {static_cast<double>(t.x()), static_cast<double>(t.y()), static_cast<double>(t.z())};
     return pose;
+}
+
+void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVector3& high) {
+    const btVector3 least = to_bullet(shape.box_min()), most = to_bullet(shape.box_max());
+    const btVector3 middle = pose((least + most) / 2), half = (most - least) / 2;
+    const btVector3 extent =
+        half.dot3(pose.getBasis()[0].absolute(), pose.getBasis()[1].absolute(), pose.getBasis()[2].absolute());
+    const btScalar coordinates = half.length() + middle.length() + btScalar(shape.radius());
+    const btScalar slack = btScalar(1e-5) * coordinates;
+    low = middle - extent - btVector3(slack, slack, slack);
+    high = middle + extent + btVector3(slack, slack, slack);
 }
 
 Kind Objects::kind_for_us(const btCollisionShape& shape) const {
@@ -42,11 +54,23 @@ Object* Objects::find(const btCollisionObject& object) {
     return i == records_.end() ? nullptr : &i->second;
 }
 
+Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
+    try {
+        return refresh(object, records_[&object], dispatch);
+    } catch (...) {
+        drop_unused(&object);
+        throw;
+    }
+}
+
 Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     if (!unchanged(object, record)) make_leaves(object, record);
-    for (const Leaf& leaf : record.leaves) {
-        if (leaf.body != Leaf::no_body) scene_.set_pose(leaf.body, to_pose(object.getWorldTransform() * leaf.local));
+    for (Leaf& leaf : record.leaves) {
+        if (leaf.body == Leaf::no_body) continue;
+        const btTransform pose = object.getWorldTransform() * leaf.local;
+        scene_.set_pose(leaf.body, to_pose(pose));
+        find_box(*leaf.converted.shape, pose, leaf.low, leaf.high);
     }
     if (ahead_ > 0) expect(object, record);
     record.seen = dispatch;
@@ -68,21 +92,26 @@ void Objects::expect(const btCollisionObject& object, const Object& record) {
 
 void Objects::make_leaves(const btCollisionObject& object, Object& record) {
     drop_bodies(record);
-    each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
-              [&](const btCollisionShape& shape, const btTransform& local) {
-                  Leaf leaf;
-                  leaf.shape = &shape;
-                  leaf.local = local;
-                  leaf.kind = kind_for_us(shape);
-                  if (in_scene(leaf.kind)) {
-                      leaf.form = form_of(shape);
-                      leaf.converted = shapes_.get(shape);
-                      if (leaf.converted.shape)
-                          leaf.body =
-                              scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
-                  }
-                  record.leaves.push_back(leaf);
-              });
+    const auto make = [&](const btCollisionShape& shape, const btTransform& local) {
+        Leaf leaf;
+        leaf.shape = &shape;
+        leaf.local = local;
+        leaf.kind = kind_for_us(shape);
+        if (in_scene(leaf.kind)) {
+            leaf.form = form_of(shape);
+            leaf.converted = shapes_.get(shape);
+            if (leaf.converted.shape)
+                leaf.body = scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
+        }
+        record.leaves.push_back(leaf);
+    };
+    try {
+        each_leaf(*object.getCollisionShape(), btTransform::getIdentity(), make);
+    } catch (...) { // of one child: those before it do not stay without it
+        drop_bodies(record);
+        record.version = 0;
+        throw;
+    }
     record.version = ++versions_;
     record.stale = false;
 }
@@ -98,10 +127,14 @@ void Objects::release(const btCollisionObject* object) {
     const auto i = records_.find(object);
     if (i == records_.end()) return;
     if (i->second.uses > 0) --i->second.uses;
-    if (i->second.uses == 0 && !i->second.pinned) {
-        drop_bodies(i->second);
-        records_.erase(i);
-    }
+    drop_unused(object);
+}
+
+void Objects::drop_unused(const btCollisionObject* object) {
+    const auto i = records_.find(object);
+    if (i == records_.end() || i->second.uses > 0 || i->second.pinned) return;
+    drop_bodies(i->second);
+    records_.erase(i);
 }
 
 void Objects::refresh_pinned(std::uint64_t dispatch) {
@@ -117,10 +150,7 @@ void Objects::pin(const btCollisionObject& object, bool pinned) {
             std::erase_if(pinned_, [&](const auto& one) { return one.first == &object; });
     }
     i->second.pinned = pinned;
-    if (!pinned && i->second.uses == 0) {
-        drop_bodies(i->second);
-        records_.erase(i);
-    }
+    drop_unused(&object);
 }
 
 } // namespace raycontact::bullet

@@ -21,8 +21,9 @@ struct Leaf {
     btTransform local = btTransform::getIdentity(); ///< leaf frame in the object's frame
     Form form;                                      ///< at conversion
     Kind kind = Kind::other;
-    Converted converted;   ///< mesh, field or convex
-    BodyId body = no_body; ///< in the scene; of the same kinds
+    Converted converted;                   ///< mesh, field or convex
+    BodyId body = no_body;                 ///< in the scene; of the same kinds
+    btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     static constexpr BodyId no_body = ~BodyId{0};
 };
 
@@ -59,10 +60,8 @@ public:
     Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex), shapes_(scene.settings().threads) {}
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
-    /// poses to the scene once per `dispatch`.
-    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch) {
-        return refresh(object, records_[&object], dispatch);
-    }
+    /// poses to the scene once per `dispatch`. If that throws, an object that is in no use has no record.
+    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch);
     /// The same for a record that is known.
     Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
     Object* find(const btCollisionObject& object);
@@ -73,6 +72,8 @@ public:
         return record;
     }
     void release(const btCollisionObject* object);
+    /// Forgets an object that no pair refers to and that is not pinned.
+    void drop_unused(const btCollisionObject* object);
     void pin(const btCollisionObject& object, bool pinned);
     /// Also those that no pair needs now: the scene has their poses, and so has a recording.
     void refresh_pinned(std::uint64_t dispatch);
@@ -99,5 +100,7 @@ private:
 };
 
 Pose to_pose(const btTransform& transform);
+/// The box of a shape in the world, from its own box, a little larger than rounding can make it.
+void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVector3& high);
 
 } // namespace raycontact::bullet

@@ -19,7 +19,7 @@ constexpr int feature_shift = 8, feature_mask = 3 << feature_shift;
 constexpr int crossing_shift = 10, crossing_mask = 0x3ff << crossing_shift;
 constexpr std::uint32_t crossings = 1022; ///< what is left of ten bits beside edge_start and edge_end
 constexpr int absent_shift = 20;
-constexpr int absent_mask = 0xff << absent_shift;
+constexpr int absent_mask = most_keep_steps << absent_shift;
 
 int absent_steps(const btManifoldPoint& p) {
     return (p.m_contactPointFlags & absent_mask) >> absent_shift;

@@ -8,6 +8,9 @@
 
 namespace raycontact::bullet {
 
+/// A point counts the steps since its contact was last there in eight bits: the most of ManifoldSettings::keep_steps.
+constexpr int most_keep_steps = 255;
+
 /// Whether gContactAddedCallback is called for points of these two.
 bool adds_are_told(const btCollisionObject& a, const btCollisionObject& b);
 

@@ -15,6 +15,7 @@ bool has_triangles(const Leaf& leaf) {
 
 PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
     if (!has_triangles(leaf)) return {};
+    if (leaf.converted.names) return (*leaf.converted.names)[static_cast<std::size_t>(triangle)];
     return name_of_triangle(*leaf.shape, triangle);
 }
 

@@ -10,6 +10,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <array>
+#include <span>
 
 namespace raycontact::bullet {
 
@@ -20,6 +21,17 @@ void identify(btManifoldResult& result, bool first_is_a, const PlaceName& first,
     result.setShapeIdentifiersA(a.part, a.index);
     result.setShapeIdentifiersB(b.part, b.index);
 }
+
+/// A body in the scene for as long as this lives.
+struct Guest {
+    Guest(Scene& s, const std::shared_ptr<const Shape>& shape, const btTransform& pose)
+        : scene(s), body(s.add(shape, to_pose(pose))) {}
+    ~Guest() { scene.remove(body); }
+    Guest(const Guest&) = delete;
+    Guest& operator=(const Guest&) = delete;
+    Scene& scene;
+    BodyId body;
+};
 
 } // namespace
 
@@ -65,7 +77,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
                        btManifoldResult& result) {
     const auto convert = [&](Placed& placed) {
         if (in_scene(placed.leaf.kind) && !placed.leaf.converted.shape)
-            placed.leaf.converted = shapes_.get(*placed.leaf.shape);
+            placed.leaf.converted = shapes_.get_again(*placed.leaf.shape);
     };
     if (a.leaf.kind == Kind::mesh || b.leaf.kind == Kind::mesh) {
         convert(a);
@@ -129,10 +141,15 @@ void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& resu
 }
 
 void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& result) {
-    const BodyId body_a = scene_.add(a.leaf.converted.shape, to_pose(a.pose));
-    const BodyId body_b = scene_.add(b.leaf.converted.shape, to_pose(b.pose));
-    const std::array pairs{Pair{body_a, body_b}};
-    for (const Contact& c : scene_.step(pairs)) {
+    // A callback may ask for other contacts, or throw: nothing of this pair is in the scene when it is called.
+    std::vector<Contact> contacts;
+    {
+        const Guest guest_a(scene_, a.leaf.converted.shape, a.pose), guest_b(scene_, b.leaf.converted.shape, b.pose);
+        const std::array pairs{Pair{guest_a.body, guest_b.body}};
+        const std::span<const Contact> found = scene_.step(pairs);
+        contacts.assign(found.begin(), found.end());
+    }
+    for (const Contact& c : contacts) {
         const int source = static_cast<int>(c.vertex), target = static_cast<int>(c.triangle);
         const bool of_a = c.vertex_body == VertexBody::a;
         const Leaf &source_leaf = of_a ? a.leaf : b.leaf, &target_leaf = of_a ? b.leaf : a.leaf;
@@ -140,8 +157,6 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
                  name_of_triangle(target_leaf, target));
         result.addContactPoint(-normal_of(c), to_bullet(point_on_b(c)), btScalar(-c.depth));
     }
-    scene_.remove(body_a);
-    scene_.remove(body_b);
 }
 
 void Queries::run_bullet(const Placed& a, const Placed& b, const btCollisionObjectWrapper& whole_a,
@@ -153,15 +168,23 @@ void Queries::run_bullet(const Placed& a, const Placed& b, const btCollisionObje
         dispatcher_.btCollisionDispatcher::findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CLOSEST_POINT_ALGORITHMS);
     const btCollisionObjectWrapper* const own_a = result.getBody0Wrap();
     const btCollisionObjectWrapper* const own_b = result.getBody1Wrap();
+    const auto clean_up = [&] {
+        result.setBody0Wrap(own_a);
+        result.setBody1Wrap(own_b);
+        algorithm->~btCollisionAlgorithm();
+        dispatcher_.freeCollisionAlgorithm(algorithm);
+    };
     result.setBody0Wrap(&wrap_a);
     result.setBody1Wrap(&wrap_b);
     result.setShapeIdentifiersA(-1, a.index);
     result.setShapeIdentifiersB(-1, b.index);
-    algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
-    result.setBody0Wrap(own_a);
-    result.setBody1Wrap(own_b);
-    algorithm->~btCollisionAlgorithm();
-    dispatcher_.freeCollisionAlgorithm(algorithm);
+    try {
+        algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
+    } catch (...) { // of the user's callback
+        clean_up();
+        throw;
+    }
+    clean_up();
 }
 
 } // namespace raycontact::bullet

@@ -45,31 +45,43 @@ private:
     btCollisionDispatcher& dispatcher_;
 };
 
-/// Owns an empty manifold: Bullet reads from a result's manifold which body comes first.
+/// Owns a manifold: Bullet reads from a result's manifold which body comes first.
 class QueryAlgorithm final : public btCollisionAlgorithm {
 public:
-    QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries,
-                   const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b)
-        : btCollisionAlgorithm(info), queries_(queries),
-          manifold_(m_dispatcher->getNewManifold(a.getCollisionObject(), b.getCollisionObject())) {}
-    ~QueryAlgorithm() override { m_dispatcher->releaseManifold(manifold_); }
+    QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries)
+        : btCollisionAlgorithm(info), queries_(queries) {}
+    ~QueryAlgorithm() override { drop_manifold(); }
     QueryAlgorithm(const QueryAlgorithm&) = delete;
     QueryAlgorithm& operator=(const QueryAlgorithm&) = delete;
 
     void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                           const btDispatcherInfo& info, btManifoldResult* result) override {
+        if (!manifold_) manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
         result->setPersistentManifold(manifold_);
-        queries_.run(*a, *b, info, *result);
+        try {
+            queries_.run(*a, *b, info, *result);
+        } catch (...) { // Bullet's queries then forget the algorithm: its destructor is not called
+            result->setPersistentManifold(nullptr);
+            drop_manifold();
+            throw;
+        }
     }
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                    btManifoldResult*) override {
         return btScalar(1);
     }
-    void getAllContactManifolds(btManifoldArray& out) override { out.push_back(manifold_); }
+    void getAllContactManifolds(btManifoldArray& out) override {
+        if (manifold_) out.push_back(manifold_);
+    }
 
 private:
+    void drop_manifold() {
+        if (manifold_) m_dispatcher->releaseManifold(manifold_);
+        manifold_ = nullptr;
+    }
+
     Queries& queries_;
-    btPersistentManifold* manifold_;
+    btPersistentManifold* manifold_ = nullptr; ///< null: it has not run
 };
 
 btVector3 normal_of(const Contact& contact);

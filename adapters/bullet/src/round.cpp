@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <axis.h>
 #include <round.h>
 #include <vectors.h>
 
@@ -9,6 +10,8 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 namespace raycontact::bullet {
@@ -210,12 +213,26 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
 /// An end so deep inside that no surface is in its reach: the nearest way out, found by growing steps.
 void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, std::vector<Found>& out) {
     if (!contains(*mesh.shape, to_vec(centre))) return;
-    const btScalar most = 4 * btScalar(mesh.shape->radius()) + limit;
+    const btScalar size = btScalar(mesh.shape->radius()), most = 4 * size + limit;
+    limit = btMax(limit, btScalar(1e-3) * size); // a radius of 0 would not grow
     while (out.empty() && limit < most) {
         limit *= 2;
         Neighbourhood(mesh, centre, centre, limit).of_end(centre, out);
     }
     std::erase_if(out, [](const Found& f) { return f.away > 0; });
+}
+
+/// What neither ends nor sides see: an axis inside the mesh between them.
+void add_axis(const Converted& mesh, const btVector3& a, const btVector3& b,
+              const std::array<std::span<const Found>, 2>& ends, std::vector<Found>& out) {
+    const MeshReport& report = mesh.shape->report();
+    std::array<bool, 2> known{};
+    for (std::size_t k = 0; k < 2; ++k)
+        known[k] = (report.closed && report.oriented)
+                   || std::any_of(ends[k].begin(), ends[k].end(), [](const Found& f) { return f.away < 0; });
+    static thread_local std::vector<WayOut> ways;
+    ways_out(mesh, a, b, known, ways);
+    for (const WayOut& way : ways) out.push_back({way.point, way.normal, -way.depth, way.triangle});
 }
 
 } // namespace
@@ -273,6 +290,7 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     }
     if (first.empty()) deep_end(mesh, a, limit, first);
     if (second.empty() && round.balls > 1) deep_end(mesh, b, limit, second);
+    if (round.balls > 1) add_axis(mesh, a, b, {first, second}, found);
     give(0, first);
     give(1, second);
     give(2, found);

@@ -31,7 +31,8 @@ struct RoundContact {
 
 /// Places where the distance of an end from the mesh, or that of a capsule's side from the mesh's edges and corners, is
 /// a local minimum of at most `reach` from the surface. An end with its centre inside has one contact, the nearest way
-/// out, however deep it is in a closed mesh. In closed form: a ball rolls without facets.
+/// out, however deep it is in a closed mesh; so has a capsule's axis for each piece of it that is inside between its
+/// ends. In closed form: a ball rolls without facets.
 void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const Round& round,
                     const btTransform& round_pose, btScalar reach, std::vector<RoundContact>& out);
 

@@ -20,7 +20,7 @@ struct ManifoldSettings {
     btScalar patch_reach = btScalar(0.25);
     /// A point whose contact is gone lives on for this many steps while its surfaces stay within the manifold's
     /// breaking threshold: rays find only vertices that penetrate, and a resting body must not lose its support in
-    /// between.
+    /// between. At most 255.
     int keep_steps = 8;
 };
 
@@ -72,8 +72,9 @@ std::uint32_t key_crossing(std::uint32_t crossing);
 /// like Bullet's.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
-    /// Throws InputError when settings name a device this machine cannot use. Direction `weighted` gives Bullet the
-    /// points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1). scene() has the weights.
+    /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction
+    /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
+    /// scene() has the weights.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
                                  const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
     ~CollisionDispatcher() override;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <convert.h>
+
+#include <LinearMath/btVector3.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// How far a capsule's axis has to move, and along what, to be out of a mesh. Mesh frame.
+struct WayOut {
+    btVector3 point;            ///< on the mesh
+    btVector3 normal;           ///< unit, out of the mesh
+    btScalar depth{};           ///< metres, >= 0
+    std::uint32_t triangle = 0; ///< of the shape
+};
+
+/// An axis that runs through a mesh while its ends do not tell: one way out for each of its pieces inside, the shortest
+/// of those along the faces where it enters and leaves and those past an edge beside it. `known[k]`: what is behind the
+/// surface at end k has its contact already, as always with a closed mesh.
+void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,
+              std::vector<WayOut>& out);
+
+} // namespace raycontact::bullet
