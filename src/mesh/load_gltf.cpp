@@ -13,6 +13,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,7 +102,7 @@ private:
 
     /// A pose, and what is left to be done to the mesh first: a scale where the placement turns and scales alike in all
     /// directions, else all but its translation.
-    static std::pair<Pose, Placement> split(const Placement& placement) {
+    std::pair<Pose, Placement> split(const Placement& placement) {
         Pose pose;
         pose.translation = placement.origin;
         const auto& [x, y, z, origin] = placement;
@@ -113,12 +114,21 @@ private:
         if (!(size > 0) || !is_one(dot(x, x)) || !is_one(dot(y, y)) || !is_one(dot(z, z)) || !is_none(dot(x, y))
             || !is_none(dot(y, z)) || !is_none(dot(z, x)))
             return {pose, {x, y, z, {}}};
-        // Scales that differ by rounding alone are one: a ten-millionth is lost in float32.
-        const double unit = std::pow(10.0, std::floor(std::log10(size)) - 7), scale = std::round(size / unit) * unit;
+        const double scale = shared_scale(size);
         const Vec3 &u = (1 / size) * x, &v = (1 / size) * y, &w = (1 / size) * z;
         pose = pose_from_matrix(
             std::array{u.x, v.x, w.x, origin.x, u.y, v.y, w.y, origin.y, u.z, v.z, w.z, origin.z, 0.0, 0.0, 0.0, 1.0});
         return {pose, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {}}};
+    }
+
+    /// Scales that differ by the rounding of float32 matrices alone are one: the first of them, to seven digits. The
+    /// digits of those just below a power of ten are counted from it, as 0.99999998 means 1.
+    double shared_scale(double size) {
+        constexpr double alike = 1e-6;
+        const auto known = scales_.lower_bound((1 - alike) * size);
+        if (known != scales_.end() && *known <= (1 + alike) * size) return *known;
+        const double unit = std::pow(10.0, std::floor(std::log10((1 + alike) * size)) - 7);
+        return *scales_.insert(std::round(size / unit) * unit).first;
     }
 
     static std::string key_of(const Placement& placement) {
@@ -262,7 +272,8 @@ private:
     }
 
     std::vector<Node> nodes_;
-    std::size_t before_ = 0; ///< vertices and triangles of the meshes before this one, where they are read apart
+    std::set<double> scales_; ///< of parts
+    std::size_t before_ = 0;  ///< vertices and triangles of the meshes before this one, where they are read apart
     Mesh mesh_;
 };
 

@@ -2,6 +2,7 @@
 #include "tests/unit/mesh/formats.h"
 #include "tests/unit/mesh/solids.h"
 
+#include <raycontact/assembly.h>
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 
@@ -142,6 +143,29 @@ TEST(LoadGltf, SparsePositions) {
     const Mesh mesh = load_mesh(folder.write("m.glb", glb(json, buffer)));
     EXPECT_EQ(mesh.vertices[2], (Vec3{9, 8, 7}));
     EXPECT_EQ(mesh.vertices[1], (Vec3{1, 0, 0}));
+}
+
+TEST(LoadGltf, ScalesThatDifferByRoundingAloneShareAMesh) {
+    const TempFolder folder;
+    std::string nodes;
+    for (const double scale : {0.99999998, 1.0, 1.00000002, 0.9, 0.90000003, 0.89999997, 25.4, 0.99999}) {
+        const std::string s = text(scale);
+        nodes += nodes.empty() ? "[" : ",";
+        nodes.append(R"({"mesh":0,"matrix":[)").append(s).append(",0,0,0, 0,0,").append(s).append(",0, 0,-");
+        nodes.append(s).append(",0,0, 0,0,0,1]}");
+    }
+    const std::string json =
+        replaced(gltf_json(quad(), nodes + "]", ""), R"({"nodes":[0]})", R"({"nodes":[0,1,2,3,4,5,6,7]})");
+    const std::vector<AssemblyPart> parts = load_assembly(folder.write("m.glb", glb(json, gltf_buffer(quad()))));
+    ASSERT_EQ(parts.size(), 8u);
+    EXPECT_EQ(parts[0].mesh, parts[1].mesh);
+    EXPECT_EQ(parts[0].mesh, parts[2].mesh);
+    EXPECT_EQ(parts[0].mesh->vertices[1], (Vec3{1, 0, 0}));
+    EXPECT_EQ(parts[3].mesh, parts[4].mesh);
+    EXPECT_EQ(parts[3].mesh, parts[5].mesh);
+    EXPECT_NEAR(parts[3].mesh->vertices[1].x, 0.9, 1e-15);
+    EXPECT_NEAR(parts[6].mesh->vertices[1].x, 25.4, 1e-14);
+    EXPECT_NE(parts[0].mesh, parts[7].mesh);
 }
 
 } // namespace
