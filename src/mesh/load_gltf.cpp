@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene of a glTF file: where its nodes place meshes, and their triangles.
 #include "mesh/gltf_file.h"
+#include "mesh/gltf_morph.h"
+#include "mesh/gltf_skin.h"
+#include "mesh/placement.h"
 #include "mesh/vector.h"
 
 #include <raycontact/assembly.h>
@@ -13,6 +16,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,43 +27,30 @@ namespace {
 
 using nlohmann::json;
 
-/// An affine map: where the axes and the origin go.
-struct Placement {
-    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin;
-
-    Vec3 turned(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
-    Vec3 placed(const Vec3& p) const { return turned(p) + origin; }
-    Placement after(const Placement& inner) const {
-        return {turned(inner.x), turned(inner.y), turned(inner.z), placed(inner.origin)};
-    }
-};
-
 class GltfReader : GltfFile {
 public:
     using GltfFile::GltfFile;
 
     Mesh read() {
-        for_each_placed_mesh([&](const Item& node, std::size_t, const Item& mesh, const Placement& placement) {
-            read_mesh(mesh, node.name, placement);
-        });
+        for_each_placed_mesh([&](const PlacedMesh& placed) { read_mesh(placed, placed.placement); });
         return std::move(mesh_);
     }
 
     /// Each node that places a mesh by itself, but for those without triangles.
     std::vector<AssemblyPart> read_parts() {
-        std::map<std::pair<std::size_t, std::string>, std::shared_ptr<const Mesh>> known;
+        std::map<std::string, std::shared_ptr<const Mesh>> known;
         std::vector<AssemblyPart> parts;
-        for_each_placed_mesh([&](const Item& node, std::size_t number, const Item& mesh, const Placement& placement) {
-            if (!is_finite(placement.origin)) fail(node, "is placed where no number is finite");
-            const auto [pose, own] = split(placement);
-            auto& made = known[{number, key_of(own)}];
+        for_each_placed_mesh([&](const PlacedMesh& placed) {
+            if (!is_finite(placed.placement.origin)) fail(placed.node, "is placed where no number is finite");
+            const auto [pose, own] = split(placed.placement);
+            auto& made = known[key_of(placed, own)];
             if (!made) {
-                read_mesh(mesh, node.name, own);
+                read_mesh(placed, own);
                 before_ += mesh_.vertices.size() + mesh_.triangles.size();
-                mesh_.name = name_of(node);
+                mesh_.name = name_of(placed.node);
                 made = std::make_shared<const Mesh>(std::exchange(mesh_, {}));
             }
-            if (!made->triangles.empty()) parts.push_back({name_of(node), made, pose});
+            if (!made->triangles.empty()) parts.push_back({name_of(placed.node), made, pose});
         });
         return parts;
     }
@@ -71,37 +63,62 @@ private:
         Placement placement; ///< in its parent, then in the scene
     };
 
-    /// Calls visit(node, number of its mesh, mesh, placement) in node order.
+    /// A mesh as a node has it.
+    struct PlacedMesh {
+        Item node, mesh;
+        std::size_t number;              ///< of the mesh
+        std::optional<std::size_t> skin; ///< which places each vertex by itself
+        std::vector<double> weights;     ///< of its morph targets
+        Placement placement;             ///< in the scene; none where a skin places it
+    };
+
+    /// Calls visit(PlacedMesh) in node order.
     template <class Visit>
     void for_each_placed_mesh(Visit&& visit) {
         read_buffers();
         place_nodes();
         constexpr std::size_t most_primitives = 1u << 22; // empty ones cost time, too
-        std::size_t placed = 0;
+        std::size_t primitives = 0;
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const Item node = item("nodes", n);
-            const std::optional<Item> named = member(node, "mesh");
+            const std::optional<Item> named = member(node, "mesh"), skin = member(node, "skin");
             if (!named) continue;
             const std::size_t number = whole(*named);
             const Item mesh = item("meshes", number);
             if (!nodes_[n].in_scene) continue;
-            placed += list(mesh, "primitives").size();
-            if (placed > most_primitives) file().fail("places too many primitives; split or reduce it");
-            visit(node, number, mesh, nodes_[n].placement);
+            primitives += list(mesh, "primitives").size();
+            if (primitives > most_primitives) file().fail("places too many primitives; split or reduce it");
+            PlacedMesh placed{node, mesh, number, {}, morph_weights(*this, node, mesh), {}};
+            count_moves(placed.weights.size());
+            if (skin)
+                read_skin(placed.skin.emplace(whole(*skin)));
+            else
+                placed.placement = nodes_[n].placement;
+            visit(placed);
         }
     }
 
-    void read_mesh(const Item& mesh, const std::string& node, const Placement& placement) {
-        const json& primitives = list(mesh, "primitives");
+    void read_skin(std::size_t number) {
+        if (skins_.contains(number)) return;
+        const Item skin = item("skins", number);
+        std::vector<Placement> joints;
+        for (const std::size_t n : node_list(skin, "joints")) joints.push_back(nodes_[n].placement);
+        if (const std::optional<Item> matrices = member(skin, "inverseBindMatrices"))
+            count_moves(whole(item("accessors", whole(*matrices)), "count"));
+        skins_.emplace(number, GltfSkin(*this, skin, std::move(joints)));
+    }
+
+    void read_mesh(const PlacedMesh& placed, const Placement& placement) {
+        const json& primitives = list(placed.mesh, "primitives");
         for (std::size_t i = 0; i < primitives.size(); ++i) {
-            const std::string name = mesh.name + ".primitives[" + std::to_string(i) + "]";
-            read_primitive({primitives[i], name}, node, placement);
+            const std::string name = placed.mesh.name + ".primitives[" + std::to_string(i) + "]";
+            read_primitive({primitives[i], name}, placed, placement);
         }
     }
 
     /// A pose, and what is left to be done to the mesh first: a scale where the placement turns and scales alike in all
     /// directions, else all but its translation.
-    static std::pair<Pose, Placement> split(const Placement& placement) {
+    std::pair<Pose, Placement> split(const Placement& placement) {
         Pose pose;
         pose.translation = placement.origin;
         const auto& [x, y, z, origin] = placement;
@@ -113,18 +130,31 @@ private:
         if (!(size > 0) || !is_one(dot(x, x)) || !is_one(dot(y, y)) || !is_one(dot(z, z)) || !is_none(dot(x, y))
             || !is_none(dot(y, z)) || !is_none(dot(z, x)))
             return {pose, {x, y, z, {}}};
-        // Scales that differ by rounding alone are one: a ten-millionth is lost in float32.
-        const double unit = std::pow(10.0, std::floor(std::log10(size)) - 7), scale = std::round(size / unit) * unit;
+        const double scale = shared_scale(size);
         const Vec3 &u = (1 / size) * x, &v = (1 / size) * y, &w = (1 / size) * z;
         pose = pose_from_matrix(
             std::array{u.x, v.x, w.x, origin.x, u.y, v.y, w.y, origin.y, u.z, v.z, w.z, origin.z, 0.0, 0.0, 0.0, 1.0});
         return {pose, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {}}};
     }
 
-    static std::string key_of(const Placement& placement) {
+    /// Scales that differ by the rounding of float32 matrices alone are one: the first of them, to seven digits. The
+    /// digits of those just below a power of ten are counted from it, as 0.99999998 means 1.
+    double shared_scale(double size) {
+        constexpr double alike = 1e-6;
+        const auto known = scales_.lower_bound((1 - alike) * size);
+        if (known != scales_.end() && *known <= (1 + alike) * size) return *known;
+        const double unit = std::pow(10.0, std::floor(std::log10((1 + alike) * size)) - 7);
+        return *scales_.insert(std::round(size / unit) * unit).first;
+    }
+
+    /// The same for meshes that are the same once `own` is done to them.
+    static std::string key_of(const PlacedMesh& placed, const Placement& own) {
         std::string key;
-        for (const Vec3& v : {placement.x, placement.y, placement.z})
-            key.append(reinterpret_cast<const char*>(&v), sizeof v);
+        const auto add = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
+        add(placed.number);
+        add(placed.skin ? *placed.skin + 1 : std::size_t{0});
+        for (const Vec3& v : {own.x, own.y, own.z}) add(v);
+        for (const double weight : placed.weights) add(weight);
         return key;
     }
 
@@ -175,7 +205,7 @@ private:
 
     Placement own_placement(const Item& node) const {
         if (const std::vector<double> m = numbers(node, "matrix", 16); !m.empty()) // by columns
-            return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+            return Placement::of_matrix(m);
         Placement own;
         if (const std::vector<double> q = numbers(node, "rotation", 4); !q.empty()) {
             const double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -225,7 +255,43 @@ private:
         }
     }
 
-    void read_primitive(const Item& primitive, const std::string& node, const Placement& placement) {
+    /// What morph targets and joints do grows so, too.
+    void count_moves(std::size_t more) {
+        constexpr std::size_t always = 1u << 24, for_a_byte = 16;
+        moves_ += more;
+        if (moves_ > std::max(always, for_a_byte * bytes())) {
+            file().fail("moves its vertices by morph targets and joints more often than its " + std::to_string(bytes())
+                        + " bytes allow; export it without them");
+        }
+    }
+
+    /// Appends the vertices of a primitive. Returns which of them are mirrored.
+    std::vector<char> place_vertices(const Item& primitive, const Item& accessor, std::span<double> positions,
+                                     const PlacedMesh& placed, const Placement& placement) {
+        const std::size_t count = positions.size() / 3;
+        const Item attributes = needed(primitive, "attributes");
+        const auto idle = static_cast<std::size_t>(std::ranges::count(placed.weights, 0.0));
+        const std::size_t lists = placed.weights.size() - idle + (placed.skin ? attributes.value.size() : 0);
+        constexpr std::size_t to_open = 64; // a list takes the time of so many of its records
+        count_moves(placed.weights.size() + lists * (to_open + count));
+        add_morph_targets(*this, primitive, placed.weights, positions);
+        std::vector<Placement> by_joints;
+        if (placed.skin) by_joints = skins_.at(*placed.skin).placements(*this, attributes, count);
+        std::vector<char> mirrored;
+        mirrored.reserve(count);
+        for (std::size_t v = 0; v < count; ++v) {
+            const Placement& own = placed.skin ? by_joints[v] : placement;
+            mirrored.push_back(own.mirrors() ? 1 : 0);
+            mesh_.vertices.push_back(own.placed({positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]}));
+            if (!is_finite(mesh_.vertices.back())) {
+                fail(accessor,
+                     "record " + std::to_string(v) + " is not finite where " + placed.node.name + " places it");
+            }
+        }
+        return mirrored;
+    }
+
+    void read_primitive(const Item& primitive, const PlacedMesh& placed, const Placement& placement) {
         constexpr std::size_t triangles = 4, strip = 5, fan = 6;
         const std::size_t mode = whole(primitive, "mode", triangles);
         if (mode > fan) fail(primitive, "mode " + std::to_string(mode) + " is not in 0 to 6");
@@ -233,7 +299,7 @@ private:
         if (mode < triangles || !position) return; // allowed, and nothing to see
         const Item accessor = item("accessors", whole(*position));
         if (has_extension(primitive, draco) && !member(accessor, "bufferView")) fail_of_compression("Draco");
-        const std::vector<double> points = read_accessor(accessor, "VEC3", 3);
+        std::vector<double> points = read_accessor(accessor, "VEC3", 3);
         const std::size_t base = mesh_.vertices.size();
         if (base + points.size() / 3 > most_vertices) file().fail("has too many vertices; split or reduce it");
         check_growth(points.size() / 3);
@@ -241,27 +307,25 @@ private:
         const std::size_t more = mode == triangles ? list.size() / 3 : std::max<std::size_t>(list.size(), 2) - 2;
         if (mesh_.triangles.size() + more > most_triangles) file().fail("has too many triangles; split or reduce it");
         check_growth(points.size() / 3 + more);
-        for (std::size_t i = 0; i < points.size(); i += 3) {
-            mesh_.vertices.push_back(placement.placed({points[i], points[i + 1], points[i + 2]}));
-            if (!is_finite(mesh_.vertices.back()))
-                fail(accessor, "record " + std::to_string(i / 3) + " is not finite where " + node + " places it");
-        }
-        // A mirroring node turns the winding over (glTF 2.0, section 3.7.4).
-        const auto& [x, y, z, origin] = placement;
-        const bool mirrors = dot({x.x, y.x, z.x}, cross({x.y, y.y, z.y}, {x.z, y.z, z.z})) < 0;
+        const std::vector<char> mirrored = place_vertices(primitive, accessor, points, placed, placement);
         if (mode == triangles && list.size() % 3 != 0) {
             fail(primitive, "triangles have " + std::to_string(list.size()) + " corners, not a multiple of 3");
         }
         for (std::size_t i = 0; i + 2 < list.size(); i += mode == triangles ? 3 : 1) {
             const std::size_t odd = mode == strip ? i % 2 : 0;
             std::array triangle{list[mode == fan ? 0 : i], list[i + 1 + odd], list[i + 2 - odd]};
-            if (mirrors) std::swap(triangle[1], triangle[2]);
+            // Mirrored, its winding turns over (glTF 2.0, section 3.7.4).
+            if (mirrored[triangle[0]] + mirrored[triangle[1]] + mirrored[triangle[2]] > 1)
+                std::swap(triangle[1], triangle[2]);
             for (std::uint32_t& corner : triangle) corner += static_cast<std::uint32_t>(base);
             mesh_.triangles.push_back(triangle);
         }
     }
 
     std::vector<Node> nodes_;
+    std::map<std::size_t, GltfSkin> skins_; ///< that were read
+    std::size_t moves_ = 0;                 ///< steps of morph targets and skins
+    std::set<double> scales_;               ///< of parts
     std::size_t before_ = 0; ///< vertices and triangles of the meshes before this one, where they are read apart
     Mesh mesh_;
 };

@@ -128,20 +128,22 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
 
 std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, LazyBvh& bvh, Nesting nesting) {
     const std::size_t count = patches.list.size();
-    const Vec3 near = box_of(mesh.vertices).middle();
-    std::vector<LongSum> volumes(count), sizes(count);
+    // About a vertex of its own: seen from afar, the volume of a small patch is lost in the rounding of the sum.
+    std::vector<LongSum> volumes(count), roundings(count);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto [a, b, c] = mesh.triangles[i];
-        const double volume = dot(mesh.vertices[a] - near, cross(mesh.vertices[b] - near, mesh.vertices[c] - near)) / 6;
-        volumes[patches.of[i]].add(volume);
-        sizes[patches.of[i]].add(std::fabs(volume));
+        const std::uint32_t p = patches.of[i];
+        const Vec3 reach = mesh.vertices[a] - mesh.vertices[mesh.triangles[patches.list[p].first][0]];
+        const Vec3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
+        volumes[p].add(dot(reach, cross(ab, ac)) / 6);
+        roundings[p].add(1e-14 * length(reach) * length(ab) * length(ac)); // a generous bound
     }
     std::vector<std::array<std::uint32_t, 6>> extremes;
     if (count > 1) extremes = extreme_triangles(mesh, patches);
     std::vector<char> turn(count, 0);
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
-        if (!patches.list[p].closed || !(std::fabs(volume) > 1e-12 * sizes[p].value())) continue;
+        if (!patches.list[p].closed || !(std::fabs(volume) > roundings[p].value())) continue;
         const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh.made()) : 0; };
         switch (nesting) {
         case Nesting::as_wound:

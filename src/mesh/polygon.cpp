@@ -173,17 +173,22 @@ private:
         grid_ = Grid(view_, left);
     }
 
-    /// Whether nothing but the ear's own corners lies in the ear or on its border. Where a polygon touches itself, as
-    /// at a bridge to a hole, its corners at one place do not hide one another.
+    /// Whether the ear holds nothing but its own corners. Where a polygon touches itself, as at a bridge to a hole,
+    /// corners at one place do not hide one another. One in the place of the tip or on a side is in the way if a side
+    /// leads from it into the ear; from the places of the other two it would end in the ear or cross a side.
     bool is_free(std::size_t tip) {
         const std::array ear{corners_[tip].before, tip, corners_[tip].after};
         const auto [left, right] = std::minmax({view_.across(ear[0]), view_.across(ear[1]), view_.across(ear[2])});
         const auto [bottom, top] = std::minmax({view_.up(ear[0]), view_.up(ear[1]), view_.up(ear[2])});
         return !grid_.any(left, right, bottom, top, work_, [&](std::size_t i) {
-            return corners_[i].left
-                   && std::ranges::none_of(ear, [&](std::size_t corner) { return view_.same_place(corner, i); })
-                   && view_.turn(ear[0], ear[1], i) >= 0 && view_.turn(ear[1], ear[2], i) >= 0
-                   && view_.turn(ear[2], ear[0], i) >= 0;
+            if (!corners_[i].left || view_.same_place(ear[0], i) || view_.same_place(ear[2], i)) return false;
+            const int first = view_.turn(ear[0], ear[1], i), second = view_.turn(ear[1], ear[2], i);
+            if (first < 0 || second < 0 || view_.turn(ear[2], ear[0], i) < 0) return false;
+            const auto leads_in = [&](std::size_t to) {
+                return (first > 0 || view_.turn(ear[0], ear[1], to) > 0)
+                       && (second > 0 || view_.turn(ear[1], ear[2], to) > 0);
+            };
+            return (first > 0 && second > 0) || leads_in(corners_[i].before) || leads_in(corners_[i].after);
         });
     }
 

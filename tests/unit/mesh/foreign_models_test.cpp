@@ -73,6 +73,9 @@ const std::map<std::string, std::string> refused = {
     {"invalid/malformed2.obj", "a face needs at least 3 vertices"},
 };
 
+/// What Assimp's flattened scenes leave out: how the joints of a skin move its surface.
+const std::map<std::string, Vec3> moved_by_joints = {{"glTF2/simple_skin/simple_skin.gltf", {-0.5, 0, 0}}};
+
 std::vector<std::string> files() {
     static const std::set<std::string> endings = {".obj", ".stl", ".ply", ".off", ".glb", ".gltf"};
     std::vector<std::string> found;
@@ -160,8 +163,10 @@ TEST_F(ForeignModels, AssimpFindsTheSameSurface) {
         ++compared;
         const double size = length(ours.high - ours.low);
         EXPECT_NEAR(theirs.area, ours.area, 1e-4 * ours.area); // theirs are floats
-        EXPECT_LT(length(theirs.low - ours.low), 1e-5 * size);
-        EXPECT_LT(length(theirs.high - ours.high), 1e-5 * size);
+        const auto joints = moved_by_joints.find(file);
+        const Vec3 moved = joints == moved_by_joints.end() ? Vec3{} : joints->second;
+        EXPECT_LT(length(theirs.low + moved - ours.low), 1e-5 * size);
+        EXPECT_LT(length(theirs.high + moved - ours.high), 1e-5 * size);
     }
     EXPECT_EQ(compared, 52u);
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 using namespace raycontact;
 using namespace raycontact::test;
@@ -130,6 +131,33 @@ TEST(Nesting, FlatTwoSidedSheetIsLeftAlone) {
     EXPECT_TRUE(report.repairs.empty());
     EXPECT_TRUE(report.self_intersecting);
     EXPECT_FALSE(report.outward);
+}
+
+TEST(Nesting, SlantedTwoSidedSheetsAreLeftAlone) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 100; ++i) {
+        Mesh sheet{"sheet", {}, {{0, 1, 2}, {1, 3, 2}, {2, 1, 0}, {3, 1, 2}}};
+        const auto at = [&] { return static_cast<double>(random()) / 1e9; };
+        while (sheet.vertices.size() < 4) sheet.vertices.push_back({at(), at(), at()});
+        EXPECT_TRUE(prepare_mesh(sheet).report.repairs.empty());
+    }
+}
+
+TEST(Nesting, TinyPartsFarFromTheMiddleAreTurnedOnlyIfTheyWindInward) {
+    for (const bool outward : {true, false}) {
+        Mesh mesh{"wide", {}, {}};
+        append_box(mesh, {-500, -500, -500}, {-499, -499, -499});
+        append_box(mesh, {499, 499, 499}, {500, 500, 500});
+        std::mt19937 random(1);
+        for (int i = 0; i < 200; ++i) {
+            const auto at = [&] { return 200 + 280 * (static_cast<double>(random() >> 8) / 16777216); };
+            const Vec3 low{at(), at(), at()};
+            append_box(mesh, low, {low.x + 0.0005, low.y + 0.0005, low.z + 0.0005}, outward);
+        }
+        const MeshReport report = prepare_mesh(mesh).report;
+        EXPECT_EQ(report.repairs, outward ? Words{} : Words{"turned 200 components of 202 that wound inward"});
+        EXPECT_TRUE(report.outward);
+    }
 }
 
 TEST(Nesting, ManySolidsInAShell) {

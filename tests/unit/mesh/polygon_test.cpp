@@ -14,7 +14,9 @@
 #include <chrono>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <set>
 
 using namespace raycontact;
 using namespace raycontact::test;
@@ -82,8 +84,8 @@ bool has_border(const Triangles& triangles, std::size_t corners) {
     return std::ranges::all_of(sides, [](const auto& side) { return side.second == 0; });
 }
 
-/// `flat` of the triangles may have no area.
-void expect_right(const Ring& ring, const Triangles& triangles, std::size_t flat = 0) {
+/// `flat` of the triangles have no area; without it any number.
+void expect_right(const Ring& ring, const Triangles& triangles, std::optional<std::size_t> flat = 0) {
     ASSERT_EQ(triangles.size(), ring.size() - 2);
     EXPECT_TRUE(has_border(triangles, ring.size()));
     const std::int64_t area = twice_area(ring);
@@ -97,11 +99,11 @@ void expect_right(const Ring& ring, const Triangles& triangles, std::size_t flat
         sum += part;
     }
     EXPECT_EQ(sum, std::abs(area));
-    EXPECT_EQ(without, flat);
+    EXPECT_EQ(without, flat.value_or(without));
 }
 
 /// In every plane, turned either way, from every corner.
-void expect_right_everywhere(const Ring& ring, std::size_t flat = 0) {
+void expect_right_everywhere(const Ring& ring, std::optional<std::size_t> flat = 0) {
     for (const bool back : {false, true}) {
         Ring turned(ring);
         if (back) std::ranges::reverse(turned);
@@ -200,13 +202,11 @@ TEST(Polygon, RandomOnes) {
     }
 }
 
-TEST(Polygon, EveryPointIsCoveredAsOftenAsThePolygonWindsAroundIt) {
-    std::mt19937 random(7);
-    const Ring ring = random_ring(random, 30, 60);
-    const Triangles triangles = cut(ring, 3);
+/// At the points of a grid that lie on no side, for a ring in 0 to `width`.
+void expect_covered(const Ring& ring, const Triangles& triangles, std::int64_t width) {
     const auto sign = twice_area(ring) > 0 ? 1 : -1;
-    for (std::int64_t x = 0; x < 60; ++x) {
-        for (std::int64_t y = 0; y < 60; ++y) { // the middle of three: on no side
+    for (std::int64_t x = 0; x < width; ++x) {
+        for (std::int64_t y = 0; y < width; ++y) { // the middle of three
             const Point p{3 * x + 1, 3 * y + 1};
             const auto at = [&](std::size_t i) {
                 return Point{3 * ring[i % ring.size()].x, 3 * ring[i % ring.size()].y};
@@ -230,6 +230,143 @@ TEST(Polygon, EveryPointIsCoveredAsOftenAsThePolygonWindsAroundIt) {
                 EXPECT_EQ(covering, sign * winding) << p.x << " " << p.y;
             }
         }
+    }
+}
+
+/// Triangles of a grid glued together, each to a side of those before: a polygon that winds once around what is in it,
+/// but touches itself, at corners and along sides, and around holes.
+struct Glued {
+    Ring ring;
+    std::vector<std::array<std::size_t, 2>> seams; ///< corners at the ends of the sides that are within
+};
+
+Glued glued(std::mt19937& random, std::size_t triangles, std::int64_t width) {
+    const std::array<Point, 6> ways{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
+    const auto across = [&](const Point& from, const Point& to) { // the third corner of the triangle right of a side
+        const Point way{to.x - from.x, to.y - from.y};
+        const Point& next = ways[static_cast<std::size_t>(std::ranges::find(ways, way) - ways.begin() + 5) % 6];
+        return Point{from.x + next.x, from.y + next.y};
+    };
+    Glued made{{{width / 2, width / 2}, {width / 2 + 1, width / 2}, {width / 2, width / 2 + 1}}, {}};
+    Ring& ring = made.ring;
+    std::set<std::array<Point, 3>> used;
+    const auto use = [&](std::array<Point, 3> triangle) {
+        std::ranges::sort(triangle);
+        return used.insert(triangle).second;
+    };
+    use({ring[0], ring[1], ring[2]});
+    for (std::size_t tries = 0; ring.size() < triangles + 2 && tries < 50 * triangles; ++tries) {
+        const std::size_t i = random() % ring.size();
+        const Point from = ring[i], to = ring[(i + 1) % ring.size()], third = across(from, to);
+        if (std::min(third.x, third.y) < 0 || std::max(third.x, third.y) > width || !use({from, to, third})) continue;
+        made.seams.push_back({i, (i + 1) % ring.size()});
+        ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(i) + 1, third);
+        for (auto& seam : made.seams)
+            for (std::size_t& end : seam) end += end > i ? 1 : 0;
+    }
+    return made;
+}
+
+/// The same polygon, parted in two where it touches itself at a corner, and joined again by a bridge along a seam.
+Ring joined_elsewhere(std::mt19937& random, const Glued& made) {
+    const Ring& ring = made.ring;
+    for (int tries = 0; tries < 300; ++tries) {
+        std::array touch{random() % ring.size(), random() % ring.size()};
+        std::ranges::sort(touch);
+        const auto [i, k] = touch;
+        if (i == k || ring[i] != ring[k] || made.seams.empty()) continue;
+        auto [p, q] = made.seams[random() % made.seams.size()];
+        const auto is_within = [i = i, k = k](std::size_t at) { return i <= at && at < k; };
+        if (is_within(p) == is_within(q)) continue;
+        if (!is_within(p)) std::swap(p, q);
+        Ring joined;
+        for (std::size_t n = 0; n <= k - i; ++n) joined.push_back(ring[i + (p - i + n) % (k - i)]);
+        const std::size_t rest = ring.size() - (k - i);
+        for (std::size_t n = 0; n <= rest; ++n)
+            joined.push_back(ring[(k + ((q + ring.size() - k) % ring.size() + n) % rest) % ring.size()]);
+        return joined;
+    }
+    return ring;
+}
+
+/// Without some of the corners that lie on straight sides, so that others touch the sides that are left.
+Ring straightened(std::mt19937& random, Ring ring) {
+    for (std::size_t i = 0; i < ring.size() && ring.size() > 4; ++i) {
+        const Point &before = ring[(i + ring.size() - 1) % ring.size()], &at = ring[i],
+                    &after = ring[(i + 1) % ring.size()];
+        const bool on = turn(before, at, after) == 0
+                        && (before.x - at.x) * (after.x - at.x) + (before.y - at.y) * (after.y - at.y) < 0;
+        if (on && random() % 4 != 0) ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i--));
+    }
+    return ring;
+}
+
+TEST(Polygon, EveryPointIsCoveredAsOftenAsThePolygonWindsAroundIt) {
+    std::mt19937 random(7);
+    const Ring ring = random_ring(random, 30, 60);
+    expect_covered(ring, cut(ring, 3), 60);
+}
+
+TEST(Polygon, HolesThatTouchTheOutline) {
+    const std::vector<Ring> rings{
+        // At a corner, seen from a bridge to another corner.
+        {{0, 0}, {10, 0}, {10, 10}, {8, 6}, {0, 0}, {6, 8}, {8, 6}, {10, 10}, {0, 10}},
+        // At a corner, without a bridge.
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}, {6, 8}, {8, 6}},
+        // At two corners: what is left are two parts.
+        {{0, 0}, {10, 0}, {10, 10}, {6, 4}, {0, 0}, {4, 6}, {10, 10}, {0, 10}},
+        // In the middle of a side, seen from a bridge to a corner.
+        {{0, 0}, {10, 0}, {10, 10}, {7, 5}, {5, 0}, {3, 5}, {7, 5}, {10, 10}, {0, 10}},
+        // Along a part of a side.
+        {{0, 0}, {10, 0}, {10, 10}, {7, 5}, {7, 0}, {3, 0}, {3, 5}, {7, 5}, {10, 10}, {0, 10}},
+        // Two at one corner.
+        {{0, 0},
+         {10, 0},
+         {10, 10},
+         {9, 4},
+         {0, 0},
+         {9, 6},
+         {9, 4},
+         {10, 10},
+         {6, 9},
+         {0, 0},
+         {4, 9},
+         {6, 9},
+         {10, 10},
+         {0, 10}},
+        // On both sides of a bridge, each with a corner where the other is straight.
+        {{6, 3}, {0, 4}, {0, 1}, {6, 2}, {9, 3}, {4, 3}, {4, 2}, {0, 3}},
+        // One in the corner of another.
+        {{0, 0}, {10, 0}, {10, 10}, {8, 8}, {8, 2}, {2, 2}, {1, 1}, {2, 2}, {2, 8}, {8, 8}, {10, 10}, {0, 10}}};
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        SCOPED_TRACE(i);
+        expect_right_everywhere(rings[i], {});
+        Ring turned(rings[i]);
+        for (std::size_t start = 0; start < turned.size(); ++start) {
+            expect_covered(turned, cut(turned), 10);
+            std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+        }
+    }
+}
+
+/// With its columns and rows apart by 1 to 50.
+Ring stretched(std::mt19937& random, Ring ring) {
+    for (const auto of : {&Point::x, &Point::y}) {
+        std::vector<std::int64_t> places{0};
+        while (places.size() < 20) places.push_back(places.back() + (random() % 2 == 0 ? 1 : 1 + random() % 50));
+        for (Point& p : ring) p.*of = places[static_cast<std::size_t>(p.*of)];
+    }
+    return ring;
+}
+
+TEST(Polygon, RandomOnesThatTouchThemselves) {
+    std::mt19937 random(20131117);
+    for (int i = 0; i < 400; ++i) {
+        SCOPED_TRACE(i);
+        const Glued made = glued(random, 3 + random() % 60, 2 + random() % 8);
+        const Ring ring = stretched(random, i % 2 == 0 ? made.ring : joined_elsewhere(random, made));
+        expect_right_everywhere(ring, {});
+        expect_right_everywhere(straightened(random, ring), {});
     }
 }
 

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/gltf_skin.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace raycontact {
+namespace {
+
+using Item = GltfFile::Item;
+
+enum ComponentType : std::size_t { unsigned_byte = 5121, unsigned_short = 5123, float32 = 5126 };
+
+void check_count(const GltfFile& file, const Item& accessor, std::size_t vertices) {
+    const std::size_t count = file.whole(accessor, "count");
+    if (count != vertices) {
+        file.fail(accessor, "has " + std::to_string(count) + " records for " + std::to_string(vertices) + " vertices");
+    }
+}
+
+std::vector<double> read_joints(const GltfFile& file, const Item& accessor, std::size_t vertices) {
+    const std::size_t type = file.whole(accessor, "componentType");
+    if ((type != unsigned_byte && type != unsigned_short) || file.flag(accessor, "normalized"))
+        file.fail(accessor, "joints must be whole numbers of 8 or 16 bits, unsigned and not normalized");
+    check_count(file, accessor, vertices);
+    return file.read_accessor(accessor, "VEC4", 4);
+}
+
+std::vector<double> read_weights(const GltfFile& file, const Item& accessor, std::size_t vertices) {
+    const std::size_t type = file.whole(accessor, "componentType");
+    const bool whole = type == unsigned_byte || type == unsigned_short;
+    if (type != float32 && !(whole && file.flag(accessor, "normalized")))
+        file.fail(accessor, "weights must be float32, or normalized and of 8 or 16 bits without a sign");
+    check_count(file, accessor, vertices);
+    return file.read_accessor(accessor, "VEC4", 4);
+}
+
+/// Adds `weight` times another.
+void add(Placement& sum, double weight, const Placement& other) {
+    sum.x = sum.x + weight * other.x;
+    sum.y = sum.y + weight * other.y;
+    sum.z = sum.z + weight * other.z;
+    sum.origin = sum.origin + weight * other.origin;
+}
+
+} // namespace
+
+GltfSkin::GltfSkin(const GltfFile& file, const Item& skin, std::vector<Placement> joints) : joints_(std::move(joints)) {
+    if (joints_.empty()) file.fail(skin, "has no joints");
+    const std::optional<Item> inverse = file.member(skin, "inverseBindMatrices");
+    if (!inverse) return;
+    const Item accessor = file.item("accessors", file.whole(*inverse));
+    if (file.whole(accessor, "componentType") != float32) file.fail(accessor, "matrices of a skin must be float32");
+    const std::vector<double> matrices = file.read_accessor(accessor, "MAT4", 16);
+    if (matrices.size() / 16 < joints_.size()) {
+        file.fail(skin, "has " + std::to_string(joints_.size()) + " joints, but " + accessor.name + " has only "
+                            + std::to_string(matrices.size() / 16) + " matrices");
+    }
+    for (std::size_t j = 0; j < joints_.size(); ++j)
+        joints_[j] = joints_[j].after(Placement::of_matrix(std::span(matrices).subspan(16 * j, 16)));
+}
+
+// By the sum of a vertex's weights, so that float32 ones that miss 1 by rounding do not move it.
+std::vector<Placement> GltfSkin::placements(const GltfFile& file, const Item& attributes, std::size_t vertices) const {
+    std::vector<Placement> placed(vertices, {{}, {}, {}, {}});
+    std::vector<double> sums(vertices, 0);
+    std::string joints_key = "JOINTS_0", weights_key = "WEIGHTS_0";
+    for (std::size_t set = 1;
+         set == 1 || file.member(attributes, joints_key.c_str()) || file.member(attributes, weights_key.c_str());
+         ++set) {
+        const Item of_joints = file.item("accessors", file.whole(attributes, joints_key.c_str())),
+                   of_weights = file.item("accessors", file.whole(attributes, weights_key.c_str()));
+        const std::vector<double> joints = read_joints(file, of_joints, vertices),
+                                  weights = read_weights(file, of_weights, vertices);
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+            const auto record = [&] { return "record " + std::to_string(i / 4) + ": "; };
+            if (joints[i] >= static_cast<double>(joints_.size())) {
+                file.fail(of_joints, record() + "joint " + std::to_string(static_cast<std::size_t>(joints[i]))
+                                         + " is not in 0 to " + std::to_string(joints_.size()) + " - 1");
+            }
+            if (!(weights[i] >= 0)) file.fail(of_weights, record() + "a weight is not a number of at least 0");
+            if (weights[i] == 0) continue;
+            add(placed[i / 4], weights[i], joints_[static_cast<std::size_t>(joints[i])]);
+            sums[i / 4] += weights[i];
+        }
+        joints_key = "JOINTS_" + std::to_string(set);
+        weights_key = "WEIGHTS_" + std::to_string(set);
+    }
+    for (std::size_t v = 0; v < vertices; ++v) {
+        if (!(sums[v] > 0)) file.fail(attributes, "vertex " + std::to_string(v) + " has no weight for any joint");
+        const Placement sum = std::exchange(placed[v], {{}, {}, {}, {}});
+        add(placed[v], 1 / sums[v], sum);
+    }
+    return placed;
+}
+
+} // namespace raycontact
