@@ -212,7 +212,7 @@ private:
             if (const auto v = manifolds->find("patch_cosine")) r.manifolds.patch_cosine = btScalar(v->number());
             if (const auto v = manifolds->find("patch_reach")) r.manifolds.patch_reach = btScalar(v->not_negative());
             if (const auto v = manifolds->find("keep_steps"))
-                r.manifolds.keep_steps = static_cast<int>(v->count(0, 1'000'000));
+                r.manifolds.keep_steps = static_cast<int>(v->count(0, 255));
         }
         if (const auto bounds = root.find("bounds")) {
             const std::string word = bounds->text();

@@ -15,7 +15,7 @@ namespace raycontact {
 struct AssemblyPart {
     std::string name;                 ///< of its node, "nodes[3]" where it has none; or of its file
     std::shared_ptr<const Mesh> mesh; ///< metres, in the part's own frame, scaled as the file scales it
-    Pose pose;                        ///< of that frame in the assembly
+    Pose pose;                        ///< of that frame in the assembly; of a mesh with a skin the identity
 };
 
 /// Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh. Nodes
