@@ -109,7 +109,7 @@ TEST_F(ReplayProgram, ReproducesTheHashOfARunOfVertices) {
     EXPECT_NE(edges.at("hash"), run.at("hash"));
     EXPECT_EQ(edges.at("hash_expected"), false);
     const auto text = replay({"a.glb", "--features", "edges"});
-    EXPECT_NE(text.out.find("with other settings (method certified, direction ray, features vertices)"),
+    EXPECT_NE(text.out.find("with other settings (method certified, direction reprojected, features vertices)"),
               std::string::npos)
         << text.out;
 }
