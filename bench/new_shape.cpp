@@ -68,12 +68,13 @@ class World {
 public:
     /// Adds a pair, far from the others.
     void add(btBvhTriangleMeshShape& shape, double size) {
+        const std::size_t pairs = m_objects.size() / 2;
         for (int i = 0; i < 2; ++i) {
             btCollisionObject& object = *m_objects.emplace_back(std::make_unique<btCollisionObject>());
             object.setCollisionShape(&shape);
             object.setCollisionFlags(0);
             object.getWorldTransform().setOrigin(
-                btVector3(btScalar(0.8 * size * i), btScalar(10 * size) * btScalar((m_objects.size() - 1) / 2), 0));
+                btVector3(btScalar(0.8 * size * i), btScalar(10 * size) * btScalar(pairs), 0));
             m_world.addCollisionObject(&object);
         }
     }
