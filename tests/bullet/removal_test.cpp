@@ -41,7 +41,8 @@ class ReplacedInPlace {
 public:
     template <class S, class... Arguments>
     S& make(Arguments&&... arguments) {
-        static_assert(sizeof(S) <= sizeof place_ && alignof(S) <= 16);
+        static_assert(sizeof(S) <= sizeof place_);
+        static_assert(alignof(S) <= 16);
         if (shape_) shape_->~btCollisionShape();
         S* made = new (static_cast<void*>(place_)) S(std::forward<Arguments>(arguments)...);
         shape_ = made;
