@@ -14,6 +14,11 @@ namespace {
 
 constexpr double far_more = 20; // times what the nudge and rounding can make
 
+/// Metres.
+double nudge_of(const ShallowPair& pair) {
+    return 2 * noise * smaller_size(*pair.a, *pair.b);
+}
+
 double deepest_of(std::span<const Contact> contacts) {
     double deepest = 0;
     for (const Contact& contact : contacts) deepest = std::max(deepest, double(contact.depth));
@@ -32,17 +37,16 @@ std::vector<std::vector<Contact>> contacts_when_nudged(Scene& scene, std::span<c
         for (const std::size_t i : left) {
             const Part& b = *pairs[i].b;
             Pose pose = b.pose;
-            pose.translation = pose.translation + 2 * noise * smaller_size(*pairs[i].a, b) * way;
+            pose.translation = pose.translation + nudge_of(pairs[i]) * way;
             list.emplace_back(pairs[i].body_a, scene.add(b.shape, pose)); // a later slot: normals still run from a to b
         }
         scene.step(list);
         std::vector<std::size_t> deep;
         for (std::size_t k = 0; k < left.size(); ++k) {
             const ShallowPair& pair = pairs[left[k]];
-            const double by = 2 * noise * smaller_size(*pair.a, *pair.b);
             const std::span<const Contact> contacts = scene.contacts(list[k].first, list[k].second);
             std::vector<Contact>& least = shallowest[left[k]];
-            if (deepest_of(contacts) < far_more * std::max(by, pair.depth)) {
+            if (deepest_of(contacts) < far_more * std::max(nudge_of(pair), pair.depth)) {
                 least.clear();
                 continue;
             }

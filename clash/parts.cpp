@@ -102,8 +102,7 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, s
     std::mutex mutex;
     std::size_t done = 0;
     Executor executor(threads);
-    // Where there are enough meshes, each is one thread's.
-    const std::uint32_t of_one = wanted.size() < executor.threads() ? threads : 1;
+    const std::uint32_t of_one = executor.threads_of_each(wanted.size());
     executor.run(static_cast<std::uint32_t>(wanted.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end && !stop(); ++i) {
             std::shared_ptr<const Shape> shape;

@@ -30,10 +30,6 @@ Clash clash_of(const PartPair& pair, std::span<const Contact> contacts) {
     return clash;
 }
 
-bool has_inside(const Part& part) {
-    return part.shape->report().closed && part.shape->report().oriented;
-}
-
 /// What a pair's contacts tell.
 struct Answer {
     std::optional<Clash> clash; ///< none: they share no point
@@ -43,7 +39,7 @@ struct Answer {
 
 Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<const Contact> contacts) {
     // Contacts of two open parts tell of sheets behind each other, which may be apart.
-    const bool sheets = !has_inside(a) && !has_inside(b);
+    const bool sheets = !a.shape->has_inside() && !b.shape->has_inside();
     Answer answer{clash_of(pair, contacts), 0, false};
     Clash& clash = *answer.clash;
     const double depth = *clash.depth, size = smaller_size(a, b);
@@ -51,7 +47,7 @@ Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<c
     std::optional<Vec3> shared;
     if (sheets || depth <= noise * size) shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
     if (!shared && (sheets || contacts.empty())) return {};
-    answer.may_coincide = depth <= shallow * size && a.shape->report().closed && b.shape->report().closed;
+    answer.may_coincide = depth <= shallow * size && a.shape->has_inside() && b.shape->has_inside();
     if (depth <= noise * size) {
         const Vec3 point = shared ? *shared : clash.point;
         clash = clash_of(pair, {});
@@ -59,6 +55,26 @@ Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<c
     }
     clash.duplicate = are_duplicates(a, b);
     return answer;
+}
+
+/// Where faces may coincide, nudges tell. pairs: those of the answers, as bodies of the scene.
+void decide_shallow(Scene& scene, const std::vector<Part>& parts, std::span<const Pair> pairs,
+                    std::span<Answer> answers) {
+    std::vector<ShallowPair> asked;
+    std::vector<Clash*> clashes;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        if (!answers[i].may_coincide) continue;
+        Clash& clash = *answers[i].clash;
+        asked.push_back({&parts[clash.a], &parts[clash.b], pairs[i].first, answers[i].depth});
+        clashes.push_back(&clash);
+    }
+    const auto nudged = contacts_when_nudged(scene, asked);
+    for (std::size_t i = 0; i < nudged.size(); ++i) {
+        if (nudged[i].empty()) continue;
+        const bool duplicate = clashes[i]->duplicate;
+        *clashes[i] = clash_of({clashes[i]->a, clashes[i]->b}, nudged[i]);
+        clashes[i]->duplicate = duplicate;
+    }
 }
 
 /// Parts without a contact touch if both are sound: closed, wound outward and not self-intersecting. Otherwise, and
@@ -72,7 +88,7 @@ void drop_unknown_depths(std::vector<Clash>& clashes, const std::vector<Part>& p
             if (clash.contacts == 0 && places.try_emplace(parts[i].mesh.get(), asked.size()).second)
                 asked.push_back(&parts[i]);
     std::vector<char> sound(asked.size(), 0);
-    const std::uint32_t of_one = asked.size() < executor.threads() ? executor.threads() : 1;
+    const std::uint32_t of_one = executor.threads_of_each(asked.size());
     const auto is_good = [&](const Mesh& mesh) {
         return verdict_of(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, of_one).report).good;
     };
@@ -120,20 +136,7 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
                 answers[i] = answer_of(some[i], parts[some[i].a], parts[some[i].b],
                                        scene.contacts(list[i].first, list[i].second));
         });
-        std::vector<ShallowPair> shallow_pairs;
-        std::vector<Clash*> shallow_clashes;
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            if (!answers[i].may_coincide) continue;
-            shallow_pairs.push_back({&parts[some[i].a], &parts[some[i].b], list[i].first, answers[i].depth});
-            shallow_clashes.push_back(&*answers[i].clash);
-        }
-        const auto nudged = contacts_when_nudged(scene, shallow_pairs);
-        for (std::size_t i = 0; i < nudged.size(); ++i) {
-            Clash& clash = *shallow_clashes[i];
-            const bool duplicate = clash.duplicate;
-            if (!nudged[i].empty()) clash = clash_of({clash.a, clash.b}, nudged[i]);
-            clash.duplicate = duplicate;
-        }
+        decide_shallow(scene, parts, list, answers);
         for (const Answer& answer : answers)
             if (answer.clash) clashes.push_back(*answer.clash);
         options.progress(first + some.size(), asked.size());

@@ -104,10 +104,6 @@ void print_json(std::size_t index, bool intersecting, std::span<const Contact> c
     std::cout << line.dump() << '\n';
 }
 
-bool has_inside(const Shape& shape) {
-    return shape.report().closed && shape.report().oriented;
-}
-
 void print_table(std::size_t index, const QueryPair& pair, bool intersecting, std::span<const Contact> contacts,
                  bool weighted) {
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
@@ -154,7 +150,7 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
         const auto own = contacts.subspan(begin, end - begin);
         const auto [a, b] = list[i];
         // A contact shows that they intersect, unless neither has an inside.
-        const bool solid = has_inside(scene.shape(a)) || has_inside(scene.shape(b));
+        const bool solid = scene.shape(a).has_inside() || scene.shape(b).has_inside();
         const bool intersecting =
             (solid && !own.empty()) || intersects(scene.shape(a), scene.pose(a), scene.shape(b), scene.pose(b));
         json ? print_json(first + i, intersecting, own)

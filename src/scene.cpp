@@ -134,7 +134,7 @@ struct Scene::State {
         for (BodySlot i = 0; i < bodies.size(); ++i) {
             if (bodies[i].shape == nullptr) continue;
             const Shape& shape = *bodies[i].shape;
-            const bool open = shape.data().header.closed == 0;
+            const bool open = !shape.has_inside();
             const auto box_at = [&](const Pose& pose) {
                 return world_box(i, shape.box_min(), shape.box_max(), pose, open ? double(reach) : 0);
             };

@@ -38,6 +38,8 @@ public:
 
     const std::string& name() const;
     const MeshReport& report() const;
+    /// It is closed and wound alike everywhere, so that a point can be inside it.
+    bool has_inside() const;
 
     /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far
     /// from their origin lose nothing; these positions are centre + float32 offset, in double.

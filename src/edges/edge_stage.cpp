@@ -109,7 +109,7 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, st
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
     const SlotPair& pair = question.pairs[i];
     const PlacedBody &a = question.bodies[pair.first], &b = question.bodies[pair.second];
-    if (a.shape->data().header.closed == 0 && b.shape->data().header.closed == 0) return;
+    if (!a.shape->has_inside() && !b.shape->has_inside()) return;
     const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     const Motion* motion = question.motion;
     if (motion != nullptr) {

@@ -143,7 +143,7 @@ void PairEdges::give_contacts(const SourceMesh& placed, std::size_t side, std::v
     points_.clear();
     deepest_.clear();
     extents_.clear();
-    at_vertices_.clear();
+    edge_contacts_.clear();
     choices_.clear();
     for (VertexContact& vertex_contact : vertices_[side]) {
         vertex_contact.region = regions_.of(vertex_contact.region);
@@ -174,11 +174,11 @@ void PairEdges::give_contacts(const SourceMesh& placed, std::size_t side, std::v
     }
     for (const Choice& choice : choices_) give_contacts(placed.target, static_cast<VertexBody>(side), choice, found);
     // Several edges may have a contact at one vertex: the lowest counts.
-    std::sort(at_vertices_.begin(), at_vertices_.end(), [](const auto& p, const auto& q) {
+    std::sort(edge_contacts_.begin(), edge_contacts_.end(), [](const auto& p, const auto& q) {
         return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
     });
-    for (std::size_t i = 0; i < at_vertices_.size(); ++i)
-        if (i == 0 || at_vertices_[i].first != at_vertices_[i - 1].first) found.push_back(at_vertices_[i].second);
+    for (std::size_t i = 0; i < edge_contacts_.size(); ++i)
+        if (i == 0 || edge_contacts_[i].first != edge_contacts_[i - 1].first) found.push_back(edge_contacts_[i].second);
 }
 
 PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face) {
@@ -321,7 +321,7 @@ void PairEdges::give_contacts(const ShapeData& target, VertexBody source, const 
         if (end.is_crossing())
             found.push_back(contact);
         else
-            at_vertices_.emplace_back(end.vertex, contact);
+            edge_contacts_.emplace_back(end.vertex, contact);
     }
 }
 

@@ -112,12 +112,13 @@ private:
     std::vector<OnCurve> curves_;     ///< of both sides
     std::vector<RegionPoint> points_; ///< of one side, by region
     std::vector<Extent> extents_;
-    std::vector<std::uint32_t> last_extent_;                            ///< by the first of a region's points_, or NONE
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_;    ///< of one side: vertex, node
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;      ///< of one side: edges, by their vertices
-    std::vector<std::pair<std::uint32_t, FeatureContact>> at_vertices_; ///< of one side: contacts of edges at vertices
-    std::vector<const VertexContact*> deepest_;                         ///< of one side: by region, the deepest first
-    std::vector<Choice> choices_;                                       ///< of one side
+    std::vector<std::uint32_t> last_extent_;                         ///< by the first of a region's points_, or NONE
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;   ///< of one side: edges, by their vertices
+    std::vector<std::pair<std::uint32_t, FeatureContact>>
+        edge_contacts_;                         ///< of one side: contacts of edges at vertices
+    std::vector<const VertexContact*> deepest_; ///< of one side: by region, the deepest first
+    std::vector<Choice> choices_;               ///< of one side
 };
 
 } // namespace raycontact

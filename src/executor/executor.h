@@ -51,6 +51,8 @@ public:
     explicit Executor(std::uint32_t threads, int core = -1, Priority priority = Priority::normal);
 
     std::uint32_t threads() const { return threads_; }
+    /// That each of so many tasks, run by this, may use itself: one, unless they are too few for all threads.
+    std::uint32_t threads_of_each(std::size_t tasks) const { return tasks < threads_ ? threads_ : 1; }
     /// The one that all work is pinned to; -1: none.
     int core() const { return core_; }
     /// Begins to wake the threads, which takes a while, and does not wait for them: work is about to come.

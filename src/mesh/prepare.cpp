@@ -117,7 +117,7 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, LazyBvh& bvh,
 }
 
 /// Few triangles are done before other threads wake.
-Executor executor_for(std::size_t triangles, std::uint32_t threads = 0) {
+Executor executor_for(std::size_t triangles, std::uint32_t threads) {
     return Executor(triangles < 512 ? 1 : threads);
 }
 
@@ -171,7 +171,7 @@ void check_anew(PreparedMesh& mesh, std::span<const HalfEdge> edges, Executor& e
 
 MeshReport measured_report(const PreparedMesh& mesh) {
     const FloatEnvironment environment;
-    Executor executor = executor_for(mesh.triangles.size());
+    Executor executor = executor_for(mesh.triangles.size(), 0);
     PreparedMesh measured(mesh);
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
     fill_report(measured, edges);

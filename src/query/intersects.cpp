@@ -199,7 +199,7 @@ std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape
 
 bool contains(const Shape& shape, const Vec3& point) {
     const FloatEnvironment environment;
-    return shape.data().header.closed != 0 && winding_number(shape.data(), point - shape.centre()) != 0;
+    return shape.has_inside() && winding_number(shape.data(), point - shape.centre()) != 0;
 }
 
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {

@@ -123,6 +123,9 @@ const std::string& Shape::name() const {
 const MeshReport& Shape::report() const {
     return data_->mesh.report;
 }
+bool Shape::has_inside() const {
+    return data_->header.closed != 0;
+}
 std::span<const Vec3> Shape::vertices() const {
     return data_->mesh.vertices;
 }

@@ -26,8 +26,8 @@ constexpr btScalar parallel = btScalar(1e-4);
 class Axis {
 public:
     Axis(const Converted& mesh, const btVector3& a, const btVector3& b)
-        : mesh_(mesh), closed_(mesh.shape->report().closed && mesh.shape->report().oriented), a_(a), b_(b),
-          along_(b - a), length_(along_.length()), size_(btScalar(mesh.shape->radius()) + length_) {}
+        : mesh_(mesh), a_(a), b_(b), along_(b - a), length_(along_.length()),
+          size_(btScalar(mesh.shape->radius()) + length_) {}
 
     std::vector<Crossing> crossings() const {
         std::vector<Crossing> found;
@@ -123,20 +123,15 @@ private:
         }
         const btScalar depth = (p - a_).dot(away);
         if (depth < -slack() || depth >= best.depth) return;
-        // Where both lines come closest.
-        const btVector3 between = a_ - p;
-        const btScalar e2 = edge.length2(), a2 = length_ * length_, mixed = along_.dot(edge), square = sine * sine;
-        const btScalar at = (mixed * edge.dot(between) - e2 * along_.dot(between)) / square;
-        const btScalar on_edge = (a2 * edge.dot(between) - mixed * along_.dot(between)) / square;
+        const auto [at, on_edge] = closest_on_lines(a_, along_, p, edge, sine * sine);
         if (at < -parallel || at > 1 + parallel || on_edge < -parallel || on_edge > 1 + parallel) return;
         const btVector3 point = p + edge * on_edge;
         // Not past an edge of another part, with air in between.
-        if (closed_ && !contains(*mesh_.shape, to_vec((middle + point) / 2))) return;
+        if (mesh_.shape->has_inside() && !contains(*mesh_.shape, to_vec((middle + point) / 2))) return;
         best = {point, away, btMax(depth, btScalar(0)), t};
     }
 
     const Converted& mesh_;
-    bool closed_;
     btVector3 a_, b_, along_;
     btScalar length_;
     btScalar size_; ///< of the coordinates: what rounding grows with

@@ -377,9 +377,8 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
 }
 
 Converted ShapeCache::get_again(const btCollisionShape& shape) {
-    // The others are found without reading many numbers, or without a mistake.
-    const bool read = !has_stand_in(shape) && !dynamic_cast<const MeshShape*>(&shape);
-    if (!read) return get(shape);
+    // These have few numbers to read, or none.
+    if (has_stand_in(shape) || dynamic_cast<const MeshShape*>(&shape)) return get(shape);
     Known now;
     now.form = form_of(shape);
     shape.getAabb(btTransform::getIdentity(), now.low, now.high);

@@ -335,10 +335,7 @@ bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
     const Settings& settings = scene.settings();
     if (settings.continuous || (settings.method != Method::standard && settings.method != Method::certified))
         return false;
-    for (const Leaf* leaf : {&a, &b}) {
-        const MeshReport& report = leaf->converted.shape->report();
-        if (!report.closed || !report.oriented) return false;
-    }
+    if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
     return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
 }
 

@@ -3,6 +3,7 @@
 #include <vectors.h>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btTransformUtil.h>
 
 namespace raycontact::bullet {
@@ -18,14 +19,9 @@ Pose to_pose(const btTransform& transform) {
 }
 
 void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVector3& high) {
-    const btVector3 least = to_bullet(shape.box_min()), most = to_bullet(shape.box_max());
-    const btVector3 middle = pose((least + most) / 2), half = (most - least) / 2;
-    const btVector3 extent =
-        half.dot3(pose.getBasis()[0].absolute(), pose.getBasis()[1].absolute(), pose.getBasis()[2].absolute());
-    const btScalar coordinates = half.length() + middle.length() + btScalar(shape.radius());
-    const btScalar slack = btScalar(1e-5) * coordinates;
-    low = middle - extent - btVector3(slack, slack, slack);
-    high = middle + extent + btVector3(slack, slack, slack);
+    const btScalar coordinates = 2 * btScalar(shape.radius()) + pose.getOrigin().length();
+    btTransformAabb(to_bullet(shape.box_min()), to_bullet(shape.box_max()), btScalar(1e-5) * coordinates, pose, low,
+                    high);
 }
 
 Kind Objects::kind_for_us(const btCollisionShape& shape) const {

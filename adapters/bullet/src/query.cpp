@@ -10,6 +10,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <array>
+#include <functional>
 #include <span>
 
 namespace raycontact::bullet {
@@ -168,23 +169,21 @@ void Queries::run_bullet(const Placed& a, const Placed& b, const btCollisionObje
         dispatcher_.btCollisionDispatcher::findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CLOSEST_POINT_ALGORITHMS);
     const btCollisionObjectWrapper* const own_a = result.getBody0Wrap();
     const btCollisionObjectWrapper* const own_b = result.getBody1Wrap();
-    const auto clean_up = [&] {
+    struct AtTheEnd { // also if the user's callback throws
+        std::function<void()> clean_up;
+        ~AtTheEnd() { clean_up(); }
+    };
+    const AtTheEnd at_the_end{[&] {
         result.setBody0Wrap(own_a);
         result.setBody1Wrap(own_b);
         algorithm->~btCollisionAlgorithm();
         dispatcher_.freeCollisionAlgorithm(algorithm);
-    };
+    }};
     result.setBody0Wrap(&wrap_a);
     result.setBody1Wrap(&wrap_b);
     result.setShapeIdentifiersA(-1, a.index);
     result.setShapeIdentifiersB(-1, b.index);
-    try {
-        algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
-    } catch (...) { // of the user's callback
-        clean_up();
-        throw;
-    }
-    clean_up();
+    algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
 }
 
 } // namespace raycontact::bullet

@@ -199,12 +199,11 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
             const btVector3 &p = corner(t, k), &q = corner(t, (k + 1) % 3);
             const unsigned corner_bit = 1u << k, edge_bits = corner_bit | 1u << (k + 1) % 3;
             consider(t, corner_bit, p, (p - a).dot(along) / length2);
-            const btVector3 edge = q - p, between = a - p;
+            const btVector3 edge = q - p;
             const btScalar e2 = edge.length2(), mixed = along.dot(edge);
             const btScalar square = length2 * e2 - mixed * mixed;
             if (square <= btScalar(1e-6) * length2 * e2) continue; // parallel: corners and ends see it
-            const btScalar at = (mixed * edge.dot(between) - e2 * along.dot(between)) / square;
-            const btScalar on_edge = (length2 * edge.dot(between) - mixed * along.dot(between)) / square;
+            const auto [at, on_edge] = closest_on_lines(a, along, p, edge, square);
             if (on_edge > 0 && on_edge < 1) consider(t, edge_bits, p + edge * on_edge, at);
         }
     }
@@ -225,10 +224,9 @@ void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, st
 /// What neither ends nor sides see: an axis inside the mesh between them.
 void add_axis(const Converted& mesh, const btVector3& a, const btVector3& b,
               const std::array<std::span<const Found>, 2>& ends, std::vector<Found>& out) {
-    const MeshReport& report = mesh.shape->report();
     std::array<bool, 2> known{};
     for (std::size_t k = 0; k < 2; ++k)
-        known[k] = (report.closed && report.oriented)
+        known[k] = mesh.shape->has_inside()
                    || std::any_of(ends[k].begin(), ends[k].end(), [](const Found& f) { return f.away < 0; });
     static thread_local std::vector<WayOut> ways;
     ways_out(mesh, a, b, known, ways);
