@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Steps and kernels of every GPU of this machine: checks the hash of each range of steps, method and caster against the
-# CPU's (and against those of the machine that packed), times kernels and whole steps, measures bandwidth. Writes a CSV
-# and a log to ${OUT:-bench/results/<machine>}. Needs no arguments, no root and, packed or built, no network. Without a
-# GPU it runs on opencl:0 and says so.
+# Steps and kernels of every GPU of this machine: runs the tests of devices on it (under compute-sanitizer, too, where
+# that is installed), checks the hash of each range of steps, method and caster against the CPU's (and against those of
+# the machine that packed), times kernels and whole steps, measures bandwidth. Writes a CSV and a log to
+# ${OUT:-bench/results/<machine>}. Needs no arguments, no root and, packed or built, no network. Without a GPU it runs
+# on opencl:0 and says so. Tests are run where build/ has them (scripts/test builds them).
 #
 #   bench/device.sh                     builds first, unless it finds a pack or RAYCONTACT_BINARY=PROGRAM
 #   bench/device.sh --pack DIR          builds, and gathers in DIR what a bare machine needs: copy DIR, run DIR/device.sh
@@ -12,13 +13,17 @@
 # contacts are not the CPU's (after everything was written), 2 something is missing.
 #
 # By environment variables: DEVICES (list), STEPS (ranges), METHODS, COPIES (list; more than 1: caster bvh only), RUNS,
-# BASIC_STEPS, RECORDING, OUT. RAYCONTACT_NVRTC is passed on to the program.
+# BASIC_STEPS, RECORDING, TESTS (none: only measure), OUT. RAYCONTACT_NVRTC is passed on to the program.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 default_ranges="60:76 200:232" # the avalanche lands; it lies and creeps
 recorded_steps=240
 pack_mib=60
+# Program and what it is asked for. The smallest case is the one for a checker of every access.
+tests=('opencl_device_test queue.*:scan.*:driver.kernels*' 'opencl_kernels_test devices.*:small.*' 'opencl_scenes_test *')
+checked='opencl_kernels_test small.*'
+checkers=(memcheck racecheck initcheck synccheck)
 
 say() { printf '== %s\n' "$*" >&2; }
 die() { printf 'device.sh: %s\n' "$*" >&2; exit 2; }
@@ -53,7 +58,7 @@ libraries_of() {
 }
 
 pack() {
-    local pack=$1 nvrtc library
+    local pack=$1 nvrtc library program
     command -v xz >/dev/null || die "--pack needs xz (Debian: xz-utils)"
     build
     cd "$here/.."
@@ -68,8 +73,19 @@ pack() {
     say "program and libraries"
     cp build/bin/raycontact "$pack/raycontact"
     strip "$pack/raycontact" 2>/dev/null || true
+    rm -rf "$pack/tests"
+    if [ -x build/bin/opencl_kernels_test ]; then
+        say "tests of devices"
+        mkdir "$pack/tests"
+        cp build/bin/opencl_*_test "$pack/tests/"
+        strip "$pack"/tests/* 2>/dev/null || true
+    else
+        say "build/ has no tests of devices: the pack measures, and checks hashes alone; scripts/test builds them"
+    fi
     mkdir "$work/libraries"
-    while read -r library; do cp -L "$library" "$work/libraries/"; done < <(libraries_of "$pack/raycontact")
+    for program in "$pack/raycontact" "$pack"/tests/*; do
+        [ ! -x "$program" ] || while read -r library; do cp -L "$library" "$work/libraries/"; done < <(libraries_of "$program")
+    done
     tar -C "$work" -cf - libraries | xz -3 -T0 >"$pack/libraries.tar.xz"
 
     say "a recording, and its hashes on this CPU"
@@ -139,6 +155,7 @@ esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 pack=
+test_folder=$here/../build/bin
 for folder in "$here" "$here/device-pack"; do
     if [ -z "$pack" ] && [ -e "$folder/pack.txt" ]; then pack=$folder; fi
 done
@@ -150,6 +167,8 @@ elif [ -n "$pack" ]; then
     # A copy may have lost its mode.
     cp "$pack/raycontact" "$work/raycontact" && chmod +x "$work/raycontact"
     program=$work/raycontact
+    test_folder=$work/tests
+    if [ -d "$pack/tests" ]; then cp -r "$pack/tests" "$work/tests" && chmod +x "$work"/tests/*; fi
     unpack "$pack/libraries.tar.xz" "$work"
     export LD_LIBRARY_PATH="$work/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
     if [ -e "$pack/nvrtc.tar.xz" ] && [ -z "${RAYCONTACT_NVRTC:-}" ]; then
@@ -208,6 +227,36 @@ slug=
     cat "$work/devices.txt"
 } >"$log"
 
+# run_test DEVICE HOW...: its last lines tell; goes on after a failure.
+run_test() {
+    local device=$1 rc=0
+    shift
+    { echo; echo "RAYCONTACT_TEST_DEVICE=$device $*"; } >>"$log"
+    RAYCONTACT_TEST_DEVICE=$device RAYCONTACT_CACHE=$work/cache timeout 240 "$@" >"$work/test.txt" 2>&1 || rc=$?
+    grep -E '^\[  (PASSED|FAILED|SKIPPED) |^=====.*(ERROR SUMMARY|RACECHECK SUMMARY)|Failure$|error' "$work/test.txt" | head -n 40 >>"$log" || true
+    if [ $rc = 0 ]; then
+        say "$device: $(basename "$1") passed"
+    else
+        status=1
+        tail -n 40 "$work/test.txt" >>"$log"
+        say "$device: $* FAILED with status $rc: $(tail -n 1 "$work/test.txt")"
+    fi
+}
+
+# test_device DEVICE: each test of any device, then the smallest under each checker of compute-sanitizer.
+test_device() {
+    local device=$1 one checker
+    for one in "${tests[@]}"; do
+        [ ! -x "$test_folder/${one%% *}" ] || run_test "$device" "$test_folder/${one%% *}" --gtest_filter="${one#* }"
+    done
+    case "$device" in cuda:*) ;; *) return 0 ;; esac
+    command -v compute-sanitizer >/dev/null && [ -x "$test_folder/${checked%% *}" ] || return 0
+    for checker in "${checkers[@]}"; do
+        run_test "$device" compute-sanitizer --tool "$checker" --error-exitcode 1 "$test_folder/${checked%% *}" \
+            --gtest_filter="${checked#* }"
+    done
+}
+
 # measure DEVICE RANGE COPIES: on the CPU too, so that each table has both. Goes on after a failure.
 measure() {
     local device=$1 range=$2 number=$3 runs=${RUNS:-5} found rc=0
@@ -234,6 +283,9 @@ measure() {
     if [ -e "$csv" ]; then tail -n +2 "$found" >>"$csv"; else cp "$found" "$csv"; fi
 }
 
+if [ "${TESTS:-}" != none ]; then
+    for device in $devices; do test_device "$device"; done
+fi
 for number in $copies; do
     for range in ${STEPS:-$default_ranges}; do
         for device in cpu $devices; do measure "$device" "$range" "$number"; done

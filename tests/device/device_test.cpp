@@ -142,7 +142,7 @@ TEST(open, lists_are_the_same_each_time) {
 // ---- the queue
 
 TEST(queue, write_has_read_its_source_when_it_returns) {
-    const OpenDevice opened = open_device("opencl:0", 1);
+    const OpenDevice opened = open_device(tested_device(), 1);
     Device& device = *opened.device;
     for (const std::size_t size : {1u, 1000u, 4000000u}) {
         Array<kernels::uint> array;
@@ -163,7 +163,7 @@ TEST(queue, write_has_read_its_source_when_it_returns) {
 }
 
 TEST(queue, reads_several_pieces_and_empty_ones) {
-    const OpenDevice opened = open_device("opencl:0", 1);
+    const OpenDevice opened = open_device(tested_device(), 1);
     Device& device = *opened.device;
     Array<kernels::uint> array, none;
     array.write(device, std::vector<kernels::uint>{5, 6, 7, 8});
@@ -181,7 +181,7 @@ TEST(queue, reads_several_pieces_and_empty_ones) {
 }
 
 TEST(queue, a_buffer_may_go_while_it_is_in_use) {
-    const OpenDevice opened = open_device("opencl:0", 1);
+    const OpenDevice opened = open_device(tested_device(), 1);
     Device& device = *opened.device;
     Array<kernels::uint> kept;
     kept.resize(device, 1000000);
@@ -225,7 +225,7 @@ Scanned scan(Device& device, const std::vector<kernels::uint>& values, std::size
 }
 
 TEST(scan, is_the_hosts) {
-    const OpenDevice host = open_device("cpu", 1), opened = open_device("opencl:0", 1);
+    const OpenDevice host = open_device("cpu", 1), opened = open_device(tested_device(), 1);
     std::mt19937 random(5);
     for (const std::size_t size : {0u, 1u, 2u, 255u, 256u, 257u, 5000u, 65535u, 65536u, 65537u, 200000u, 300001u})
         for (const std::size_t columns : {1u, 2u, 4u})
@@ -245,7 +245,7 @@ TEST(scan, is_the_hosts) {
 }
 
 TEST(scan, sums_beyond_32_bits_are_saturated) {
-    const OpenDevice host = open_device("cpu", 1), opened = open_device("opencl:0", 1);
+    const OpenDevice host = open_device("cpu", 1), opened = open_device(tested_device(), 1);
     for (const std::size_t size : {3u, 1000u, 100000u})
         for (const kernels::uint value : {0xffffffffu, 0x80000000u, 0xffffffffu / 1000u}) {
             const std::vector<kernels::uint> values(2 * size, value);
@@ -279,7 +279,7 @@ TEST(driver, compiles_nothing_in_a_step) {
 }
 
 TEST(driver, kernels_run_for_some_time) {
-    OpenDevice opened = open_device("opencl:0", 1);
+    OpenDevice opened = open_device(tested_device(), 1);
     Queue& queue = opened.device->queue();
     const double before = queue.busy_ms();
     EXPECT_GT(before, 0) << "the probe";

@@ -7,6 +7,7 @@
 #include "reference/meshes.h"
 #include "reference/random.h"
 
+#include <cstdlib>
 #include <cstring>
 
 namespace raycontact::device_test {
@@ -132,6 +133,11 @@ Outcome run_on_cpu(const Work& work, const std::vector<Way>& ways, std::string_v
 std::vector<kernels::LocalContact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways) {
     Part part(std::move(opened));
     return run_part(part, work, ways).contacts;
+}
+
+std::string tested_device() {
+    const char* named = std::getenv("RAYCONTACT_TEST_DEVICE");
+    return named ? named : "opencl:0";
 }
 
 bool same_bits(const std::vector<kernels::LocalContact>& a, const std::vector<kernels::LocalContact>& b) {

@@ -8,6 +8,7 @@
 #include <raycontact/shape.h>
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -51,6 +52,9 @@ Outcome run_on_cpu(const Work& work, const std::vector<Way>& ways, std::string_v
 
 /// The same without a trace: the contacts alone.
 std::vector<kernels::LocalContact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways);
+
+/// The device that the tests of any device try: `opencl:0`, or what RAYCONTACT_TEST_DEVICE names (`cuda:0`).
+std::string tested_device();
 
 bool same_bits(const std::vector<kernels::LocalContact>& a, const std::vector<kernels::LocalContact>& b);
 
