@@ -26,6 +26,7 @@
 
 // One kernel scans up to so many items; more take three kernels.
 #define SCAN_AT_ONCE 65536u
+#define SCAN_ITEMS 8u // of a thread, one after the other
 #define MOST_COLUMNS 4
 
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]

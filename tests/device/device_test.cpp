@@ -227,7 +227,8 @@ Scanned scan(Device& device, const std::vector<kernels::uint>& values, std::size
 TEST(scan, is_the_hosts) {
     const OpenDevice host = open_device("cpu", 1), opened = open_device(tested_device(), 1);
     std::mt19937 random(5);
-    for (const std::size_t size : {0u, 1u, 2u, 255u, 256u, 257u, 5000u, 65535u, 65536u, 65537u, 200000u, 300001u})
+    for (const std::size_t size :
+         {0u, 1u, 2u, 255u, 256u, 257u, 2048u, 2049u, 5000u, 8193u, 65535u, 65536u, 65537u, 200000u, 600001u})
         for (const std::size_t columns : {1u, 2u, 4u})
             for (const bool counted : {false, true}) {
                 std::vector<kernels::uint> values(size * columns);
@@ -290,7 +291,7 @@ TEST(driver, kernels_run_for_some_time) {
     totals.resize(*opened.device, 1);
     queue.scan({4000000, 1, 4000000, values.buffer(), firsts.buffer(), totals.buffer(), 0, 10});
     queue.finish();
-    EXPECT_GT(queue.busy_ms(), before + 0.1);
+    EXPECT_GT(queue.busy_ms(), before + 0.01); // a large GPU takes 0.04 ms
     EXPECT_LT(queue.busy_ms(), before + 10000);
 }
 

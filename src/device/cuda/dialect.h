@@ -31,6 +31,7 @@ typedef unsigned long long ulong;
 #define SCAN_GROUP 1024u
 #define GROUP_KERNEL extern "C" __global__ __launch_bounds__(SCAN_GROUP)
 #define GROUP blockIdx.x
+#define GROUPS gridDim.x
 #define THREAD threadIdx.x
 #define LOCAL
 #define SHARED(type, name, size) __shared__ type name[size]

@@ -8,28 +8,12 @@ typedef struct {
     ulong begin, end;
 } Slice;
 
-DEVICE Slice slice_of(ulong begin, ulong end, uint part, uint parts) {
-    const ulong size = (end - begin + parts - 1u) / parts;
+DEVICE Slice slice_of(uint n, uint part, uint parts) {
+    const ulong size = ((ulong)n + parts - 1u) / parts;
     Slice slice;
-    slice.begin = begin + part * size < end ? begin + part * size : end;
-    slice.end = end - slice.begin < size ? end : slice.begin + size;
+    slice.begin = part * size < n ? part * size : n;
+    slice.end = n - slice.begin < size ? n : slice.begin + size;
     return slice;
-}
-
-DEVICE ulong sum_of(GLOBAL const uint* RESTRICT values, const Slice slice) {
-    ulong sum = 0u;
-    for (ulong i = slice.begin; i < slice.end; ++i) sum += values[i];
-    return sum;
-}
-
-// Beyond 2^32 the firsts are wrong, but then there is no room either.
-DEVICE void write_firsts(GLOBAL const uint* RESTRICT values, const Slice slice, ulong before,
-                         GLOBAL uint* RESTRICT firsts) {
-    uint at = (uint)before;
-    for (ulong i = slice.begin; i < slice.end; ++i) {
-        firsts[i] = at;
-        at += values[i];
-    }
 }
 
 // The sum over the threads before this one; total: over all threads. shared: one element for each thread.
@@ -46,6 +30,45 @@ DEVICE ulong sum_before(ulong own, LOCAL ulong* shared, ulong* total) {
     *total = shared[SCAN_GROUP - 1u];
     BARRIER;
     return before;
+}
+
+// The sum over a group's items. Neighbours read neighbours: a read of memory serves many threads.
+DEVICE ulong sum_of(GLOBAL const uint* RESTRICT values, const Slice slice, LOCAL ulong* shared) {
+    ulong own = 0u, total;
+    for (ulong i = slice.begin + THREAD; i < slice.end; i += SCAN_GROUP) own += values[i];
+    sum_before(own, shared, &total);
+    return total;
+}
+
+// A thread's items lie in a row in shared memory; the gaps keep the threads of a warp in different banks.
+#define SCAN_TILE (SCAN_GROUP * SCAN_ITEMS)
+#define TILE_PLACE(k) ((k) + (k) / 32u)
+#define TILE_PLACES (SCAN_TILE + SCAN_TILE / 32u)
+
+// Writes the firsts of a group's items, tile by tile, of which `before` come before. Returns the sum over the items.
+// Beyond 2^32 the firsts are wrong, but then there is no room either.
+DEVICE ulong write_firsts(GLOBAL const uint* RESTRICT values, const Slice slice, ulong before, LOCAL ulong* shared,
+                          LOCAL uint* tile, GLOBAL uint* RESTRICT firsts) {
+    ulong sum = 0u;
+    for (ulong begin = slice.begin; begin < slice.end; begin += SCAN_TILE) {
+        const uint n = slice.end - begin < SCAN_TILE ? (uint)(slice.end - begin) : SCAN_TILE;
+        for (uint k = THREAD; k < n; k += SCAN_GROUP) tile[TILE_PLACE(k)] = values[begin + k];
+        BARRIER;
+        const uint first = THREAD * SCAN_ITEMS, last = first + SCAN_ITEMS < n ? first + SCAN_ITEMS : n;
+        ulong own = 0u, total;
+        for (uint k = first; k < last; ++k) own += tile[TILE_PLACE(k)];
+        uint at = (uint)(before + sum + sum_before(own, shared, &total));
+        for (uint k = first; k < last; ++k) {
+            const uint value = tile[TILE_PLACE(k)];
+            tile[TILE_PLACE(k)] = at;
+            at += value;
+        }
+        BARRIER;
+        for (uint k = THREAD; k < n; k += SCAN_GROUP) firsts[begin + k] = tile[TILE_PLACE(k)];
+        BARRIER;
+        sum += total;
+    }
+    return sum;
 }
 
 DEVICE uint saturated(ulong sum) {
@@ -65,37 +88,36 @@ DEVICE void set_totals(GLOBAL Totals* RESTRICT totals, uint column, ulong sum, u
 GROUP_KERNEL void scan_at_once(COUNT(count), uint columns, uint stride, GLOBAL const uint* RESTRICT values,
                                GLOBAL uint* RESTRICT firsts, GLOBAL Totals* RESTRICT totals, uint at, uint room) {
     SHARED(ulong, shared, SCAN_GROUP);
+    SHARED(uint, tile, TILE_PLACES);
     const uint n = ALL(count);
-    const Slice slice = slice_of(0u, n, THREAD, SCAN_GROUP);
+    const Slice all = slice_of(n, 0u, 1u);
     for (uint c = 0u; c < columns; ++c) {
-        ulong total;
-        const ulong before = sum_before(sum_of(values + (ulong)c * stride, slice), shared, &total);
-        if (c == 0u) write_firsts(values, slice, before, firsts);
-        if (THREAD == 0u) set_totals(totals + at, c, total, n, room);
+        const ulong sum = c == 0u ? write_firsts(values, all, 0u, shared, tile, firsts)
+                                  : sum_of(values + (ulong)c * stride, all, shared);
+        if (THREAD == 0u) set_totals(totals + at, c, sum, n, room);
     }
 }
 
-// SCAN_GROUP groups, a block of items each. sums[c * SCAN_GROUP + b]: of block b.
+// A block of items each group. sums[c * SCAN_GROUP + b]: of block b.
 GROUP_KERNEL void scan_blocks(COUNT(count), uint columns, uint stride, GLOBAL const uint* RESTRICT values,
                               GLOBAL ulong* RESTRICT sums) {
     SHARED(ulong, shared, SCAN_GROUP);
-    const Slice block = slice_of(0u, ALL(count), GROUP, SCAN_GROUP);
-    const Slice slice = slice_of(block.begin, block.end, THREAD, SCAN_GROUP);
+    const Slice block = slice_of(ALL(count), GROUP, GROUPS);
     for (uint c = 0u; c < columns; ++c) {
-        ulong total;
-        sum_before(sum_of(values + (ulong)c * stride, slice), shared, &total);
-        if (THREAD == 0u) sums[c * SCAN_GROUP + GROUP] = total;
+        const ulong sum = sum_of(values + (ulong)c * stride, block, shared);
+        if (THREAD == 0u) sums[c * SCAN_GROUP + GROUP] = sum;
     }
 }
 
 // One group, a thread a block: the sum of each block in column 0 becomes the sum of the blocks before it.
-GROUP_KERNEL void scan_sums(COUNT(count), uint columns, GLOBAL ulong* RESTRICT sums, GLOBAL Totals* RESTRICT totals,
-                            uint at, uint room) {
+GROUP_KERNEL void scan_sums(COUNT(count), uint columns, uint blocks, GLOBAL ulong* RESTRICT sums,
+                            GLOBAL Totals* RESTRICT totals, uint at, uint room) {
     SHARED(ulong, shared, SCAN_GROUP);
     for (uint c = 0u; c < columns; ++c) {
         ulong total;
-        const ulong before = sum_before(sums[c * SCAN_GROUP + THREAD], shared, &total);
-        if (c == 0u) sums[THREAD] = before;
+        const ulong own = THREAD < blocks ? sums[c * SCAN_GROUP + THREAD] : 0u;
+        const ulong before = sum_before(own, shared, &total);
+        if (c == 0u && THREAD < blocks) sums[THREAD] = before;
         if (THREAD == 0u) set_totals(totals + at, c, total, ALL(count), room);
     }
 }
@@ -103,10 +125,7 @@ GROUP_KERNEL void scan_sums(COUNT(count), uint columns, GLOBAL ulong* RESTRICT s
 GROUP_KERNEL void scan_firsts(COUNT(count), GLOBAL const uint* RESTRICT values, GLOBAL const ulong* RESTRICT sums,
                               GLOBAL uint* RESTRICT firsts) {
     SHARED(ulong, shared, SCAN_GROUP);
-    const Slice block = slice_of(0u, ALL(count), GROUP, SCAN_GROUP);
-    const Slice slice = slice_of(block.begin, block.end, THREAD, SCAN_GROUP);
-    ulong total;
-    const ulong before = sum_before(sum_of(values, slice), shared, &total);
-    write_firsts(values, slice, sums[GROUP] + before, firsts);
+    SHARED(uint, tile, TILE_PLACES);
+    write_firsts(values, slice_of(ALL(count), GROUP, GROUPS), sums[GROUP], shared, tile, firsts);
 }
 // NOLINTEND(modernize-use-using)

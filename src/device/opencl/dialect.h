@@ -30,6 +30,7 @@
 #define SCAN_GROUP 256u
 #define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1)))
 #define GROUP ((uint)get_group_id(0))
+#define GROUPS ((uint)get_num_groups(0))
 #define THREAD ((uint)get_local_id(0))
 #define LOCAL __local
 #define SHARED(type, name, size) __local type name[size]

@@ -197,10 +197,12 @@ TEST_F(Queued, scans_take_one_kernel_or_three) {
     EXPECT_EQ(launched(0).arguments[8], 77u);
     EXPECT_EQ(scan(300000), 3u);
     ASSERT_EQ(cuda.launches.size(), 3u);
-    expect(0, "scan_blocks", 1024, 6);
-    expect(1, "scan_sums", 1, 7);
-    expect(2, "scan_firsts", 1024, 5);
-    EXPECT_EQ(launched(0).arguments[5], launched(1).arguments[3]) << "the sums of blocks";
+    const unsigned blocks = 37; // of 8 items for each of 1024 threads
+    expect(0, "scan_blocks", blocks, 6);
+    expect(1, "scan_sums", 1, 8);
+    expect(2, "scan_firsts", blocks, 5);
+    EXPECT_EQ(launched(1).arguments[3], blocks);
+    EXPECT_EQ(launched(0).arguments[5], launched(1).arguments[4]) << "the sums of blocks";
     EXPECT_EQ(launched(0).arguments[5], launched(2).arguments[3]);
     EXPECT_EQ(launched(0).arguments[4], launched(2).arguments[2]) << "the values";
 }
