@@ -20,6 +20,8 @@ std::vector<OpenDevice> alone(OpenDevice opened) {
 
 Replayer::Replayer(const Work& work, std::uint32_t copies, const Settings& settings, OpenDevice opened)
     : work_(work), copies_(copies), narrow_(settings, alone(std::move(opened))) {
+    // What is measured is a scene that has run for some time.
+    for (const auto& shape : work.shapes) shape->prepare(settings.threads);
     bodies_.resize(copies * work.body_shape.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const auto& shape = work.shapes[work.body_shape[i % work.body_shape.size()]];

@@ -16,7 +16,10 @@ namespace {
 class RayPeer : public Peer {
 public:
     explicit RayPeer(const Work& work) : opened_(open_device("cpu", 1)), shapes_(*opened_.device) {
-        for (const auto& shape : work.shapes) shapes_.add(shape);
+        for (const auto& shape : work.shapes) {
+            shape->prepare(); // for the rays that the grids leave
+            shapes_.add(shape);
+        }
         for (BodyId body = 0; body < work.body_shape.size(); ++body) {
             PlacedBody& placed = bodies_.emplace_back();
             placed.shape = &work.shape(body);
