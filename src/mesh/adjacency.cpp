@@ -8,21 +8,26 @@ namespace raycontact {
 std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles) {
     std::uint32_t vertex_count = 0;
     for (const Triangle& t : triangles) vertex_count = std::max(vertex_count, std::max({t[0], t[1], t[2]}) + 1);
-    // Vertex by vertex: several times faster than sorting the whole list.
-    const VertexTriangles around = vertex_triangles(triangles, vertex_count);
-    std::vector<HalfEdge> edges;
-    edges.reserve(3 * triangles.size());
-    for (std::uint32_t lo = 0; lo < vertex_count; ++lo) {
-        const auto first = static_cast<std::ptrdiff_t>(edges.size());
-        for (const std::uint32_t t : around.of(lo)) {
+    const auto for_each_side = [&](auto&& visit) {
+        for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+            const Triangle& t = triangles[i];
             for (std::uint32_t e = 0; e < 3; ++e) {
-                const std::uint32_t from = triangles[t][e], to = triangles[t][(e + 1) % 3];
-                if (from == lo && to > lo) edges.push_back({lo, to, 3 * t + e, true});
-                if (to == lo && from > lo) edges.push_back({lo, from, 3 * t + e, false});
+                const std::uint32_t from = t[e], to = t[e == 2 ? 0 : e + 1];
+                if (from != to) visit(HalfEdge{std::min(from, to), std::max(from, to), 3 * i + e, from < to});
             }
         }
-        std::sort(edges.begin() + first, edges.end());
-    }
+    };
+    // By the lower vertex first, in the order of corners: several times faster than sorting the whole list.
+    std::vector<std::uint32_t> next(std::size_t{vertex_count} + 1, 0);
+    for_each_side([&](const HalfEdge& side) { ++next[std::size_t{side.lo} + 1]; });
+    for (std::size_t v = 0; v < vertex_count; ++v) next[v + 1] += next[v];
+    std::vector<HalfEdge> edges(next.back());
+    for_each_side([&](const HalfEdge& side) { edges[next[side.lo]++] = side; });
+    std::size_t first = 0; // next[v] is now the end of v's
+    for (std::uint32_t v = 0; v < vertex_count; first = next[v++])
+        std::sort(
+            edges.begin() + static_cast<std::ptrdiff_t>(first), edges.begin() + static_cast<std::ptrdiff_t>(next[v]),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.hi != b.hi ? a.hi < b.hi : a.corner < b.corner; });
     return edges;
 }
 

@@ -2,8 +2,8 @@
 #include "mesh/check.h"
 
 #include <raycontact/error.h>
-#include <raycontact/mass.h>
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/input_file.h"
 #include "mesh/nesting.h"
 #include "mesh/self_intersection.h"
@@ -12,42 +12,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <vector>
 
 namespace raycontact {
 namespace {
-
-class DisjointSets {
-public:
-    explicit DisjointSets(std::size_t count) : count_(count), parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-    }
-    void unite(std::uint32_t i, std::uint32_t k) {
-        i = find(i);
-        k = find(k);
-        if (i == k) return;
-        parent_[std::max(i, k)] = std::min(i, k);
-        --count_;
-    }
-    std::size_t count() const { return count_; }
-
-private:
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-
-    std::size_t count_;
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Whether the mesh is closed, manifold and oriented, and its number of components.
 void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std::span<const HalfEdge> edges) {
     report.manifold = report.oriented = true;
     report.border_edges = 0;
     // Corners of triangles that follow each other around a vertex end in one set: a fan.
-    DisjointSets fans(3 * triangles.size()), components(report.vertices);
+    std::size_t fan_count = 3 * triangles.size();
+    DisjointSets fans, components;
+    fans.reset(fan_count);
+    components.reset(report.vertices);
+    report.components = report.vertices;
     const auto corner_at = [&](const HalfEdge& side, std::uint32_t vertex) {
         const std::uint32_t start = side.corner, end = side.corner - side.corner % 3 + (side.corner % 3 + 1) % 3;
         return triangles[side.triangle()][start % 3] == vertex ? start : end;
@@ -56,18 +35,18 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
         int balance = 0;
         for (const HalfEdge& side : sides) {
             balance += side.forward ? 1 : -1;
-            fans.unite(corner_at(side, side.lo), corner_at(sides[0], side.lo));
-            fans.unite(corner_at(side, side.hi), corner_at(sides[0], side.hi));
+            if (&side == &sides[0]) continue;
+            if (fans.join(corner_at(side, side.lo), corner_at(sides[0], side.lo))) --fan_count;
+            if (fans.join(corner_at(side, side.hi), corner_at(sides[0], side.hi))) --fan_count;
         }
         report.border_edges += sides.size() % 2;
         report.manifold = report.manifold && sides.size() <= 2;
         // As many sides run one way as the other; of an odd number one is left over. A border always agrees.
         report.oriented = report.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
-        components.unite(sides[0].lo, sides[0].hi);
+        if (components.join(sides[0].lo, sides[0].hi)) --report.components;
     });
     report.closed = report.border_edges == 0;
-    report.manifold = report.manifold && fans.count() == report.vertices;
-    report.components = components.count();
+    report.manifold = report.manifold && fan_count == report.vertices;
 }
 
 } // namespace
@@ -107,7 +86,7 @@ void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
     report.vertices = prepared.vertices.size();
     report.triangles = prepared.triangles.size();
     fill_topology(report, prepared.triangles, edges);
-    report.volume = report.closed ? mass_of(prepared.vertices, prepared.triangles).volume : 0;
+    report.volume = report.closed ? volume_of(prepared.vertices, prepared.triangles) : 0;
     LongSum area;
     for (const auto& [a, b, c] : prepared.triangles) {
         const Vec3& corner = prepared.vertices[a];

@@ -20,10 +20,12 @@ public:
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;
     }
-    void join(std::uint32_t a, std::uint32_t b) {
+    /// Whether they were in two sets.
+    bool join(std::uint32_t a, std::uint32_t b) {
         a = of(a);
         b = of(b);
         parents_[std::max(a, b)] = std::min(a, b);
+        return a != b;
     }
 
 private:

@@ -3,8 +3,6 @@
 
 #include <raycontact/mass.h>
 
-#include "mesh/adjacency.h"
-
 namespace raycontact {
 
 void LongSum::add(double x) {
@@ -20,6 +18,15 @@ Box box_of(std::span<const Vec3> points) {
     return box;
 }
 
+double volume_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+    LongSum volume;
+    if (triangles.empty()) return 0;
+    const Vec3 q = box_of(vertices).middle(); // near the mesh, so that nothing cancels far from the origin
+    for (const auto& [i, j, k] : triangles)
+        volume.add(dot(vertices[i] - q, cross(vertices[j] - q, vertices[k] - q)) / 6);
+    return volume.value();
+}
+
 // Sums over the tetrahedra (q, a, b, c), q near the mesh so that nothing cancels far from the origin. Seen from q, with
 // s = a + b + c, the integral of x over one is volume / 4 * s, that of x x^T is volume / 20 * (s s^T + a a^T + b b^T +
 // c c^T). The volume is the one that reports show; the centre is a quotient of plain sums, since the procedural meshes
@@ -28,20 +35,18 @@ Mass mass_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles
     Mass mass;
     if (triangles.empty()) return mass;
     const Vec3 q = box_of(vertices).middle();
-    LongSum volume;
     double six_volumes = 0;
     Vec3 first;
     std::array<double, 9> second{};
     for (const auto& [i, j, k] : triangles) {
         const Vec3 a = vertices[i] - q, b = vertices[j] - q, c = vertices[k] - q, s = a + b + c;
         const double six = dot(a, cross(b, c));
-        volume.add(six / 6);
         six_volumes += six;
         first = first + six * s;
         for (std::size_t m = 0; m < 9; ++m)
             for (const Vec3& v : {s, a, b, c}) second[m] += six * axis(v, m / 3) * axis(v, m % 3);
     }
-    mass.volume = volume.value();
+    mass.volume = volume_of(vertices, triangles);
     if (six_volumes == 0) return mass;
     const double quarter = 4 * six_volumes;
     const Vec3 centre{first.x / quarter, first.y / quarter, first.z / quarter};

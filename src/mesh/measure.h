@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/adjacency.h"
 #include "mesh/vector.h"
 
 #include <span>
@@ -27,5 +28,8 @@ struct Box {
     }
 };
 Box box_of(std::span<const Vec3> points);
+
+/// Mass's volume alone; 0 of no triangles.
+double volume_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
 } // namespace raycontact
