@@ -70,23 +70,20 @@ pack() {
     # shellcheck disable=SC2064 # its value now
     trap "rm -rf '$work'" EXIT
 
-    say "program and libraries"
-    cp build/bin/raycontact "$pack/raycontact"
-    strip "$pack/raycontact" 2>/dev/null || true
-    rm -rf "$pack/tests"
+    say "program, tests and libraries"
+    mkdir "$work/libraries" "$work/tests"
+    cp build/bin/raycontact "$work/"
     if [ -x build/bin/opencl_kernels_test ]; then
-        say "tests of devices"
-        mkdir "$pack/tests"
-        cp build/bin/opencl_*_test "$pack/tests/"
-        strip "$pack"/tests/* 2>/dev/null || true
+        cp build/bin/opencl_*_test "$work/tests/"
     else
         say "build/ has no tests of devices: the pack measures, and checks hashes alone; scripts/test builds them"
     fi
-    mkdir "$work/libraries"
-    for program in "$pack/raycontact" "$pack"/tests/*; do
-        [ ! -x "$program" ] || while read -r library; do cp -L "$library" "$work/libraries/"; done < <(libraries_of "$program")
+    for program in "$work/raycontact" "$work"/tests/*; do
+        [ -x "$program" ] || continue
+        strip "$program" 2>/dev/null || true
+        while read -r library; do cp -L "$library" "$work/libraries/"; done < <(libraries_of "$program")
     done
-    tar -C "$work" -cf - libraries | xz -3 -T0 >"$pack/libraries.tar.xz"
+    tar -C "$work" -cf - raycontact tests libraries | xz -3 -T0 >"$pack/program.tar.xz"
 
     say "a recording, and its hashes on this CPU"
     build/bin/raycontact run avalanche --steps "$recorded_steps" --json --record "$pack/avalanche.glb" >/dev/null
@@ -164,12 +161,9 @@ if [ -n "${RAYCONTACT_BINARY:-}" ]; then
     program=$RAYCONTACT_BINARY
 elif [ -n "$pack" ]; then
     say "using the pack in $pack, of $(tr '\n' ' ' <"$pack/pack.txt")"
-    # A copy may have lost its mode.
-    cp "$pack/raycontact" "$work/raycontact" && chmod +x "$work/raycontact"
+    unpack "$pack/program.tar.xz" "$work"
     program=$work/raycontact
     test_folder=$work/tests
-    if [ -d "$pack/tests" ]; then cp -r "$pack/tests" "$work/tests" && chmod +x "$work"/tests/*; fi
-    unpack "$pack/libraries.tar.xz" "$work"
     export LD_LIBRARY_PATH="$work/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
     if [ -e "$pack/nvrtc.tar.xz" ] && [ -z "${RAYCONTACT_NVRTC:-}" ]; then
         unpack "$pack/nvrtc.tar.xz" "$work/nvrtc"
