@@ -58,7 +58,7 @@ protected:
     /// Of a run that was ended: what it printed.
     static json cut_short(const ProgramResult& result, int status) {
         EXPECT_EQ(result.status, status) << result.err;
-        const json log = json::parse(result.out);
+        json log = json::parse(result.out);
         EXPECT_EQ(log["cut_short"], true);
         EXPECT_EQ(log["steps_planned"], 1000000);
         EXPECT_GT(log["steps"].get<int>(), 0);
