@@ -109,6 +109,7 @@ Bytes columns(const std::vector<Segment>& segments, const LayerScale& scale, boo
     Bytes bytes;
     const auto column = [&](auto number_of) {
         std::vector<std::uint16_t> numbers;
+        numbers.reserve(segments.size());
         for (const Segment& segment : segments) numbers.push_back(number_of(segment));
         const Bytes split = split_bytes(numbers);
         bytes.insert(bytes.end(), split.begin(), split.end());
