@@ -3,6 +3,7 @@
 
 #include <raycontact/error.h>
 
+#include "mesh/input_file.h"
 #include "real_text.h"
 
 #include <array>
@@ -39,8 +40,7 @@ auto find(const Table& table, std::string_view word, const char* what) {
         if (name == word) return value;
         known += (known.empty() ? "" : ", ") + std::string(name);
     }
-    throw InputError(std::string(what) + " '" + std::string(word)
-                     + "' is unknown to this version; use one of: " + known);
+    throw InputError(std::string(what) + " " + in_quotes(word) + " is unknown to this version; use one of: " + known);
 }
 
 template <typename Table, typename Value>

@@ -3,6 +3,8 @@
 
 #include <raycontact/error.h>
 
+#include "mesh/input_file.h"
+
 #include <charconv>
 
 namespace raycontact {
@@ -33,7 +35,7 @@ bool read_into(DeviceId& id, std::string_view text) {
 DeviceId DeviceId::read(std::string_view text) {
     DeviceId id;
     if (read_into(id, text)) return id;
-    throw InputError("device '" + std::string(text)
+    throw InputError("device '" + printable(text)
                      + "': give cpu, cpu/k, cuda:i, opencl:i or opencl:i/k (`raycontact devices` lists them)");
 }
 
