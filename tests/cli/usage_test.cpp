@@ -83,6 +83,8 @@ TEST_F(Usage, UnknownWordsNameTheOption) {
     for (const char* option : {"--method", "--caster", "--direction", "--devices", "--schedule"}) {
         expect_refused(run({"collide", "cube.obj", "cube.obj", option, "quick"}), option);
     }
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--features", "ed\rges"}), "'ed?ges' is unknown");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "gpu\n"}), "'gpu?': give");
 }
 
 TEST_F(Usage, ThresholdsThatMakeNoSenseNameTheirOption) {

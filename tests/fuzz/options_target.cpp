@@ -41,7 +41,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     for (const std::uint8_t c : fuzz::Bytes(data, size)) {
         if (c == '\n')
             words.emplace_back();
-        else if (c != 0 && c != '\r') // the one ends a word of a real command line, complain() makes a space of the other
+        else if (c != 0 && c != '\r') // 0 ends a word of a real command line; complain() makes a space of a return
             words.back() += static_cast<char>(c);
     }
     if (words.back().empty()) words.pop_back();
