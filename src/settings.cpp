@@ -3,7 +3,7 @@
 
 #include <raycontact/error.h>
 
-#include "mesh/input_file.h"
+#include "printable.h"
 #include "real_text.h"
 
 #include <array>

@@ -11,22 +11,6 @@
 
 namespace raycontact {
 
-std::string printable(std::string_view text) {
-    std::string out(text);
-    std::ranges::replace_if(
-        out, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return out;
-}
-
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t longest = 24;
-    std::string out(text.substr(0, longest));
-    // Bytes of a damaged file need not be UTF-8, which JSON and terminals expect.
-    std::ranges::replace_if(
-        out, [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
-    return "'" + out + (text.size() > longest ? "...'" : "'");
-}
-
 std::string no_vertex(std::int64_t index, std::size_t vertex_count) {
     return "vertex index " + std::to_string(index) + " is not in 0 to " + std::to_string(vertex_count) + " - 1";
 }

@@ -4,6 +4,8 @@
 #include <raycontact/assembly.h>
 #include <raycontact/mesh.h>
 
+#include "printable.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -35,11 +37,6 @@ struct InputFile {
 /// The file itself; or `room`, filled with it in UTF-8, where it is UTF-16 with a byte order mark. No binary format
 /// that is read starts so. Throws InputError where half of a unit is missing.
 const InputFile& as_utf8(const InputFile& file, InputFile& room);
-
-/// Text from a file in quotes, cut to a length, without control characters.
-std::string in_quotes(std::string_view text);
-/// The same for a whole path or a library's message: one line, no quotes, not cut.
-std::string printable(std::string_view text);
 
 /// An error message about an index; the caller names the place.
 std::string no_vertex(std::int64_t index, std::size_t vertex_count);

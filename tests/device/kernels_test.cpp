@@ -77,7 +77,8 @@ TEST(opencl, a_vertex_an_item_leaves_the_same_bytes) {
 TEST(devices, what_has_no_room_is_done_again) {
     const Work heap = make_heap(20);
     const std::vector<Way> standard = {{Method::standard, Caster::bvh, false}};
-    const Outcome on_cpu = run_on_cpu(heap, standard), outcome = run_work(open_device(tested_device(), 1), heap, standard);
+    const Outcome on_cpu = run_on_cpu(heap, standard),
+                  outcome = run_work(open_device(tested_device(), 1), heap, standard);
     EXPECT_EQ(launches_of(on_cpu.trace, "place_pairs"), 4u) << "once a step";
     EXPECT_GE(launches_of(on_cpu.trace, "count_clusters"), 4u + 2u) << "blocks, then rays";
     EXPECT_GE(launches_of(on_cpu.trace, "write_contacts"), launches_of(on_cpu.trace, "count_clusters") + 1u)

@@ -30,7 +30,8 @@ kernels::uint run_scan(const ScanOf& scan, const Buffer& sums, std::size_t group
     const std::size_t tile = group_size * SCAN_ITEMS,
                       blocks = std::min((scan.count.most + tile - 1) / tile, group_size); // a thread for each sum
     launch(1, blocks, scan.count, std::array{columns, stride, values, block_sums});
-    launch(2, 1, scan.count, std::array{columns, number(static_cast<kernels::uint>(blocks)), block_sums, totals, at, room});
+    launch(2, 1, scan.count,
+           std::array{columns, number(static_cast<kernels::uint>(blocks)), block_sums, totals, at, room});
     launch(3, blocks, scan.count, std::array{values, block_sums, firsts});
     return 3;
 }
