@@ -105,7 +105,8 @@ void count_all() {
     const rc::Update update{*opened.device, executor, shapes, small.steps[0], small.pairs, motion, standard};
     rc::Pipeline pipeline;
     pipeline.begin(update);
-    const auto local = pipeline.end(update);
+    pipeline.end(update);
+    const auto local = pipeline.contacts().all();
     rc::Placer placer;
     std::vector<rc::Contact> placed;
     count_host("place_contacts,standard", local.size(),

@@ -39,6 +39,15 @@ bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureCon
     return any;
 }
 
+// Those that the rule asks, sorted.
+void choose(const SourceMesh& placed, std::span<const kernels::NearEdge> near, std::vector<NearEdge>& chosen) {
+    chosen.clear();
+    for (const auto& [edge, face, pair] : near)
+        if ((placed.source.sharp_edges[edge / 3] >> edge % 3 & 1u) != 0) chosen.push_back({edge, face});
+    std::sort(chosen.begin(), chosen.end(),
+              [](const NearEdge& p, const NearEdge& q) { return std::tie(p.edge, p.face) < std::tie(q.edge, q.face); });
+}
+
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
               Direction direction) {
     const ShapeData& shape = source.shape->data();
@@ -64,30 +73,24 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 
 } // namespace
 
-void EdgeStage::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local, const Motion* motion,
-                    std::vector<Contact>& contacts) {
-    firsts_.resize(2 * pairs.size() + 1);
-    std::uint32_t at = 0;
-    for (std::uint32_t directed = 0; directed < firsts_.size(); ++directed) {
-        while (at < local.size() && local[at].pair < directed) ++at;
-        firsts_[directed] = at;
-    }
+void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local,
+                    const ByPair<kernels::NearEdge>* near, const Motion* motion, std::vector<Contact>& contacts) {
+    const std::span<const SlotPair> pairs = update.pairs;
     const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
     block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     if (motion != nullptr) lists_.match(pairs);
-    const Question question{direction, bodies, pairs, local, motion};
+    const Question question{update, local, near, motion};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
     const std::uint32_t work_count = std::min(block_count, most_work);
     if (work_.size() < work_count) work_.resize(work_count);
-    executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+    update.executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t w = begin; w < end; ++w)
             for (std::uint32_t b = w; b < block_count; b += most_work) find(work_[w], question, b);
     });
     if (motion != nullptr)
         for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
-    merge(pairs, contacts);
+    merge(local, pairs.size(), contacts);
 }
 
 void EdgeStage::find(Workspace& work, const Question& question, std::size_t number) {
@@ -95,20 +98,19 @@ void EdgeStage::find(Workspace& work, const Question& question, std::size_t numb
     block.lists.clear();
     block.contacts.clear();
     block.ends.clear();
-    const std::size_t first = number * pairs_in_block, last = std::min(question.pairs.size(), first + pairs_in_block);
+    const std::size_t first = number * pairs_in_block;
+    const std::size_t last = std::min(question.update.pairs.size(), first + pairs_in_block);
     for (std::size_t i = first; i < last; ++i) {
-        const auto vertices_of = [&](std::size_t directed) {
-            return question.local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
-        };
-        find(work, block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+        find(work, block, question, i);
         block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
     }
 }
 
-void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i,
-                     const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
-    const SlotPair& pair = question.pairs[i];
-    const PlacedBody &a = question.bodies[pair.first], &b = question.bodies[pair.second];
+void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i) {
+    const SlotPair& pair = question.update.pairs[i];
+    const std::span<const PlacedBody> bodies = question.update.bodies;
+    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
+    const std::array vertices{question.local.of(2 * i), question.local.of(2 * i + 1)};
     if (!a.shape->has_inside() && !b.shape->has_inside()) return;
     const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     const Motion* motion = question.motion;
@@ -118,8 +120,13 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, st
     }
     const std::array<SourceMesh, 2> placed{SourceMesh(a, b, in_contact), SourceMesh(b, a, in_contact)};
     NearEdges near;
-    if (motion != nullptr) {
-        near = lists_.near(i, pair, question.bodies, placed, *motion, work.search, block.lists);
+    if (question.near != nullptr) {
+        for (std::size_t side = 0; side < 2; ++side) {
+            choose(placed[side], question.near->of(2 * i + side), work.near[side]);
+            near[side] = work.near[side];
+        }
+    } else if (motion != nullptr) {
+        near = lists_.near(i, pair, bodies, placed, *motion, work.search, block.lists);
     } else {
         block.lists.clear();
         near = block.lists.find(work.search, placed);
@@ -134,14 +141,15 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, st
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == VertexBody::a;
-        block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, question.direction));
+        block.contacts.push_back(
+            place(found, pair, from_a ? a : b, from_a ? b : a, question.update.settings.direction));
     }
     std::sort(block.contacts.begin() + first, block.contacts.end(),
               [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });
 }
 
 std::uint64_t EdgeStage::bytes() const {
-    std::uint64_t bytes = lists_.bytes() + firsts_.size() * sizeof(std::uint32_t);
+    std::uint64_t bytes = lists_.bytes();
     for (std::size_t b = 0; b < block_count_; ++b)
         bytes += blocks_[b].contacts.capacity() * sizeof(Contact) + blocks_[b].lists.bytes();
     return bytes;
@@ -157,23 +165,25 @@ void EdgeStage::give_back() {
         raycontact::give_back(block.contacts);
         block.lists.give_back();
     }
-    raycontact::give_back(firsts_);
     raycontact::give_back(merged_);
 }
 
-void EdgeStage::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+void EdgeStage::merge(const ByPair<kernels::LocalContact>& local, std::size_t pair_count,
+                      std::vector<Contact>& contacts) {
     std::size_t added = 0;
-    for (std::size_t i = 0; i < pairs.size(); i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
+    for (std::size_t i = 0; i < pair_count; i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
     merged_.clear();
     if (added == 0) return;
     merged_.reserve(contacts.size() + added);
     const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
+    auto own = contacts.begin();
+    for (std::size_t i = 0; i < pair_count; ++i) {
         const Block& block = blocks_[i / pairs_in_block];
         const std::size_t in = i % pairs_in_block;
-        const auto own = contacts.begin() + firsts_[2 * i], own_end = contacts.begin() + firsts_[2 * i + 2];
+        const auto own_end = own + static_cast<std::ptrdiff_t>(local.of(2 * i).size() + local.of(2 * i + 1).size());
         const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
         std::merge(own, own_end, more, block.contacts.begin() + block.ends[in], std::back_inserter(merged_), before);
+        own = own_end;
     }
     contacts.swap(merged_);
 }

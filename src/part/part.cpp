@@ -42,15 +42,15 @@ void Part::begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> p
 
 void Part::end(std::vector<Contact>& contacts) {
     const Update now = update(bodies_, pairs_);
-    place(now, pipeline_.end(now), keeps_near_lists(*settings_) ? &motion_ : nullptr, contacts);
+    pipeline_.end(now);
+    place(now, pipeline_, contacts);
 }
 
-void Part::place(const Update& now, std::span<const kernels::LocalContact> local, const Motion* motion,
-                 std::vector<Contact>& contacts) {
-    const Direction direction = settings_->direction;
-    placer_.run(*executor_, direction, now.bodies, now.pairs, local, contacts);
-    if (settings_->features == Features::edges)
-        edges_.run(*executor_, direction, now.bodies, now.pairs, local, motion, contacts);
+void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
+    placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
+    if (settings_->features != Features::edges) return;
+    const Motion* motion = &found == &pipeline_ && found.near_edges() == nullptr ? &motion_ : nullptr;
+    edges_.run(now, found.contacts(), found.near_edges(), motion, contacts);
 }
 
 void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
@@ -59,7 +59,8 @@ void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts
     const Update now = update(bodies_, added.pairs);
     added.pipeline.begin(now);
     std::vector<Contact> more;
-    place(now, added.pipeline.end(now), nullptr, more);
+    added.pipeline.end(now);
+    place(now, added.pipeline, more);
     pipeline_.put_in(now, added.pipeline.take_out(now, added.pairs));
     const auto old = static_cast<std::ptrdiff_t>(contacts.size());
     contacts.insert(contacts.end(), more.begin(), more.end());

@@ -51,8 +51,7 @@ public:
 
 private:
     Update update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const;
-    void place(const Update& now, std::span<const kernels::LocalContact> local, const Motion* motion,
-               std::vector<Contact>& contacts);
+    void place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts);
 
     std::unique_ptr<Executor> executor_;
     std::unique_ptr<CountingDevice> device_;

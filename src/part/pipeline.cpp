@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/pipeline.h"
 
-#include "edges/near_lists.h"
-
 namespace raycontact {
 
 namespace {
@@ -22,13 +20,14 @@ Finds finds(const Update& update) {
 } // namespace
 
 bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
-    return finds(settings, traits) != Finds::standard || keeps_near_lists(settings);
+    return finds(settings, traits) != Finds::standard;
 }
 
 void Pipeline::forget() {
     standard_.clear();
     certified_.clear();
     coherent_.clear();
+    pairs_.clear();
 }
 
 void Pipeline::give_back(const Update& last) {
@@ -45,9 +44,11 @@ void Pipeline::give_back(const Update& last) {
         coherent_.give_back();
         break;
     }
+    if (has_near_) edges_.give_back(batch_);
     batch_.give_back(rays);
     gather_.give_back();
     local_.give_back();
+    near_.give_back();
 }
 
 void Pipeline::begin(const Update& update) {
@@ -63,19 +64,29 @@ void Pipeline::begin(const Update& update) {
         break;
     }
     gather_.run(update, batch_);
+    has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
+    if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
+    if (has_near_) edges_.cast(update, pairs_of(update).placed(), batch_);
 }
 
-std::span<const kernels::LocalContact> Pipeline::end(const Update& update) {
+// All, on the device.
+const DevicePairs& Pipeline::pairs_of(const Update& update) const {
+    return finds(update) == Finds::standard ? standard_.pairs() : pairs_;
+}
+
+void Pipeline::end(const Update& update) {
     for (;;) {
-        const bool all_written = gather_.read(update.device, batch_);
+        const bool all_written = gather_.read(update.device, batch_, has_near_ ? &edges_.found() : nullptr);
         const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
-        if (all_written && all_cast) break;
+        const bool all_near = !has_near_ || edges_.had_room(update.device, batch_);
+        if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather_.run(update, batch_);
+        if (!all_near) edges_.cast(update, pairs_of(update).placed(), batch_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(gather_.contacts(), batch_.directed, update.pairs.size());
-    return local_.contacts();
+    if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
 }
 
 std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {
@@ -96,6 +107,7 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
+    if (has_near_) stats.pair_bytes += edges_.bytes(batch_) + near_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:
         return standard_.count(batch_, last.pairs.size(), stats);

@@ -41,7 +41,7 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Exe
 std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor);
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
-/// a block, and clusters with the boxes of an implicit sixteen-wide tree above them.
+/// a block, then with all edges, and clusters with the boxes of an implicit sixteen-wide tree above either.
 void build_clusters(ShapeData& shape, Executor& executor);
 
 /// Fills outside_cells and the grid of the header: a bit for each cubic cell of the box, set when the whole cell, grown

@@ -80,9 +80,9 @@ TEST(devices, what_has_no_room_is_done_again) {
     const Outcome on_cpu = run_on_cpu(heap, standard),
                   outcome = run_work(open_device(tested_device(), 1), heap, standard);
     EXPECT_EQ(launches_of(on_cpu.trace, "place_pairs"), 4u) << "once a step";
-    EXPECT_GE(launches_of(on_cpu.trace, "count_clusters"), 4u + 2u) << "blocks, then rays";
-    EXPECT_GE(launches_of(on_cpu.trace, "write_contacts"), launches_of(on_cpu.trace, "count_clusters") + 1u)
-        << "contacts";
+    EXPECT_GE(launches_of(on_cpu.trace, "count_rays"), 4u + 2u) << "blocks, then rays";
+    EXPECT_GE(launches_of(on_cpu.trace, "write_contacts"), launches_of(on_cpu.trace, "count_rays") + 1u) << "contacts";
+    EXPECT_GE(launches_of(on_cpu.trace, "count_edges"), 4u + 2u) << "blocks of edges, then edges or faces";
     EXPECT_EQ(first_difference(on_cpu.trace, outcome.trace), "");
     EXPECT_TRUE(same(outcome.contacts, on_cpu.contacts));
     EXPECT_GT(outcome.contacts.size(), 10000u);
