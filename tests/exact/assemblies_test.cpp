@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rule of edges promises of ordinary assemblies: parts flush with each other or laid flat, threads, walls
+// pierced, plates and rods; and that pushing by the deepest contact brings bodies apart.
+#include "exact/assemblies.h"
+#include "exact/random_solids.h"
+#include "exact/words.h"
+#include "reference/meshes.h"
+#include "reference/random.h"
+#include "reference/vector.h"
+
+#include "scenes/models/trigonometry.h"
+
+#include <raycontact/collide.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+using namespace raycontact;
+using namespace raycontact::exact;
+using namespace raycontact::reference;
+
+namespace {
+
+using ShapePtr = std::shared_ptr<const Shape>;
+
+ShapePtr made(const Mesh& mesh) {
+    ShapePtr shape = Shape::make(mesh);
+    const MeshReport& report = shape->report();
+    EXPECT_TRUE(report.manifold && report.outward && !report.self_intersecting && report.repairs.empty())
+        << to_text(report);
+    return shape;
+}
+
+double size_of(const Shape& shape) {
+    return length(shape.box_max() - shape.box_min());
+}
+
+Vec3 normal_of(const Contact& c) {
+    return {double(c.normal[0]), double(c.normal[1]), double(c.normal[2])};
+}
+
+// Null where there is none.
+const Contact* deepest_of(const std::vector<Contact>& contacts) {
+    const Contact* deepest = nullptr;
+    for (const Contact& c : contacts)
+        if (!deepest || c.depth > deepest->depth) deepest = &c;
+    return deepest;
+}
+
+// About z by `turn` of a turn, then about a level axis by a small angle.
+Pose laid(double turn, const Vec3& axis, double tilt, const Vec3& where) {
+    const auto [sine, cosine] = scenes::sine_cosine(turn);
+    const Pose lean = small_rotation(axis, tilt);
+    Pose pose;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double x = lean.rotation[3 * i], y = lean.rotation[3 * i + 1];
+        pose.rotation[3 * i] = x * cosine + y * sine;
+        pose.rotation[3 * i + 1] = y * cosine - x * sine;
+        pose.rotation[3 * i + 2] = lean.rotation[3 * i + 2];
+    }
+    pose.translation = where;
+    return pose;
+}
+
+Pose moved_by(Pose pose, const Vec3& way) {
+    pose.translation = pose.translation + way;
+    return pose;
+}
+
+// Of each pair the deepest contact, in units of what it may be at most.
+struct Depths {
+    std::size_t pairs = 0, without = 0, deep = 0, far = 0; ///< no contact; beyond `limit`; beyond `never`
+    double limit = 1, never = 1, worst = 0;
+    std::string words; ///< of the worst
+    void add(const std::vector<Contact>& contacts, double unit, const std::string& what) {
+        ++pairs;
+        const Contact* deepest = deepest_of(contacts);
+        if (!deepest) {
+            ++without;
+            return;
+        }
+        const double ratio = double(deepest->depth) / unit;
+        deep += ratio > limit;
+        far += ratio > never;
+        if (ratio > worst) worst = ratio, words = what + ": " + words_of(*deepest);
+    }
+    void print(const char* what) const {
+        std::printf("[ counts   ] %s: %zu pairs, %zu without a contact, %zu deeper than %g, %zu than %g, worst %.3g\n",
+                    what, pairs, without, deep, limit, far, never, worst);
+        std::fflush(stdout);
+    }
+};
+
+TEST(assemblies, flush_parts) {
+    constexpr std::size_t cases = 2100;
+    Depths all;
+    all.limit = 1.5, all.never = 3;
+    std::size_t deep_of_kind[flush_kinds] = {};
+    for (std::size_t i = 0; i < cases; ++i) {
+        Random random(1000003 + i);
+        const auto kind = static_cast<std::uint32_t>(i % flush_kinds);
+        const FlushPair pair = flush_pair(kind, random.uniform(0.02, 0.2), random);
+        Pose pose = random.rotation();
+        constexpr double places[] = {1, 10, 50};
+        pose.translation = places[i / flush_kinds % 3] * random.in_ball();
+        const bool text = i / flush_kinds % 2 == 0;
+        const auto rounded = [&](const Mesh& mesh) {
+            return made(text ? with_six_digits(placed(mesh, pose)) : in_float32(placed(mesh, pose)));
+        };
+        const ShapePtr a = rounded(pair.a), b = rounded(pair.b);
+        const std::size_t before = all.deep;
+        all.add(collide(*a, {}, *b, {}), pair.overlap, "case " + std::to_string(i));
+        deep_of_kind[kind] += all.deep - before;
+    }
+    all.print("flush parts");
+    std::printf("[ counts   ] flush parts, too deep of each kind:");
+    for (const std::size_t n : deep_of_kind) std::printf(" %zu", n);
+    std::printf("\n");
+    EXPECT_EQ(all.without, 0u);
+    EXPECT_LE(all.deep, 2u) << all.words;
+    EXPECT_EQ(all.far, 0u) << all.words;
+}
+
+struct Plates {
+    const char* name;
+    Mesh below, above; ///< their bottoms at z = 0
+};
+
+std::vector<Plates> plates() {
+    const auto plate = [](const char* name, const Outline& outline, double height = 0.1,
+                          const std::vector<Outline>& holes = {}) { return extruded(name, outline, holes, 0, height); };
+    const Mesh hexagon = plate("hexagon", regular(6, 0.5), 0.2);
+    const Mesh bar = plate("bar", rectangle(-0.5, -0.04, 0.5, 0.04), 0.02);
+    const Mesh gear = plate("gear", gear_outline(12, 0.5, 0.4), 0.1, {regular(8, 0.15)});
+    const Mesh e = plate("E", shifted(e_outline(0.7, 1, 0.15), -0.35, -0.5));
+    const Mesh l = plate("L", shifted(l_outline(0.8, 1, 0.2), -0.3, -0.4));
+    const Mesh ring = plate("ring", regular(24, 0.5), 0.15, {regular(24, 0.35)});
+    const Mesh star = plate("star", star_outline(7, 0.5, 0.2));
+    const Mesh u = plate("U", shifted(u_outline(0.8, 0.9, 0.15), -0.4, -0.45));
+    const Mesh box = plate("box", rectangle(-0.25, -0.15, 0.25, 0.15), 0.3);
+    const Mesh wide = plate("plate", rectangle(-0.6, -0.4, 0.6, 0.4), 0.03);
+    const Mesh t = plate("T", shifted(t_outline(0.8, 0.9, 0.15), 0, -0.45));
+    const Mesh holes = plate("plate with holes", rectangle(-0.5, -0.5, 0.5, 0.5), 0.05,
+                             {shifted(regular(12, 0.15), 0.2, 0.2), rectangle(-0.4, -0.4, -0.1, -0.2)});
+    return {{"bar on hexagon", hexagon, bar},
+            {"gear on E", e, gear},
+            {"E on gear", gear, e},
+            {"L on ring", ring, l},
+            {"star on U", u, star},
+            {"box on plate", wide, box},
+            {"T on plate with holes", holes, t}};
+}
+
+TEST(assemblies, flat_on_flat) {
+    for (const Plates& pair : plates()) {
+        const ShapePtr below = made(pair.below), above = made(pair.above);
+        const double reach = 0.5 * size_of(*above), top = below->box_max().z;
+        for (const double overlap : {0.0005, 0.002, 0.01}) {
+            Depths depths;
+            depths.limit = depths.never = 3;
+            Random random(77);
+            for (std::size_t i = 0; i < 2000; ++i) {
+                const double turn = random.uniform(), tilt = i % 2 == 0 ? 0 : 1e-3;
+                const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
+                const Vec3 shift = 0.6 * random.in_ball();
+                const Pose pose = laid(turn, {cosine, sine, 0}, tilt, {shift.x, shift.y, top - overlap});
+                const auto contacts = collide(*below, {}, *above, pose);
+                if (contacts.empty() && !intersects(*below, {}, *above, pose)) continue; // beside, or over a hole
+                // A corner lies at most that much lower than the middle.
+                depths.add(contacts, overlap + tilt * reach, std::string(pair.name) + " " + std::to_string(i));
+            }
+            char what[80];
+            std::snprintf(what, sizeof what, "%s, %g mm", pair.name, 1000 * overlap);
+            depths.print(what);
+            EXPECT_EQ(depths.without, 0u);
+            EXPECT_EQ(depths.deep, 0u) << depths.words;
+            EXPECT_GE(depths.pairs, 1000u);
+        }
+    }
+}
+
+// A nut that is off its place in the thread by a vector has come free if it moves back by it, but for what the corners
+// of one polygon stand out over the sides of the other.
+TEST(assemblies, nut_on_bolt) {
+    constexpr double clearance = 0.002;
+    const ShapePtr bolt = made(bolt_mesh(10)), nut = made(nut_mesh(4, clearance));
+    const double stands_out = thread_radius * (1 - scenes::sine_cosine(0.5 / thread_sides).cosine);
+    Depths depths;
+    depths.limit = depths.never = 2;
+    Random random(20);
+    std::size_t touching = 0;
+    double deepest = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double turns = 10.5 - 16.0 * i / 300 + 0.01 * random.uniform(); // from above the bolt to below it
+        const double off = i % 3 == 0 ? 0 : 0.01;
+        const Vec3 where = off * random.in_ball();
+        const Pose pose = laid(turns, {1, 0, 0}, 0, Vec3{0, 0, turns * thread_pitch} + where);
+        const auto contacts = collide(*bolt, {}, *nut, pose);
+        if (contacts.empty()) {
+            EXPECT_FALSE(intersects(*bolt, {}, *nut, pose));
+            continue;
+        }
+        ++touching;
+        depths.add(contacts, length(where) + stands_out - clearance * 0.5, "pose " + std::to_string(i));
+        deepest = std::max(deepest, double(deepest_of(contacts)->depth));
+    }
+    depths.print("nut on bolt");
+    std::printf("[ counts   ] nut on bolt: %zu poses touch, deepest %.4g m\n", touching, deepest);
+    EXPECT_EQ(depths.deep, 0u) << depths.words;
+    EXPECT_GE(touching, 100u);
+}
+
+TEST(assemblies, wall_pierced) {
+    Random random(4);
+    double least = 1, most = 0;
+    std::size_t cases = 0, without = 0;
+    const ShapePtr wall = made(box_mesh({4, 3, 0.1}));
+    for (const double long_by : {2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+        for (const double radius : {0.05, 0.15, 0.4})
+            for (const int form : {0, 1, 2}) {
+                const ShapePtr pipe = made(form == 0   ? prism_solid(24, radius, long_by / 2)
+                                           : form == 1 ? pipe_mesh(24, radius, 0.8 * radius, long_by)
+                                                       : box_mesh({radius, 0.7 * radius, long_by / 2}));
+                for (int i = 0; i < 8; ++i) {
+                    const Pose pose_a = random.rotation();
+                    const double far = random.uniform(-0.45, 0.45) * (long_by - 1);
+                    const Vec3 where{random.uniform(-2, 2), random.uniform(-2, 2), far};
+                    const Pose in_a = laid(random.uniform(), {1, 0, 0}, 0, where);
+                    Pose pose_b;
+                    for (std::size_t r = 0; r < 3; ++r)
+                        for (std::size_t c = 0; c < 3; ++c) {
+                            double& entry = pose_b.rotation[3 * r + c];
+                            entry = 0;
+                            for (std::size_t k = 0; k < 3; ++k)
+                                entry += pose_a.rotation[3 * r + k] * in_a.rotation[3 * k + c];
+                        }
+                    pose_b.translation = rotate(pose_a, where);
+                    const auto contacts = collide(*wall, pose_a, *pipe, pose_b);
+                    ++cases;
+                    const Contact* deepest = deepest_of(contacts);
+                    if (!deepest) {
+                        ++without;
+                        continue;
+                    }
+                    least = std::min(least, double(deepest->depth));
+                    most = std::max(most, double(deepest->depth));
+                }
+            }
+    std::printf("[ counts   ] walls pierced: %zu cases, %zu without a contact, deepest from %.4g to %.4g m\n", cases,
+                without, least, most);
+    EXPECT_EQ(without, 0u);
+    EXPECT_NEAR(least, 0.2, 0.002);
+    EXPECT_NEAR(most, 0.2, 0.002);
+}
+
+// Just below the surface, both ends overhanging: the loops around them cancel.
+TEST(assemblies, sunk_bar) {
+    const ShapePtr hexagon = made(extruded("hexagon", regular(6, 0.5), {}, 0, 0.2));
+    const ShapePtr bar = made(extruded("bar", rectangle(-0.5, -0.04, 0.5, 0.04), {}, 0, 0.02));
+    std::size_t cases = 0, without = 0, upwards = 0, deep = 0;
+    std::string words;
+    for (const double z : {0.17, 0.175, 0.165, 0.16})
+        for (const double turn : {0.0, 1.0 / 72, 1.0 / 24, 1.0 / 12, 0.1, 0.21})
+            for (const Vec3& shift : {Vec3{}, Vec3{0.004, 0.01, 0}, Vec3{-0.003, 0.006, 0}})
+                for (const bool swapped : {false, true}) {
+                    const Pose pose = laid(turn, {1, 0, 0}, 0, shift + Vec3{0, 0, z});
+                    auto contacts = swapped ? collide(*bar, pose, *hexagon, {}) : collide(*hexagon, {}, *bar, pose);
+                    ++cases;
+                    const Contact* deepest = deepest_of(contacts);
+                    if (!deepest) {
+                        ++without;
+                        continue;
+                    }
+                    const bool up = (swapped ? -1 : 1) * double(deepest->normal[2]) > 0.9;
+                    const bool right = std::fabs(double(deepest->depth) - (0.2 - z)) < 0.1 * (0.2 - z);
+                    upwards += up;
+                    deep += right;
+                    if (!(up && right) && words.empty()) words = words_of(*deepest);
+                }
+    std::printf("[ counts   ] sunk bar: %zu cases, %zu without a contact, %zu upwards, %zu as deep as it is sunk\n",
+                cases, without, upwards, deep);
+    EXPECT_EQ(without, 0u);
+    EXPECT_EQ(upwards, cases) << words;
+    EXPECT_EQ(deep, cases) << words;
+}
+
+TEST(assemblies, thin_plate) {
+    const ShapePtr plate = made(box_mesh({1, 1, 0.005})), cube = made(box_mesh({0.1, 0.1, 0.1}));
+    Random random(6);
+    std::size_t both = 0, without = 0;
+    std::string words;
+    for (int i = 0; i < 200; ++i) {
+        const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
+        const Vec3 where{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.06, 0.06)};
+        const double tilt = random.uniform(0.001, 0.3);
+        const auto contacts = collide(*plate, {}, *cube, laid(random.uniform(), {cosine, sine, 0}, tilt, where));
+        const Contact* deepest = deepest_of(contacts);
+        if (!deepest) {
+            ++without;
+            continue;
+        }
+        bool opposed = false;
+        for (const Contact& c : contacts)
+            for (const Contact& d : contacts)
+                opposed |=
+                    std::min(c.depth, d.depth) >= 0.1f * deepest->depth && dot(normal_of(c), normal_of(d)) < -0.5;
+        both += opposed;
+        if (opposed && words.empty()) {
+            words = "pose " + std::to_string(i);
+            for (const Contact& c : contacts) words += '\n' + words_of(c);
+        }
+    }
+    std::printf("[ counts   ] thin plate: 200 poses, %zu without a contact, %zu pushed both ways\n", without, both);
+    EXPECT_EQ(without, 0u);
+    EXPECT_EQ(both, 0u) << words;
+}
+
+TEST(assemblies, tray_corner) {
+    const ShapePtr tray = made(tray_mesh()), cube = made(box_mesh({0.3, 0.3, 0.3}));
+    Random random(9);
+    Depths depths;
+    depths.limit = depths.never = 3;
+    for (int i = 0; i < 1000; ++i) {
+        const double e = 1e-4 * std::pow(100, random.uniform());
+        const auto in = [&] { return random.uniform(0.1 * e, e); };
+        const Vec3 turn = e * random.direction();
+        Pose pose = pose_from_quaternion({}, 1, turn.x / 2, turn.y / 2, turn.z / 2);
+        pose.translation = {-0.5 - in(), -0.5 - in(), 0.5 - in()};
+        depths.add(collide(*tray, {}, *cube, pose), e, "pose " + std::to_string(i));
+    }
+    depths.print("cube in the corner of a tray");
+    EXPECT_EQ(depths.without, 0u);
+    EXPECT_EQ(depths.deep, 0u) << depths.words;
+}
+
+TEST(assemblies, crossed_rods) {
+    const double radius = 0.4, stands_out = radius * (1 - scenes::sine_cosine(0.5 / 32).cosine);
+    const ShapePtr rod = made(prism_solid(32, radius, 2));
+    Random random(8);
+    double least = 10, most = 0;
+    std::size_t cases = 0, without = 0;
+    std::string words;
+    for (const double angle : {0.05, 0.1, 0.15, 0.2, 0.25}) // of a turn
+        for (const double overlap : {0.05, 0.1, 0.175, 0.3, 0.4})
+            for (int i = 0; i < 10; ++i) {
+                // One along z; the other in the plane of y and z, aside along x. Both turned about their axes.
+                const auto [sine, cosine] = scenes::sine_cosine(angle);
+                Pose lying;
+                lying.rotation = {1, 0, 0, 0, cosine, -sine, 0, sine, cosine};
+                const Pose spin = laid(random.uniform(), {1, 0, 0}, 0, {});
+                Pose pose_b;
+                for (std::size_t r = 0; r < 3; ++r)
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        double& entry = pose_b.rotation[3 * r + c];
+                        entry = 0;
+                        for (std::size_t k = 0; k < 3; ++k)
+                            entry += lying.rotation[3 * r + k] * spin.rotation[3 * k + c];
+                    }
+                pose_b.translation = {2 * radius - overlap, random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
+                const auto contacts = collide(*rod, laid(random.uniform(), {1, 0, 0}, 0, {}), *rod, pose_b);
+                ++cases;
+                const Contact* deepest = deepest_of(contacts);
+                if (!deepest) {
+                    ++without;
+                    continue;
+                }
+                const double depth = double(deepest->depth);
+                if (depth / (overlap - stands_out) < least)
+                    least = depth / (overlap - stands_out), words = words_of(*deepest);
+                most = std::max(most, depth / overlap);
+            }
+    std::printf(
+        "[ counts   ] crossed rods: %zu cases, %zu without a contact, deepest from %.3g to %.3g of the overlap\n",
+        cases, without, least, most);
+    EXPECT_EQ(without, 0u);
+    EXPECT_GE(least, 0.76) << words;
+    EXPECT_LE(most, 1.1);
+}
+
+struct Posed {
+    ShapePtr a, b;
+    Pose pose_a, pose_b;
+};
+
+Posed random_pair(const std::vector<ShapePtr>& bodies, Random& random) {
+    const auto any = [&] { return bodies[random.below(static_cast<std::uint32_t>(bodies.size()))]; };
+    Posed pair{any(), any(), random.rotation(), random.rotation()};
+    const Vec3 middle = 5 * random.in_ball();
+    const Vec3 offset = (0.3 * (size_of(*pair.a) + size_of(*pair.b))) * random.in_ball();
+    pair.pose_a.translation = middle - rotate(pair.pose_a, pair.a->centre());
+    pair.pose_b.translation = middle + offset - rotate(pair.pose_b, pair.b->centre());
+    return pair;
+}
+
+// Whether the answer changes when b moves by that much in one of some directions.
+bool touches(const Posed& pair, bool truth, double metres) {
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) {
+                const Vec3 way = metres * unit(Vec3{double(x), double(y), double(z)});
+                if (intersects(*pair.a, pair.pose_a, *pair.b, moved_by(pair.pose_b, way)) != truth) return true;
+            }
+    return false;
+}
+
+TEST(assemblies, pushes) {
+    constexpr std::size_t wanted = 1400;
+    constexpr std::array<std::size_t, 5> pushes{1, 2, 3, 5, 12};
+    Random random(14);
+    std::vector<ShapePtr> bodies;
+    while (bodies.size() < 400) bodies.push_back(made(coarse_solid(random)));
+    std::size_t pairs = 0, apart = 0, missed = 0, invented = 0, excused = 0, contacts_first = 0, too_deep = 0;
+    std::array<std::size_t, 5> free{};
+    double way = 0;
+    for (std::size_t i = 0; pairs < wanted; ++i) {
+        Random own(1000003 * 14 + i);
+        Posed pair = random_pair(bodies, own);
+        const bool truth = intersects(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
+        auto contacts = collide(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
+        const double larger = std::max(size_of(*pair.a), size_of(*pair.b));
+        const double size = std::min(size_of(*pair.a), size_of(*pair.b));
+        if (truth == contacts.empty()) ++(touches(pair, truth, 1e-6 * larger) ? excused : truth ? missed : invented);
+        pairs += truth;
+        apart += !truth;
+        if (!truth) continue;
+        contacts_first += contacts.size();
+        if (const Contact* deepest = deepest_of(contacts)) too_deep += double(deepest->depth) > larger;
+        double gone = 0;
+        std::size_t done = 0;
+        for (; done < pushes.back(); ++done) {
+            const Contact* deepest = deepest_of(contacts);
+            if (!deepest) break;
+            const double by = double(deepest->depth) + 1e-6 * size;
+            pair.pose_b = moved_by(pair.pose_b, by * normal_of(*deepest));
+            gone += by;
+            if (!intersects(*pair.a, pair.pose_a, *pair.b, pair.pose_b)) {
+                ++done;
+                for (std::size_t k = 0; k < pushes.size(); ++k) free[k] += done <= pushes[k];
+                break;
+            }
+            contacts = collide(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
+        }
+        way += gone / size;
+    }
+    way /= double(wanted);
+    std::printf("[ counts   ] pushes: %zu pairs intersect, %zu apart; %zu missed, %zu invented, %zu excused; %.3g "
+                "contacts a pair, %zu deeper than the larger body; apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; "
+                "mean way %.3g\n",
+                pairs, apart, missed, invented, excused, double(contacts_first) / wanted, too_deep, free[0], free[1],
+                free[2], free[3], free[4], way);
+    EXPECT_EQ(missed, 0u);
+    EXPECT_EQ(invented, 0u);
+    EXPECT_EQ(too_deep, 0u);
+    constexpr std::array<std::size_t, 5> least{530, 870, 1039, 1180, 1276};
+    for (std::size_t k = 0; k < pushes.size(); ++k) EXPECT_GE(free[k], least[k]) << pushes[k] << " pushes";
+    EXPECT_LE(way, 0.36);
+}
+
+} // namespace
