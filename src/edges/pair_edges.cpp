@@ -24,6 +24,8 @@ constexpr double same_way = 0.5, snap = 0.8;
 // Faces of the two bodies that are nearly parallel say nothing about how thin a region is.
 constexpr double parallel = 0.98;
 constexpr std::size_t most_faces = 64;
+// A ray from a piece begins this part of its half inside.
+constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;
 
 Vec3 unit(const Vec3& v) {
@@ -83,7 +85,9 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
                      std::vector<FeatureContact>& found) {
     const PairMeshes pair(placed);
     crossings_.clear();
-    for (std::size_t side = 0; side < 2; ++side) find_crossings(pair, side, near[side], crossings_);
+    for (std::size_t side = 0; side < 2; ++side) {
+      find_crossings(pair, side, near[side], crossings_);
+    }
     if (crossings_.empty()) return false;
     loops_.find(pair, crossings_);
     list_vertices(vertices);
@@ -91,16 +95,24 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
     join_regions(pair);
     list_regions(pair);
     pass_edges(pair);
-    give_edges(pair, found);
+    const auto before = static_cast<std::ptrdiff_t>(found.size());
+    give_edges(found);
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {
-        if (regions_[r].is_pierced()) {
-            if (!regions_[r].speaks) give_pierced(pair, r, found);
-            continue;
-        }
-        const Vec3 way = way_of(pair, regions_[r]);
-        give_middles(pair, r, way, found);
-        if (!regions_[r].speaks) give_pieces(pair, r, way, found);
+        deep_.clear();
+        if (!regions_[r].is_pierced())
+            list_deep(pair, r, way_of(pair, regions_[r]));
+        else if (!regions_[r].speaks)
+            list_pierced(pair, r);
+        give_deep(found);
     }
+    // Two edges have one contact, the deepest.
+    const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
+    std::sort(found.begin() + before, found.end(), [&](const FeatureContact& p, const FeatureContact& q) {
+        return std::tuple(edges(p), -p.depth) < std::tuple(edges(q), -q.depth);
+    });
+    found.erase(std::unique(found.begin() + before, found.end(),
+                            [&](const auto& p, const auto& q) { return edges(p) == edges(q); }),
+                found.end());
     return true;
 }
 
@@ -124,11 +136,12 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
         const std::uint64_t of_side = std::uint64_t{side} << 32;
         crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
         if (placed[side].target.header.closed == 0) continue; // an open mesh has no inside
+        const bool speaks = is_sharp(pair.shape(side), edge) && is_convex(pair.shape(side), edge);
         // The piece before crossing k, if it is inside.
         for (std::uint32_t k = begin; k <= end; ++k) {
             const bool enters = k > begin, leaves = k < end;
             if ((enters && crossings_[k - 1].leaves) || (leaves && !crossings_[k].leaves)) continue;
-            Piece piece{side, edge, leaves ? k : k - 1, {}, enters && leaves};
+            Piece piece{side, edge, leaves ? k : k - 1, {}, enters && leaves, speaks};
             for (std::size_t e = 0; e < 2; ++e) {
                 if (e == 0 ? enters : leaves) {
                     piece.ends[e] = crossings_[e == 0 ? k - 1 : k].point;
@@ -354,7 +367,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
 }
 
 // Two edges that pass each other more than once have the shallowest contact.
-void PairEdges::give_edges(const PairMeshes&, std::vector<FeatureContact>& found) {
+void PairEdges::give_edges(std::vector<FeatureContact>& found) {
     std::sort(passing_.begin(), passing_.end(), [](const Passing& p, const Passing& q) {
         return std::tuple(p.contact.index, p.contact.other, p.contact.depth)
                < std::tuple(q.contact.index, q.contact.other, q.contact.depth);
@@ -369,65 +382,51 @@ void PairEdges::give_edges(const PairMeshes&, std::vector<FeatureContact>& found
     }
 }
 
-// Where round bodies cross, a region's middle is deeper than its border: the middles of its pieces, by a ray.
-void PairEdges::give_middles(const PairMeshes& pair, std::uint32_t number, const Vec3& way,
-                             std::vector<FeatureContact>& found) {
-    Region& region = regions_[number];
-    const Range along = range(region, way);
-    if (!(region.told < comparable * along.extent())) return;
-    deep_.clear();
-    double most = 0;
-    for (const Piece& piece : pieces_) {
-        if (!piece.through || region_of_[piece.crossing] != number) continue;
-        const std::size_t side = piece.side;
-        if (!is_sharp(pair.shape(side), piece.edge) || !is_convex(pair.shape(side), piece.edge)) continue;
-        const Vec3 middle = 0.5 * (piece.ends[0] + piece.ends[1]), out = side == 0 ? way : -1.0 * way;
-        const MeshHit hit = closest_hit(pair.shape(1 - side), pair.point_in(1 - side, middle),
-                                        pair.direction_in(1 - side, out), 0, never);
-        if (hit.face == NONE || !hit.from_inside) continue;
-        const double at = dot(middle, way);
-        const double depth = std::min(side == 0 ? along.high - at : at - along.low, hit.distance);
-        if (!(depth > region.told) || !(static_cast<float>(depth) > 0)) continue;
-        const std::uint32_t other = nearest_edge(pair, 1 - side, hit.face, middle + hit.distance * out);
-        most = std::max(most, depth);
-        deep_.push_back({VertexBody::a, Feature::edges, side == 0 ? piece.edge : other, side == 0 ? other : piece.edge,
-                         side == 0 ? middle : middle - depth * way, way, depth});
-    }
-    for (const FeatureContact& c : deep_)
-        if (c.depth >= comparable * most) {
-            found.push_back(c);
-            region.speaks = true;
-        }
+// How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
+MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
+    const std::size_t other = 1 - piece.side;
+    const Vec3 from = point + pull * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
+    const MeshHit hit = closest_hit(pair.shape(other), pair.point_in(other, from),
+                                    pair.direction_in(other, piece.side == 0 ? way : -1.0 * way), 0, never);
+    return hit.face != NONE && hit.from_inside ? hit : MeshHit{0, NONE, false};
 }
 
-// A region without any contact: the ends of its pieces that are deep.
-void PairEdges::give_pieces(const PairMeshes& pair, std::uint32_t number, const Vec3& way,
-                            std::vector<FeatureContact>& found) {
-    const Range along = range(regions_[number], way);
+// Adds the point of a piece, with the edge of the other body nearest to where it comes out.
+void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
+                         const MeshHit& hit) {
+    if (!(static_cast<float>(depth) > 0)) return;
+    const bool of_a = piece.side == 0;
+    const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
+    deep_.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
+                     of_a ? point : point - depth * way, way, depth});
+}
+
+// Where round bodies cross, a region's middle is deeper than its border: the middles of its pieces, by a ray. Of a
+// region without any contact the ends, too.
+void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number, const Vec3& way) {
+    const Region& region = regions_[number];
+    const Range along = range(region, way);
+    if (!(region.told < comparable * along.extent())) return;
+    const auto ask = [&](const Piece& piece, const Vec3& point) {
+        const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
+        if (!(most > region.told)) return;
+        const MeshHit hit = way_out(pair, piece, point, way);
+        if (const double depth = std::min(most, hit.distance); depth > region.told)
+            add_deep(pair, piece, point, way, depth, hit);
+    };
     for (const Piece& piece : pieces_) {
-        if (region_of_[piece.crossing] != number) continue;
-        const bool of_a = piece.side == 0;
-        const Vec3& end = (dot(piece.ends[0], way) < dot(piece.ends[1], way)) == of_a ? piece.ends[0] : piece.ends[1];
-        const double depth = of_a ? along.high - dot(end, way) : dot(end, way) - along.low;
-        if (!(depth > comparable * along.extent()) || !(static_cast<float>(depth) > 0)) continue;
-        const std::uint32_t other = nearest_edge(pair, 1 - piece.side, crossings_[piece.crossing].face, end);
-        found.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
-                         of_a ? end : end - depth * way, way, depth});
+        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+        if (piece.through) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
+        if (region.speaks) continue;
+        for (const Vec3& end : piece.ends) ask(piece, end);
     }
 }
 
 // A body pierced through: the loops on either side cancel, and say nothing. Of the normals of the faces that they cross
-// the one along which the pieces are out soonest, by rays.
-void PairEdges::give_pierced(const PairMeshes& pair, std::uint32_t number, std::vector<FeatureContact>& found) {
+// the one along which the pieces are out soonest.
+void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
     constexpr Vec3 preferred{0.31, 0.53, 0.79}; // of two ways alike always the same, whatever rounding does
     const Region& region = regions_[number];
-    const auto way_out = [&](const Piece& piece, const Vec3& end, const Vec3& way) {
-        const std::size_t side = piece.side;
-        const Vec3 out = side == 0 ? way : -1.0 * way, inwards = 1e-3 * (0.5 * (piece.ends[0] + piece.ends[1]) - end);
-        const MeshHit hit = closest_hit(pair.shape(1 - side), pair.point_in(1 - side, end + inwards),
-                                        pair.direction_in(1 - side, out), 0, never);
-        return hit.face != NONE && hit.from_inside ? hit : MeshHit{NONE, 0, false};
-    };
     Vec3 way{};
     double least = never;
     std::vector<Vec3> asked;
@@ -437,8 +436,8 @@ void PairEdges::give_pierced(const PairMeshes& pair, std::uint32_t number, std::
             asked.push_back(n);
             double most = 0;
             for (const Piece& piece : pieces_) {
-                if (region_of_[piece.crossing] != number) continue;
-                for (const Vec3& end : piece.ends) most = std::max(most, way_out(piece, end, n).distance);
+                if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+                for (const Vec3& end : piece.ends) most = std::max(most, way_out(pair, piece, end, n).distance);
                 if (most > 1.001 * least) break;
             }
             if (!(most > 0)) continue;
@@ -449,19 +448,19 @@ void PairEdges::give_pierced(const PairMeshes& pair, std::uint32_t number, std::
         }
     if (way == Vec3{}) return;
     for (const Piece& piece : pieces_) {
-        if (region_of_[piece.crossing] != number) continue;
-        const bool of_a = piece.side == 0;
-        const MeshHit hits[] = {way_out(piece, piece.ends[0], way), way_out(piece, piece.ends[1], way)};
-        for (std::size_t e = 0; e < 2; ++e) {
-            const double depth = hits[e].distance;
-            if (!(depth > comparable * least) || !(static_cast<float>(depth) > 0)) continue;
-            const Vec3& end = piece.ends[e];
-            const std::uint32_t other =
-                nearest_edge(pair, 1 - piece.side, hits[e].face, end + (of_a ? depth : -depth) * way);
-            found.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
-                             of_a ? end : end - depth * way, way, depth});
+        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+        for (const Vec3& end : piece.ends) {
+            const MeshHit hit = way_out(pair, piece, end, way);
+            add_deep(pair, piece, end, way, hit.distance, hit);
         }
     }
+}
+
+void PairEdges::give_deep(std::vector<FeatureContact>& found) const {
+    double most = 0;
+    for (const FeatureContact& c : deep_) most = std::max(most, c.depth);
+    for (const FeatureContact& c : deep_)
+        if (c.depth >= comparable * most) found.push_back(c);
 }
 
 } // namespace raycontact

@@ -4,6 +4,7 @@
 #include "edges/feature_contact.h"
 #include "edges/loops.h"
 #include "mesh/disjoint_sets.h"
+#include "shape/tree_walks.h"
 
 #include <array>
 #include <span>
@@ -31,6 +32,7 @@ private:
         std::uint32_t crossing;  ///< one at its ends
         std::array<Vec3, 2> ends;
         bool through;            ///< a crossing at both ends
+        bool speaks;             ///< its edge is sharp and convex
     };
     /// Two edges that pass each other.
     struct Passing {
@@ -48,7 +50,7 @@ private:
         std::uint32_t first_face = 0, end_face = 0;
         double thinnest = -1; ///< over its faces, once asked
         /// Its loops cancel: a body is pierced through.
-        bool is_pierced() const { return !(length(area) > 0.5 * area_sum); }
+        bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
     struct Range {
         double low, high;
@@ -62,13 +64,16 @@ private:
     void list_regions(const PairMeshes& pair);
     void pass_edges(const PairMeshes& pair);
     void pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b);
-    void give_edges(const PairMeshes& pair, std::vector<FeatureContact>& found);
+    void give_edges(std::vector<FeatureContact>& found);
     Vec3 way_of(const PairMeshes& pair, Region& region) const;
     double thinnest(Region& region) const;
     Range range(const Region& region, const Vec3& normal) const;
-    void give_middles(const PairMeshes& pair, std::uint32_t region, const Vec3& way, std::vector<FeatureContact>& found);
-    void give_pieces(const PairMeshes& pair, std::uint32_t region, const Vec3& way, std::vector<FeatureContact>& found);
-    void give_pierced(const PairMeshes& pair, std::uint32_t region, std::vector<FeatureContact>& found);
+    static MeshHit way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
+    void add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
+                  const MeshHit& hit);
+    void list_deep(const PairMeshes& pair, std::uint32_t region, const Vec3& way);
+    void list_pierced(const PairMeshes& pair, std::uint32_t region);
+    void give_deep(std::vector<FeatureContact>& found) const;
     std::uint32_t node_of(std::uint64_t vertex) const;
 
     std::vector<Crossing> crossings_; ///< of a, then of b
