@@ -192,9 +192,13 @@ TEST(assemblies, flat_on_flat) {
                 const double turn = random.uniform(), tilt = i % 2 == 0 ? 0 : 1e-3;
                 const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
                 const Vec3 shift = 0.6 * random.in_ball();
-                const Pose pose = laid(turn, {cosine, sine, 0}, tilt, {shift.x, shift.y, top - overlap});
-                const auto contacts = collide(*below, {}, *above, pose);
-                if (contacts.empty() && !intersects(*below, {}, *above, pose)) continue; // beside, or over a hole
+                // A quarter as they lie, the others turned freely and moved together.
+                Pose pose_a = i / 2 % 4 == 0 ? Pose{} : random.rotation();
+                if (i / 2 % 4 != 0) pose_a.translation = 3 * random.in_ball();
+                const Pose pose_b =
+                    times(pose_a, laid(turn, {cosine, sine, 0}, tilt, {shift.x, shift.y, top - overlap}));
+                const auto contacts = collide(*below, pose_a, *above, pose_b);
+                if (contacts.empty() && !intersects(*below, pose_a, *above, pose_b)) continue; // beside, or over a hole
                 // A corner lies at most that much lower than the middle.
                 depths.add(contacts, overlap + tilt * reach, std::string(pair.name) + " " + std::to_string(i));
             }
@@ -205,6 +209,54 @@ TEST(assemblies, flat_on_flat) {
             EXPECT_EQ(depths.deep, 0u) << depths.words;
             EXPECT_GE(depths.pairs, 1000u);
         }
+    }
+}
+
+// A cube as it should not be: the open one, one that lacks a triangle, two in one mesh that share an edge or a corner,
+// or cross each other. Its bottom is at z = 0.
+std::vector<Mesh> faulty_cubes() {
+    const Mesh cube = moved(box_mesh({0.2, 0.2, 0.2}), {0, 0, 0.2});
+    const auto with = [&](const char* name, const Vec3& where) {
+        Mesh both = cube;
+        both.name = name;
+        const auto first = static_cast<std::uint32_t>(both.vertices.size());
+        for (const Vec3& v : cube.vertices) both.vertices.push_back(v + where);
+        for (const auto& t : cube.triangles) both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        return both;
+    };
+    Mesh lacking = cube;
+    lacking.name = "lacks a triangle";
+    lacking.triangles.pop_back();
+    Mesh open = open_box_mesh(4);
+    open.name = "open";
+    for (Vec3& v : open.vertices) v = {0.4 * v.x - 0.2, 0.4 * v.y - 0.2, 0.4 * v.z};
+    return {open,
+            lacking,
+            with("share an edge", {0.4, 0.4, 0}),
+            with("share a corner", {0.4, 0.4, 0.4}),
+            with("cross each other", {0.1, 0.15, 0.05}),
+            with("share a face", {0.4, 0.1, 0})};
+}
+
+// Loops that do not close give what the sum still tells, or nothing; never the depth of a body.
+TEST(assemblies, faulty_meshes_laid_flat) {
+    const ShapePtr hexagon = made(extruded("hexagon", regular(6, 0.5), {}, -0.2, 0));
+    for (const Mesh& mesh : faulty_cubes()) {
+        const ShapePtr cube = Shape::make(mesh);
+        Depths depths;
+        depths.limit = depths.never = 3;
+        for (const double overlap : {0.002, 0.01})
+            for (std::size_t i = 0; i < 250; ++i) {
+                Random random(500 + i);
+                const Vec3 shift = 0.6 * random.in_ball();
+                const Pose pose = laid(random.uniform(), {1, 0, 0}, 0, {shift.x, shift.y, -overlap});
+                if (!intersects(*hexagon, {}, *cube, pose)) continue;
+                const std::string what = mesh.name + " " + std::to_string(i);
+                depths.add(collide(*hexagon, {}, *cube, pose), overlap, what);
+                depths.add(collide(*cube, pose, *hexagon, {}), overlap, what + " swapped");
+            }
+        depths.print(("cubes that " + mesh.name).c_str());
+        EXPECT_EQ(depths.deep, 0u) << depths.words;
     }
 }
 
@@ -219,7 +271,7 @@ double stands_out() {
 Depths of_turning_nut(double clearance, double off, int poses) {
     const ShapePtr bolt = made(bolt_mesh(10)), nut = made(nut_mesh(4, clearance));
     Depths depths;
-    depths.limit = depths.never = 3;
+    depths.limit = 3, depths.never = 10;
     Random random(20);
     for (int i = 0; i < poses; ++i) {
         const double turns = 10.5 - (16.0 * i + random.uniform()) / poses;
@@ -323,15 +375,17 @@ TEST(assemblies, sunk_bar) {
 }
 
 TEST(assemblies, thin_plate) {
-    const ShapePtr plate = made(box_mesh({1, 1, 0.005})), cube = made(box_mesh({0.1, 0.1, 0.1}));
+    const ShapePtr thin = made(box_mesh({1, 1, 0.005})), thick = made(box_mesh({1, 1, 0.02}));
+    const ShapePtr cube = made(box_mesh({0.1, 0.1, 0.1}));
     Random random(6);
     std::size_t both = 0, without = 0;
     std::string words;
     for (int i = 0; i < 200; ++i) {
         const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
         const Vec3 where{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.06, 0.06)};
-        const double tilt = random.uniform(0.001, 0.3);
-        const auto contacts = collide(*plate, {}, *cube, laid(random.uniform(), {cosine, sine, 0}, tilt, where));
+        const double tilt = random.uniform(0.001, 0.8);
+        const Shape& plate = i % 2 == 0 ? *thin : *thick;
+        const auto contacts = collide(plate, {}, *cube, laid(random.uniform(), {cosine, sine, 0}, tilt, where));
         const Contact* deepest = deepest_of(contacts);
         if (!deepest) {
             ++without;
