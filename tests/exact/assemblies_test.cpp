@@ -571,9 +571,10 @@ TEST(assemblies, pushes) {
         "[ counts   ] pushes: of %zu pairs apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; mean way %.3g of the "
         "smaller; %zu without a contact on the way; %.3g contacts a pair at first\n",
         pairs, free[0], free[1], free[2], free[3], free[4], way, stopped, double(contacts_first) / wanted);
-    constexpr std::array<std::size_t, 5> least{530, 870, 1039, 1180, 1276};
+    // A hundredth below what the prototype of the rule reached on these pairs.
+    constexpr std::array<std::size_t, 5> least{515, 909, 1070, 1192, 1271};
     for (std::size_t k = 0; k < pushes.size(); ++k) EXPECT_GE(free[k], least[k]) << pushes[k] << " pushes";
-    EXPECT_LE(way, 0.28);
+    EXPECT_LE(way, 0.26);
 }
 
 } // namespace
