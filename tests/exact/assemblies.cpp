@@ -251,6 +251,23 @@ Outline shifted(Outline outline, double x, double y) {
     return outline;
 }
 
+FlushPair fitted_pair(std::uint32_t kind, double overlap, Random& random) {
+    const double d = overlap;
+    const double width = random.uniform(0.5, 2), height = random.uniform(0.5, 2);
+    const double right = random.uniform(0.8, 3), thick = random.uniform(0.3, 0.6);
+    FlushPair pair;
+    pair.overlap = d;
+    pair.b = block(-d, 0, 0, right, width, height);
+    if (kind % fitted_kinds == 0) { // a block in the corner of an L, flush with its ends
+        pair.a = extruded("L", shifted(l_outline(thick + right, thick + width, thick), -thick, -thick), {}, 0, height);
+    } else { // a plug in the hole of a frame, off its middle
+        const double play = random.uniform(0.3, 0.6);
+        pair.a = extruded("frame", rectangle(-thick, -thick, right + play + thick, width + thick),
+                          {rectangle(0, 0, right + play, width)}, 0, height);
+    }
+    return pair;
+}
+
 FlushPair flush_pair(std::uint32_t kind, double overlap, Random& random) {
     const double d = overlap;
     const double width = random.uniform(0.5, 2), height = random.uniform(0.5, 2);
@@ -272,22 +289,18 @@ FlushPair flush_pair(std::uint32_t kind, double overlap, Random& random) {
         pair.a = wall(shifted(l_outline(left, width + thick, thick), -left, 0));
         pair.b = block(-d, 0, 0, right, thick, height);
         break;
-    case 3: // a block in the corner of an L, flush with its ends
-        pair.a = wall(shifted(l_outline(thick + right, thick + width, thick), -thick, -thick));
-        pair.b = block(-d, 0, 0, right, width, height);
-        break;
-    case 4: // a beam across the arms of a U
+    case 3: // a beam across the arms of a U
         pair.a = wall(clamp_outline(left, 3 * thick + width, thick));
         pair.b = block(-d, 0, 0, right, 3 * thick + width, height);
         break;
-    case 5: { // the stem of a T goes on as a beam
+    case 4: { // the stem of a T goes on as a beam
         Outline t = t_outline(3 * thick + width, left, thick);
         for (auto& c : t) c = {-c[1], c[0]};
         pair.a = wall(t);
         pair.b = block(-d, -thick / 2, 0, right, thick / 2, height);
         break;
     }
-    case 6: { // plates with holes side by side
+    case 5: { // plates with holes side by side
         const double top = random.uniform(0.25, 0.5), y = width + 1;
         const Outline hole = shifted(regular(4 + random.below(9), 0.2), -left / 2, y / 2);
         pair.a = extruded("plate", rectangle(-left, 0, 0, y), {hole}, 0, top);
@@ -297,23 +310,16 @@ FlushPair flush_pair(std::uint32_t kind, double overlap, Random& random) {
                      {rectangle(x - 0.1, 0.3, x + 0.1, 0.6), rectangle(x - 0.1, y - 0.7, x + 0.1, y - 0.4)}, 0, top);
         break;
     }
-    case 7: // a U on a U, tips on tips
+    case 6: // a U on a U, tips on tips
         pair.a = wall(clamp_outline(left, 3 * thick + width, thick));
         pair.b = wall(mirrored(clamp_outline(right, 3 * thick + width, thick), -d / 2));
         break;
-    case 8: { // I beams end to end
+    default: { // I beams end to end
         const double w = width, h = height + 2 * thick, web = thick / 2;
         const Outline section{{-w, 0}, {w, 0},  {w, thick},      {web, thick},      {web, h - thick}, {w, h - thick},
                               {w, h},  {-w, h}, {-w, h - thick}, {-web, h - thick}, {-web, thick},    {-w, thick}};
         pair.a = along_x(extruded("beam", section, {}, -left, 0));
         pair.b = along_x(extruded("beam", section, {}, -d, right));
-        break;
-    }
-    default: { // a plug in the hole of a frame, off its middle
-        const double play = random.uniform(0.3, 0.6);
-        pair.a = extruded("frame", rectangle(-thick, -thick, right + play + thick, width + thick),
-                          {rectangle(0, 0, right + play, width)}, 0, height);
-        pair.b = block(-d, 0, 0, right, width, height);
         break;
     }
     }

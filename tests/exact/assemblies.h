@@ -30,14 +30,17 @@ Outline t_outline(double width, double height, double thick); ///< the stem's fo
 Outline e_outline(double width, double height, double thick); ///< open to the right, lower left corner at the origin
 Outline shifted(Outline outline, double x, double y);
 
-/// Two parts in one frame that overlap by `overlap` along x and are flush otherwise: all other faces that meet are
-/// coplanar, and every other way out is longer.
+/// Two parts in one frame that overlap by `overlap` along x and are flush otherwise: faces of both lie in one plane,
+/// and every other way out is longer.
 struct FlushPair {
     Mesh a, b;
     double overlap = 0;
 };
-constexpr std::uint32_t flush_kinds = 10;
+constexpr std::uint32_t flush_kinds = 8;
 FlushPair flush_pair(std::uint32_t kind, double overlap, reference::Random& random);
+/// Parts that fit into each other: beside the overlap, faces lie on faces of the other that look the other way.
+constexpr std::uint32_t fitted_kinds = 2;
+FlushPair fitted_pair(std::uint32_t kind, double overlap, reference::Random& random);
 
 /// Positions turned and moved.
 Mesh placed(Mesh mesh, const Pose& pose);

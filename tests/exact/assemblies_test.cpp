@@ -71,6 +71,18 @@ Pose moved_by(Pose pose, const Vec3& way) {
     return pose;
 }
 
+Pose times(const Pose& left, const Pose& right) {
+    Pose pose;
+    for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) {
+            pose.rotation[3 * r + c] = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                pose.rotation[3 * r + c] += left.rotation[3 * r + k] * right.rotation[3 * k + c];
+        }
+    pose.translation = transform_point(left, right.translation);
+    return pose;
+}
+
 // Of each pair the deepest contact, in units of what it may be at most.
 struct Depths {
     std::size_t pairs = 0, without = 0, deep = 0, far = 0; ///< no contact; beyond `limit`; beyond `never`
@@ -95,19 +107,19 @@ struct Depths {
     }
 };
 
-TEST(assemblies, flush_parts) {
-    constexpr std::size_t cases = 2100;
+// Turned freely, up to 50 m away, and rounded as files are.
+Depths of_flush_pairs(FlushPair (*make)(std::uint32_t, double, Random&), std::uint32_t kinds, std::size_t cases) {
     Depths all;
     all.limit = 1.5, all.never = 3;
-    std::size_t deep_of_kind[flush_kinds] = {};
+    std::vector<std::size_t> deep_of_kind(kinds, 0);
     for (std::size_t i = 0; i < cases; ++i) {
         Random random(1000003 + i);
-        const auto kind = static_cast<std::uint32_t>(i % flush_kinds);
-        const FlushPair pair = flush_pair(kind, random.uniform(0.02, 0.2), random);
+        const auto kind = static_cast<std::uint32_t>(i % kinds);
+        const FlushPair pair = make(kind, random.uniform(0.02, 0.2), random);
         Pose pose = random.rotation();
         constexpr double places[] = {1, 10, 50};
-        pose.translation = places[i / flush_kinds % 3] * random.in_ball();
-        const bool text = i / flush_kinds % 2 == 0;
+        pose.translation = places[i / kinds % 3] * random.in_ball();
+        const bool text = i / kinds % 2 == 0;
         const auto rounded = [&](const Mesh& mesh) {
             return made(text ? with_six_digits(placed(mesh, pose)) : in_float32(placed(mesh, pose)));
         };
@@ -116,13 +128,27 @@ TEST(assemblies, flush_parts) {
         all.add(collide(*a, {}, *b, {}), pair.overlap, "case " + std::to_string(i));
         deep_of_kind[kind] += all.deep - before;
     }
-    all.print("flush parts");
-    std::printf("[ counts   ] flush parts, too deep of each kind:");
+    std::printf("[ counts   ] too deep of each kind:");
     for (const std::size_t n : deep_of_kind) std::printf(" %zu", n);
     std::printf("\n");
+    return all;
+}
+
+TEST(assemblies, flush_parts) {
+    const Depths all = of_flush_pairs(flush_pair, flush_kinds, 2100);
+    all.print("flush parts");
     EXPECT_EQ(all.without, 0u);
     EXPECT_LE(all.deep, 2u) << all.words;
     EXPECT_EQ(all.far, 0u) << all.words;
+}
+
+// Faces on faces that look the other way cross each other anywhere, as rounding has it. Beyond what flush parts
+// promise: the bound is what was reached at first.
+TEST(assemblies, fitted_parts) {
+    const Depths all = of_flush_pairs(fitted_pair, fitted_kinds, 600);
+    all.print("fitted parts");
+    EXPECT_EQ(all.without, 0u);
+    EXPECT_LE(all.deep, 201u) << all.words;
 }
 
 struct Plates {
@@ -167,9 +193,13 @@ TEST(assemblies, flat_on_flat) {
                 const double turn = random.uniform(), tilt = i % 2 == 0 ? 0 : 1e-3;
                 const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
                 const Vec3 shift = 0.6 * random.in_ball();
-                const Pose pose = laid(turn, {cosine, sine, 0}, tilt, {shift.x, shift.y, top - overlap});
-                const auto contacts = collide(*below, {}, *above, pose);
-                if (contacts.empty() && !intersects(*below, {}, *above, pose)) continue; // beside, or over a hole
+                // A quarter as they lie, the others turned freely and moved together.
+                Pose pose_a = i / 2 % 4 == 0 ? Pose{} : random.rotation();
+                if (i / 2 % 4 != 0) pose_a.translation = 3 * random.in_ball();
+                const Pose pose_b =
+                    times(pose_a, laid(turn, {cosine, sine, 0}, tilt, {shift.x, shift.y, top - overlap}));
+                const auto contacts = collide(*below, pose_a, *above, pose_b);
+                if (contacts.empty() && !intersects(*below, pose_a, *above, pose_b)) continue; // beside, or over a hole
                 // A corner lies at most that much lower than the middle.
                 depths.add(contacts, overlap + tilt * reach, std::string(pair.name) + " " + std::to_string(i));
             }
@@ -183,35 +213,102 @@ TEST(assemblies, flat_on_flat) {
     }
 }
 
-// A nut that is off its place in the thread by a vector has come free if it moves back by it, but for what the corners
-// of one polygon stand out over the sides of the other.
-TEST(assemblies, nut_on_bolt) {
-    constexpr double clearance = 0.002;
-    const ShapePtr bolt = made(bolt_mesh(10)), nut = made(nut_mesh(4, clearance));
-    const double stands_out = thread_radius * (1 - scenes::sine_cosine(0.5 / thread_sides).cosine);
-    Depths depths;
-    depths.limit = depths.never = 2;
-    Random random(20);
-    std::size_t touching = 0;
-    double deepest = 0;
-    for (int i = 0; i < 300; ++i) {
-        const double turns = 10.5 - 16.0 * i / 300 + 0.01 * random.uniform(); // from above the bolt to below it
-        const double off = i % 3 == 0 ? 0 : 0.01;
-        const Vec3 where = off * random.in_ball();
-        const Pose pose = laid(turns, {1, 0, 0}, 0, Vec3{0, 0, turns * thread_pitch} + where);
-        const auto contacts = collide(*bolt, {}, *nut, pose);
-        if (contacts.empty()) {
-            EXPECT_FALSE(intersects(*bolt, {}, *nut, pose));
-            continue;
-        }
-        ++touching;
-        depths.add(contacts, length(where) + stands_out - clearance * 0.5, "pose " + std::to_string(i));
-        deepest = std::max(deepest, double(deepest_of(contacts)->depth));
+// A cube as it should not be: the open one, one that lacks a triangle, two in one mesh that share an edge or a corner,
+// or cross each other. Its bottom is at z = 0.
+std::vector<Mesh> faulty_cubes() {
+    const Mesh cube = moved(box_mesh({0.2, 0.2, 0.2}), {0, 0, 0.2});
+    const auto with = [&](const char* name, const Vec3& where) {
+        Mesh both = cube;
+        both.name = name;
+        const auto first = static_cast<std::uint32_t>(both.vertices.size());
+        for (const Vec3& v : cube.vertices) both.vertices.push_back(v + where);
+        for (const auto& t : cube.triangles) both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        return both;
+    };
+    Mesh lacking = cube;
+    lacking.name = "lacks a triangle";
+    lacking.triangles.pop_back();
+    Mesh open = open_box_mesh(4);
+    open.name = "open";
+    for (Vec3& v : open.vertices) v = {0.4 * v.x - 0.2, 0.4 * v.y - 0.2, 0.4 * v.z};
+    return {open,
+            lacking,
+            with("share an edge", {0.4, 0.4, 0}),
+            with("share a corner", {0.4, 0.4, 0.4}),
+            with("cross each other", {0.1, 0.15, 0.05}),
+            with("share a face", {0.4, 0.1, 0})};
+}
+
+// Loops that do not close give what the sum still tells, or nothing; never the depth of a body.
+TEST(assemblies, faulty_meshes_laid_flat) {
+    const ShapePtr hexagon = made(extruded("hexagon", regular(6, 0.5), {}, -0.2, 0));
+    for (const Mesh& mesh : faulty_cubes()) {
+        const ShapePtr cube = Shape::make(mesh);
+        Depths depths;
+        depths.limit = depths.never = 3;
+        for (const double overlap : {0.002, 0.01})
+            for (std::size_t i = 0; i < 250; ++i) {
+                Random random(500 + i);
+                const Vec3 shift = 0.6 * random.in_ball();
+                const Pose pose = laid(random.uniform(), {1, 0, 0}, 0, {shift.x, shift.y, -overlap});
+                if (!intersects(*hexagon, {}, *cube, pose)) continue;
+                const std::string what = mesh.name + " " + std::to_string(i);
+                depths.add(collide(*hexagon, {}, *cube, pose), overlap, what);
+                depths.add(collide(*cube, pose, *hexagon, {}), overlap, what + " swapped");
+            }
+        depths.print(("cubes that " + mesh.name).c_str());
+        EXPECT_EQ(depths.deep, 0u) << depths.words;
     }
-    depths.print("nut on bolt");
-    std::printf("[ counts   ] nut on bolt: %zu poses touch, deepest %.4g m\n", touching, deepest);
-    EXPECT_EQ(depths.deep, 0u) << depths.words;
-    EXPECT_GE(touching, 100u);
+}
+
+// How far the corners of one thread's polygon stand out over the sides of the other's: all that a nut in its place
+// overlaps its bolt.
+double stands_out() {
+    return thread_radius * (1 - scenes::sine_cosine(0.5 / thread_sides).cosine);
+}
+
+// The deepest contacts, in units of the overlap, while the nut turns from above the bolt to below it, by up to `off`
+// beside its place.
+Depths of_turning_nut(double clearance, double off, int poses) {
+    const ShapePtr bolt = made(bolt_mesh(10)), nut = made(nut_mesh(4, clearance));
+    Depths depths;
+    depths.limit = 3, depths.never = 10;
+    Random random(20);
+    for (int i = 0; i < poses; ++i) {
+        const double turns = 10.5 - (16.0 * i + random.uniform()) / poses;
+        const Vec3 beside = off * random.in_ball();
+        const Pose pose = laid(turns, {1, 0, 0}, 0, Vec3{0, 0, turns * thread_pitch} + beside);
+        const auto contacts = collide(*bolt, {}, *nut, pose);
+        if (contacts.empty() && !intersects(*bolt, {}, *nut, pose)) continue;
+        depths.add(contacts, length(beside) + stands_out(), "pose " + std::to_string(i));
+    }
+    return depths;
+}
+
+TEST(assemblies, nut_on_bolt) {
+    for (const double clearance : {0.0, 0.001, 0.002, 0.003}) {
+        const Depths depths = of_turning_nut(clearance, 0, 240);
+        char what[80];
+        std::snprintf(what, sizeof what, "nut on bolt, %g mm wider, unit %.4g m", 1000 * clearance, stands_out());
+        depths.print(what);
+        EXPECT_EQ(depths.without, 0u);
+        EXPECT_EQ(depths.deep, 0u) << depths.words;
+        EXPECT_GE(depths.pairs, 60u);
+    }
+}
+
+// It has come free if it moves back to its place.
+TEST(assemblies, nut_beside_its_place) {
+    for (const double off : {0.003, 0.01, 0.03}) {
+        const Depths depths = of_turning_nut(0.002, off, 160);
+        char what[80];
+        std::snprintf(what, sizeof what, "nut up to %g mm beside its place", 1000 * off);
+        depths.print(what);
+        EXPECT_EQ(depths.without, 0u);
+        EXPECT_LE(depths.deep, 5u) << depths.words;
+        EXPECT_EQ(depths.far, 0u) << depths.words;
+        EXPECT_GE(depths.pairs, 80u);
+    }
 }
 
 TEST(assemblies, wall_pierced) {
@@ -230,16 +327,7 @@ TEST(assemblies, wall_pierced) {
                     const double far = random.uniform(-0.45, 0.45) * (long_by - 1);
                     const Vec3 where{random.uniform(-2, 2), random.uniform(-2, 2), far};
                     const Pose in_a = laid(random.uniform(), {1, 0, 0}, 0, where);
-                    Pose pose_b;
-                    for (std::size_t r = 0; r < 3; ++r)
-                        for (std::size_t c = 0; c < 3; ++c) {
-                            double& entry = pose_b.rotation[3 * r + c];
-                            entry = 0;
-                            for (std::size_t k = 0; k < 3; ++k)
-                                entry += pose_a.rotation[3 * r + k] * in_a.rotation[3 * k + c];
-                        }
-                    pose_b.translation = rotate(pose_a, where);
-                    const auto contacts = collide(*wall, pose_a, *pipe, pose_b);
+                    const auto contacts = collide(*wall, pose_a, *pipe, times(pose_a, in_a));
                     ++cases;
                     const Contact* deepest = deepest_of(contacts);
                     if (!deepest) {
@@ -289,15 +377,17 @@ TEST(assemblies, sunk_bar) {
 }
 
 TEST(assemblies, thin_plate) {
-    const ShapePtr plate = made(box_mesh({1, 1, 0.005})), cube = made(box_mesh({0.1, 0.1, 0.1}));
+    const ShapePtr thin = made(box_mesh({1, 1, 0.005})), thick = made(box_mesh({1, 1, 0.02}));
+    const ShapePtr cube = made(box_mesh({0.1, 0.1, 0.1}));
     Random random(6);
     std::size_t both = 0, without = 0;
     std::string words;
     for (int i = 0; i < 200; ++i) {
         const auto [sine, cosine] = scenes::sine_cosine(random.uniform());
         const Vec3 where{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.06, 0.06)};
-        const double tilt = random.uniform(0.001, 0.3);
-        const auto contacts = collide(*plate, {}, *cube, laid(random.uniform(), {cosine, sine, 0}, tilt, where));
+        const double tilt = random.uniform(0.001, 0.8);
+        const Shape& plate = i % 2 == 0 ? *thin : *thick;
+        const auto contacts = collide(plate, {}, *cube, laid(random.uniform(), {cosine, sine, 0}, tilt, where));
         const Contact* deepest = deepest_of(contacts);
         if (!deepest) {
             ++without;
@@ -352,14 +442,7 @@ TEST(assemblies, crossed_rods) {
                 Pose lying;
                 lying.rotation = {1, 0, 0, 0, cosine, -sine, 0, sine, cosine};
                 const Pose spin = laid(random.uniform(), {1, 0, 0}, 0, {});
-                Pose pose_b;
-                for (std::size_t r = 0; r < 3; ++r)
-                    for (std::size_t c = 0; c < 3; ++c) {
-                        double& entry = pose_b.rotation[3 * r + c];
-                        entry = 0;
-                        for (std::size_t k = 0; k < 3; ++k)
-                            entry += lying.rotation[3 * r + k] * spin.rotation[3 * k + c];
-                    }
+                Pose pose_b = times(lying, spin);
                 pose_b.translation = {2 * radius - overlap, random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
                 const auto contacts = collide(*rod, laid(random.uniform(), {1, 0, 0}, 0, {}), *rod, pose_b);
                 ++cases;
@@ -384,16 +467,31 @@ TEST(assemblies, crossed_rods) {
 struct Posed {
     ShapePtr a, b;
     Pose pose_a, pose_b;
+    double larger() const { return std::max(size_of(*a), size_of(*b)); }
+    double smaller() const { return std::min(size_of(*a), size_of(*b)); }
+    bool intersect() const { return intersects(*a, pose_a, *b, pose_b); }
+    std::vector<Contact> contacts() const { return collide(*a, pose_a, *b, pose_b); }
 };
 
-Posed random_pair(const std::vector<ShapePtr>& bodies, Random& random) {
+// Turned freely, the middles of their boxes up to `apart` of both sizes from each other.
+Posed random_pair(const std::vector<ShapePtr>& bodies, double apart, Random& random) {
     const auto any = [&] { return bodies[random.below(static_cast<std::uint32_t>(bodies.size()))]; };
     Posed pair{any(), any(), random.rotation(), random.rotation()};
     const Vec3 middle = 5 * random.in_ball();
-    const Vec3 offset = (0.3 * (size_of(*pair.a) + size_of(*pair.b))) * random.in_ball();
+    const Vec3 offset = (apart * (pair.larger() + pair.smaller())) * random.in_ball();
     pair.pose_a.translation = middle - rotate(pair.pose_a, pair.a->centre());
     pair.pose_b.translation = middle + offset - rotate(pair.pose_b, pair.b->centre());
     return pair;
+}
+
+std::vector<ShapePtr> coarse_bodies(bool thin_too) {
+    Random random(14);
+    std::vector<ShapePtr> bodies;
+    while (bodies.size() < 400) {
+        const Mesh mesh = coarse_solid(random);
+        if (thin_too || (mesh.name != "sheet" && mesh.name != "needle")) bodies.push_back(made(mesh));
+    }
+    return bodies;
 }
 
 // Whether the answer changes when b moves by that much in one of some directions.
@@ -407,57 +505,76 @@ bool touches(const Posed& pair, bool truth, double metres) {
     return false;
 }
 
+TEST(assemblies, none_missed_none_invented) {
+    const auto bodies = coarse_bodies(true);
+    std::size_t intersect = 0, apart = 0, missed = 0, invented = 0, excused = 0, contacts = 0, deep = 0, too_deep = 0;
+    for (std::size_t i = 0; i < 4000; ++i) {
+        Random random(2000003 + i);
+        const Posed pair = random_pair(bodies, 0.3, random);
+        const bool truth = pair.intersect();
+        ++(truth ? intersect : apart);
+        const auto found = pair.contacts();
+        contacts += found.size();
+        if (truth == found.empty())
+            ++(touches(pair, truth, 1e-6 * pair.larger()) ? excused : truth ? missed : invented);
+        for (const Contact& c : found) {
+            EXPECT_TRUE(std::isfinite(c.depth) && c.depth > 0) << words_of(c);
+            EXPECT_NEAR(length(normal_of(c)), 1, 1e-5) << words_of(c);
+            deep += double(c.depth) > pair.smaller();
+            too_deep += double(c.depth) > pair.larger();
+        }
+    }
+    std::printf(
+        "[ counts   ] coarse pairs: %zu intersect, %zu apart; %zu missed, %zu invented, %zu excused; %.3g contacts "
+        "a pair that intersects, %zu deeper than the smaller body, %zu than the larger\n",
+        intersect, apart, missed, invented, excused, double(contacts) / double(intersect), deep, too_deep);
+    EXPECT_EQ(missed, 0u);
+    EXPECT_EQ(invented, 0u);
+    EXPECT_LE(excused, 20u);
+    EXPECT_EQ(too_deep, 0u);
+}
+
+// How often b has to be pushed out by its deepest contact until it is apart. Sheets and needles, a thousandth thick,
+// stay out: pierced in the middle, they would have to be pushed a thousand times.
 TEST(assemblies, pushes) {
     constexpr std::size_t wanted = 1400;
     constexpr std::array<std::size_t, 5> pushes{1, 2, 3, 5, 12};
-    Random random(14);
-    std::vector<ShapePtr> bodies;
-    while (bodies.size() < 400) bodies.push_back(made(coarse_solid(random)));
-    std::size_t pairs = 0, apart = 0, missed = 0, invented = 0, excused = 0, contacts_first = 0, too_deep = 0;
+    const auto bodies = coarse_bodies(false);
+    std::size_t pairs = 0, contacts_first = 0, stopped = 0;
     std::array<std::size_t, 5> free{};
     double way = 0;
     for (std::size_t i = 0; pairs < wanted; ++i) {
-        Random own(1000003 * 14 + i);
-        Posed pair = random_pair(bodies, own);
-        const bool truth = intersects(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
-        auto contacts = collide(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
-        const double larger = std::max(size_of(*pair.a), size_of(*pair.b));
-        const double size = std::min(size_of(*pair.a), size_of(*pair.b));
-        if (truth == contacts.empty()) ++(touches(pair, truth, 1e-6 * larger) ? excused : truth ? missed : invented);
-        pairs += truth;
-        apart += !truth;
-        if (!truth) continue;
-        contacts_first += contacts.size();
-        if (const Contact* deepest = deepest_of(contacts)) too_deep += double(deepest->depth) > larger;
+        Random random(3000003 + i);
+        Posed pair = random_pair(bodies, 0.25, random);
+        if (pair.larger() > 3 * pair.smaller() || !pair.intersect()) continue;
+        ++pairs;
         double gone = 0;
-        std::size_t done = 0;
-        for (; done < pushes.back(); ++done) {
+        for (std::size_t done = 1; done <= pushes.back(); ++done) {
+            const auto contacts = pair.contacts();
+            if (done == 1) contacts_first += contacts.size();
             const Contact* deepest = deepest_of(contacts);
-            if (!deepest) break;
-            const double by = double(deepest->depth) + 1e-6 * size;
-            pair.pose_b = moved_by(pair.pose_b, by * normal_of(*deepest));
-            gone += by;
-            if (!intersects(*pair.a, pair.pose_a, *pair.b, pair.pose_b)) {
-                ++done;
-                for (std::size_t k = 0; k < pushes.size(); ++k) free[k] += done <= pushes[k];
+            if (!deepest) {
+                ++stopped;
                 break;
             }
-            contacts = collide(*pair.a, pair.pose_a, *pair.b, pair.pose_b);
+            const double by = double(deepest->depth) + 1e-6 * pair.smaller();
+            pair.pose_b = moved_by(pair.pose_b, by * normal_of(*deepest));
+            gone += by;
+            if (pair.intersect()) continue;
+            for (std::size_t k = 0; k < pushes.size(); ++k) free[k] += done <= pushes[k];
+            break;
         }
-        way += gone / size;
+        way += gone / pair.smaller();
     }
     way /= double(wanted);
-    std::printf("[ counts   ] pushes: %zu pairs intersect, %zu apart; %zu missed, %zu invented, %zu excused; %.3g "
-                "contacts a pair, %zu deeper than the larger body; apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; "
-                "mean way %.3g\n",
-                pairs, apart, missed, invented, excused, double(contacts_first) / wanted, too_deep, free[0], free[1],
-                free[2], free[3], free[4], way);
-    EXPECT_EQ(missed, 0u);
-    EXPECT_EQ(invented, 0u);
-    EXPECT_EQ(too_deep, 0u);
-    constexpr std::array<std::size_t, 5> least{530, 870, 1039, 1180, 1276};
+    std::printf(
+        "[ counts   ] pushes: of %zu pairs apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; mean way %.3g of the "
+        "smaller; %zu without a contact on the way; %.3g contacts a pair at first\n",
+        pairs, free[0], free[1], free[2], free[3], free[4], way, stopped, double(contacts_first) / wanted);
+    // A hundredth below what the prototype of the rule reached on these pairs.
+    constexpr std::array<std::size_t, 5> least{515, 909, 1070, 1192, 1271};
     for (std::size_t k = 0; k < pushes.size(); ++k) EXPECT_GE(free[k], least[k]) << pushes[k] << " pushes";
-    EXPECT_LE(way, 0.36);
+    EXPECT_LE(way, 0.26);
 }
 
 } // namespace
