@@ -27,9 +27,8 @@ void Loops::find(const PairMeshes& pair, std::span<const Crossing> crossings) {
     seen_.assign(crossings.size(), false);
     for (std::uint32_t i = 0; i < crossings.size(); ++i) {
         if (seen_[i]) continue;
-        const std::size_t first_segment = segments_.size();
         walk(crossings, i);
-        measure(pair, crossings, loops_.back(), first_segment);
+        measure(pair, crossings, loops_.back());
     }
 }
 
@@ -78,7 +77,7 @@ void Loops::walk(std::span<const Crossing> crossings, std::uint32_t begin) {
     }
     if (!closed) by = 1 - by;
     const std::uint32_t number = static_cast<std::uint32_t>(loops_.size());
-    Loop loop{static_cast<std::uint32_t>(order_.size()), 0, closed, {}};
+    Loop loop{static_cast<std::uint32_t>(order_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, closed, {}};
     for (;;) {
         seen_[at] = true;
         order_.push_back(at);
@@ -91,16 +90,17 @@ void Loops::walk(std::span<const Crossing> crossings, std::uint32_t begin) {
         by = leave(next, faces);
         at = next;
     }
+    loop.segment_count = static_cast<std::uint32_t>(segments_.size()) - loop.first_segment;
     loops_.push_back(loop);
 }
 
 // Which way the curve runs: along the cross product of the two outward normals. Single segments between nearly parallel
 // faces may say otherwise, their sum does not.
-void Loops::measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop, std::size_t first_segment) {
+void Loops::measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop) {
     const Vec3 origin = crossings[order_[loop.first]].point;
     Vec3 area{}, normals{};
     double runs = 0;
-    for (std::size_t i = first_segment; i < segments_.size(); ++i) {
+    for (std::size_t i = loop.first_segment; i < segments_.size(); ++i) {
         LoopSegment& s = segments_[i];
         s.normals = {pair.normal(0, s.faces[0]), pair.normal(1, s.faces[1])};
         const Vec3 u = crossings[s.from].point - origin, v = crossings[s.to].point - origin, along = v - u;

@@ -11,6 +11,7 @@ namespace raycontact {
 /// A curve in which the surfaces of a pair cross, from crossing to crossing.
 struct Loop {
     std::uint32_t first, count; ///< in Loops::order()
+    std::uint32_t first_segment, segment_count;
     bool closed;                ///< the last crossing is followed by the first
     Vec3 area;                  ///< vector area, m^2; points the way in which a leaves b
 };
@@ -32,6 +33,9 @@ public:
     std::span<const std::uint32_t> order() const { return order_; }
     /// Loop by loop, in order.
     std::span<const LoopSegment> segments() const { return segments_; }
+    std::span<const LoopSegment> segments_of(const Loop& loop) const {
+        return segments().subspan(loop.first_segment, loop.segment_count);
+    }
 
 private:
     static constexpr std::uint32_t nowhere = 0xffffffffu;
@@ -42,7 +46,7 @@ private:
     };
     void link(const PairMeshes& pair, std::span<const Crossing> crossings);
     void walk(std::span<const Crossing> crossings, std::uint32_t begin);
-    void measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop, std::size_t first_segment);
+    void measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop);
 
     std::vector<Links> links_; ///< by crossing
     std::vector<std::pair<std::uint64_t, std::uint32_t>> by_faces_;

@@ -23,6 +23,8 @@ constexpr double least_sine = 0.05, arc = 0.1;
 constexpr double same_way = 0.5, snap = 0.8;
 // Faces of the two bodies that are nearly parallel say nothing about how thin a region is.
 constexpr double parallel = 0.98;
+// Two edges whose normal has no larger part than this along the way of their region are passed over.
+constexpr double sideways = 0.1;
 constexpr std::size_t most_faces = 64;
 // A ray from a piece begins this part of its half inside.
 constexpr double pull = 1e-3;
@@ -281,7 +283,12 @@ double PairEdges::thinnest(Region& region) const {
 }
 
 // The way in which a region's a leaves b, of regions that are not pierced.
-Vec3 PairEdges::way_of(const PairMeshes& pair, Region& region) const {
+const Vec3& PairEdges::way_of(const PairMeshes& pair, Region& region) const {
+    if (region.way == Vec3{}) region.way = find_way(pair, region);
+    return region.way;
+}
+
+Vec3 PairEdges::find_way(const PairMeshes& pair, Region& region) const {
     const Vec3 way = unit(region.area);
     const double thin = thinnest(region);
     if (!(range(region, way).extent() > 2 * thin + 10 * pair.hair())) return way;
@@ -321,8 +328,9 @@ void PairEdges::pass_edges(const PairMeshes& pair) {
 void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b) {
     const Crossing &x = crossings_[of_a], &y = crossings_[of_b];
     const std::uint32_t number = region_of_[of_a];
-    if (regions_[number].is_pierced()) return;
-    const double least = comparable * regions_[number].deepest;
+    Region& region = regions_[number];
+    if (region.is_pierced()) return;
+    const double least = comparable * region.deepest;
     const Vec3 &p = x.point, &q = y.point;
     if (!(length(q - p) >= least)) return;
     const ShapeData &a = pair.shape(0), &b = pair.shape(1);
@@ -344,6 +352,8 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     if (dot(n, nb[0] + nb[1]) < 0) n = -1.0 * n;
     const bool own = sine > least_sine && dot(n, way) >= same_way && beyond(n, nb[0], nb[1]) < arc
                      && beyond(-1.0 * n, na[0], na[1]) < arc;
+    // Beside flush faces a loop's area leans, and two edges may pass each other sideways.
+    if (own && dot(n, way_of(pair, region)) <= sideways) return;
     Vec3 point = p;
     if (own) {
         // The point of a's edge that is nearest to b's.
@@ -360,9 +370,11 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
                 n = face;
             }
     }
-    const double depth = dot(q - p, n);
+    double depth = dot(q - p, n);
+    // Nearly parallel edges are pierced far apart, and only what lies across them counts.
+    if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
     if (!(static_cast<float>(depth) > 0) || depth < least) return;
-    if (depth > 2 * thinnest(regions_[number]) + 10 * pair.hair()) return;
+    if (depth > 2 * thinnest(region) + 10 * pair.hair()) return;
     passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
 
@@ -411,7 +423,15 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number, const Ve
         const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
         if (!(most > region.told)) return;
         const MeshHit hit = way_out(pair, piece, point, way);
-        if (const double depth = std::min(most, hit.distance); depth > region.told)
+        double depth = std::min(most, hit.distance);
+        if (!(depth > region.told)) return;
+        const auto [own, across] = faces_of(pair.shape(piece.side), piece.edge);
+        Vec3 inward = pair.normal(piece.side, own);
+        if (across != NONE) inward = inward + pair.normal(piece.side, across);
+        inward = unit(inward);
+        const MeshHit in = way_out(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
+        if (in.face != NONE) depth = std::min(depth, in.distance);
+        if (depth > region.told)
             add_deep(pair, piece, point, way, depth, hit);
     };
     for (const Piece& piece : pieces_) {

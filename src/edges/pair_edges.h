@@ -49,6 +49,7 @@ private:
         std::uint32_t first_point = 0, end_point = 0;
         std::uint32_t first_face = 0, end_face = 0;
         double thinnest = -1; ///< over its faces, once asked
+        Vec3 way;             ///< in which a leaves b, once asked
         /// Its loops cancel: a body is pierced through.
         bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
@@ -65,7 +66,8 @@ private:
     void pass_edges(const PairMeshes& pair);
     void pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b);
     void give_edges(std::vector<FeatureContact>& found);
-    Vec3 way_of(const PairMeshes& pair, Region& region) const;
+    const Vec3& way_of(const PairMeshes& pair, Region& region) const;
+    Vec3 find_way(const PairMeshes& pair, Region& region) const;
     double thinnest(Region& region) const;
     Range range(const Region& region, const Vec3& normal) const;
     static MeshHit way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
