@@ -18,8 +18,8 @@ bool passes_left(const Corner& p, const Corner& q, const Corner& r, const Corner
     const bool turned = (p.vertex > q.vertex) != (r.vertex > s.vertex);
     const auto [from, to] = p.vertex > q.vertex ? std::pair(&q, &p) : std::pair(&p, &q);
     const auto [other_from, other_to] = r.vertex > s.vertex ? std::pair(&s, &r) : std::pair(&r, &s);
-    const double volume = dot(to->point - from->point,
-                              cross(other_from->point - from->point, other_to->point - from->point));
+    const double volume =
+        dot(to->point - from->point, cross(other_from->point - from->point, other_to->point - from->point));
     return (volume >= 0) != turned;
 }
 
@@ -51,8 +51,8 @@ void find_crossings(const PairMeshes& pair, std::size_t side, std::span<const Ne
             }
             if (left[0] != left[1] || left[1] != left[2]) continue;
             const double at = from / (from - to);
-            found.push_back({static_cast<std::uint32_t>(side), edge, face, at, from < 0,
-                             p.point + at * (q.point - p.point)});
+            found.push_back(
+                {static_cast<std::uint32_t>(side), edge, face, at, from < 0, p.point + at * (q.point - p.point)});
         }
     }
     std::sort(found.begin() + begin, found.end(), [](const Crossing& p, const Crossing& q) {

@@ -41,7 +41,7 @@ void Loops::link(const PairMeshes& pair, std::span<const Crossing> crossings) {
         std::size_t k = 0;
         for (const std::uint32_t face : {own, across}) {
             links_[i].next[k] = nowhere;
-            links_[i].faces[k] = face == NONE ? no_faces
+            links_[i].faces[k] = face == NONE  ? no_faces
                                  : c.side == 0 ? std::uint64_t{face} << 32 | c.face
                                                : std::uint64_t{c.face} << 32 | face;
             if (face != NONE) by_faces_.emplace_back(links_[i].faces[k], 2 * i + static_cast<std::uint32_t>(k));
@@ -77,7 +77,8 @@ void Loops::walk(std::span<const Crossing> crossings, std::uint32_t begin) {
     }
     if (!closed) by = 1 - by;
     const std::uint32_t number = static_cast<std::uint32_t>(loops_.size());
-    Loop loop{static_cast<std::uint32_t>(order_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, closed, {}};
+    Loop loop{
+        static_cast<std::uint32_t>(order_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, closed, {}};
     for (;;) {
         seen_[at] = true;
         order_.push_back(at);
@@ -85,7 +86,8 @@ void Loops::walk(std::span<const Crossing> crossings, std::uint32_t begin) {
         const std::uint32_t next = links_[at].next[by];
         if (next == nowhere) break;
         const std::uint64_t faces = links_[at].faces[by];
-        segments_.push_back({number, at, next, {static_cast<std::uint32_t>(faces >> 32), static_cast<std::uint32_t>(faces)}, {}});
+        segments_.push_back(
+            {number, at, next, {static_cast<std::uint32_t>(faces >> 32), static_cast<std::uint32_t>(faces)}, {}});
         if (seen_[next]) break;
         by = leave(next, faces);
         at = next;

@@ -12,14 +12,14 @@ namespace raycontact {
 struct Loop {
     std::uint32_t first, count; ///< in Loops::order()
     std::uint32_t first_segment, segment_count;
-    bool closed;                ///< the last crossing is followed by the first
-    Vec3 area;                  ///< vector area, m^2; points the way in which a leaves b
+    bool closed; ///< the last crossing is followed by the first
+    Vec3 area;   ///< vector area, m^2; points the way in which a leaves b
 };
 
 /// Two crossings that follow each other on a loop: between them two triangles cross.
 struct LoopSegment {
     std::uint32_t loop;
-    std::uint32_t from, to;           ///< crossings
+    std::uint32_t from, to;             ///< crossings
     std::array<std::uint32_t, 2> faces; ///< of a, of b
     std::array<Vec3, 2> normals;        ///< of these, outward
 };

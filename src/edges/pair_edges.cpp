@@ -88,7 +88,7 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
     const PairMeshes pair(placed);
     crossings_.clear();
     for (std::size_t side = 0; side < 2; ++side) {
-      find_crossings(pair, side, near[side], crossings_);
+        find_crossings(pair, side, near[side], crossings_);
     }
     if (crossings_.empty()) return false;
     loops_.find(pair, crossings_);
@@ -361,9 +361,9 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
         const double cosine = dot(ea, eb), t = (cosine * dot(eb, w) - dot(ea, w)) / (sine * sine);
         point = start + std::clamp(dot(p + t * ea - start, ea), 0.0, length(whole)) * ea;
     } else {
-        // Flush edges, say: a face's normal, not one that leans a little.
-        n = way;
+        // Of flush edges, say: a face's normal.
         double best = snap;
+        n = {};
         for (const Vec3& face : {nb[0], nb[1], -1.0 * na[0], -1.0 * na[1]})
             if (dot(face, way) > best) {
                 best = dot(face, way);
@@ -431,8 +431,7 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number, const Ve
         inward = unit(inward);
         const MeshHit in = way_out(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
         if (in.face != NONE) depth = std::min(depth, in.distance);
-        if (depth > region.told)
-            add_deep(pair, piece, point, way, depth, hit);
+        if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
     };
     for (const Piece& piece : pieces_) {
         if (!piece.speaks || region_of_[piece.crossing] != number) continue;

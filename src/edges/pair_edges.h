@@ -29,10 +29,10 @@ private:
     /// A part of an edge inside the other body, from a crossing or the edge's end to the next.
     struct Piece {
         std::uint32_t side, edge;
-        std::uint32_t crossing;  ///< one at its ends
+        std::uint32_t crossing; ///< one at its ends
         std::array<Vec3, 2> ends;
-        bool through;            ///< a crossing at both ends
-        bool speaks;             ///< its edge is sharp and convex
+        bool through; ///< a crossing at both ends
+        bool speaks;  ///< its edge is sharp and convex
     };
     /// Two edges that pass each other.
     struct Passing {
@@ -84,9 +84,9 @@ private:
     std::vector<Piece> pieces_;             ///< as their edges are numbered, and along these
     std::vector<std::uint64_t> vertices_;   ///< in contact, or at an end of a piece; sorted
     std::vector<std::pair<std::uint32_t, std::uint64_t>> piece_vertices_; ///< crossing, vertex
-    std::vector<std::array<std::uint64_t, 2>> crossed_; ///< edges that are, by their vertices; sorted
-    DisjointSets sets_;                     ///< crossings, then vertices_
-    std::vector<std::uint32_t> region_of_;  ///< by crossing and vertex
+    std::vector<std::array<std::uint64_t, 2>> crossed_;                   ///< edges that are, by their vertices; sorted
+    DisjointSets sets_;                                                   ///< crossings, then vertices_
+    std::vector<std::uint32_t> region_of_;                                ///< by crossing and vertex
     std::vector<Region> regions_;
     std::vector<std::pair<std::uint32_t, Vec3>> points_, faces_; ///< by region: points, and normals of faces crossed
     std::vector<Passing> passing_;

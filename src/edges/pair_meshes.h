@@ -12,7 +12,8 @@ namespace raycontact {
 class PairMeshes {
 public:
     /// placed: a in b, b in a. Must outlive this.
-    explicit PairMeshes(const std::array<SourceMesh, 2>& placed) : a_in_b_(placed[0]), shapes_{&placed[0].source, &placed[1].source} {}
+    explicit PairMeshes(const std::array<SourceMesh, 2>& placed)
+        : a_in_b_(placed[0]), shapes_{&placed[0].source, &placed[1].source} {}
 
     const ShapeData& shape(std::size_t side) const { return *shapes_[side]; }
     double hair() const { return a_in_b_.hair; }
