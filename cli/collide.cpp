@@ -75,23 +75,29 @@ Json to_json(const Vec3& p) {
 }
 
 const char* name_of(Feature feature) {
-    constexpr const char* names[] = {"vertex", "edge", "inside"};
+    constexpr const char* names[] = {"vertex", "edges", "inside"};
     return names[static_cast<std::size_t>(feature)];
 }
 
 Json to_json(const Contact& contact) {
-    return {{"feature", name_of(contact.feature)},
-            {"vertex_body", contact.vertex_body == VertexBody::a ? "a" : "b"},
-            {"vertex", contact.vertex},
-            {"triangle", contact.triangle},
-            {"point", to_json(contact.point)},
-            {"point_a", to_json(point_on_a(contact))},
-            {"point_b", to_json(point_on_b(contact))},
-            {"normal", contact.normal},
-            {"depth", contact.depth},
-            {"ray_length", contact.ray_length},
-            {"weight", contact.weight},
-            {"key", contact_key(contact)}};
+    Json json{{"feature", name_of(contact.feature)},
+              {"point", to_json(contact.point)},
+              {"point_a", to_json(point_on_a(contact))},
+              {"point_b", to_json(point_on_b(contact))},
+              {"normal", contact.normal},
+              {"depth", contact.depth},
+              {"ray_length", contact.ray_length},
+              {"weight", contact.weight},
+              {"key", contact_key(contact)}};
+    if (contact.feature == Feature::edges) {
+        json["edge_a"] = contact.edge_a();
+        json["edge_b"] = contact.edge_b();
+    } else {
+        json["vertex_body"] = contact.vertex_body == VertexBody::a ? "a" : "b";
+        json["vertex"] = contact.vertex;
+        json["triangle"] = contact.triangle;
+    }
+    return json;
 }
 
 void print_json(std::size_t index, bool intersecting, std::span<const Contact> contacts) {

@@ -12,7 +12,7 @@ namespace raycontact::recording {
 namespace {
 
 auto ray_of(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing);
+    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
 }
 
 } // namespace

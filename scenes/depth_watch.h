@@ -24,7 +24,7 @@ public:
     std::uint32_t longest_since(std::uint32_t step) const; ///< the same, of runs that end in `step` or later
 
 private:
-    using Key = std::array<std::uint32_t, 6>; ///< body_a, body_b, vertex_body, feature, vertex, crossing
+    using Key = std::array<std::uint32_t, 6>; ///< body_a, body_b, feature, vertex_body, vertex, other
     struct Run {
         Key key;
         std::uint32_t steps;

@@ -11,7 +11,7 @@ Reference::Reference(const Work& work, Features features) {
         place(*scene, step);
         std::vector<Name>& names = names_.emplace_back();
         for (const Contact& c : scene->step(step.pairs))
-            names.push_back({c.body_a, c.body_b, c.vertex, c.crossing, c.triangle, c.vertex_body, c.feature});
+            names.push_back({c.body_a, c.body_b, c.vertex, c.triangle, c.vertex_body, c.feature});
         rays_.push_back(scene->stats().rays);
     }
 }
@@ -25,7 +25,6 @@ void Reference::compare(std::size_t step, std::span<const Contact> found, record
         contacts_[i].vertex_body = name.vertex_body;
         contacts_[i].feature = name.feature;
         contacts_[i].vertex = name.vertex;
-        contacts_[i].crossing = name.crossing;
         contacts_[i].triangle = name.triangle;
     }
     wrong.add(found, contacts_);

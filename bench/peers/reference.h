@@ -22,7 +22,7 @@ public:
 
 private:
     struct Name {
-        std::uint32_t body_a, body_b, vertex, crossing, triangle;
+        std::uint32_t body_a, body_b, vertex, triangle;
         VertexBody vertex_body;
         Feature feature;
     };

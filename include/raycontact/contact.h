@@ -11,37 +11,38 @@
 
 namespace raycontact {
 
-/// The body of the pair that the feature belongs to: the source of the ray.
+/// The body of the pair that the vertex belongs to: the source of the ray.
 enum class VertexBody : std::uint8_t { a = 0, b = 1 };
 
-/// What of the source is in contact.
+/// What is in contact.
 enum class Feature : std::uint8_t {
     vertex = 0, ///< a vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)
-    edge = 1,   ///< an end, or the middle, of a piece of an edge that lies inside the other mesh (docs/edges.md)
+    edges = 1,  ///< an edge of either body: they pass each other where the surfaces cross (docs/edges.md)
     inside = 2, ///< the whole body lies inside the other mesh; its deepest vertex stands for it
 };
 
-/// A vertex or a piece of an edge inside the other mesh (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and
-/// 3.2; edges after Knott and Pai 2003).
+/// A vertex inside the other mesh (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and 3.2), or two edges.
 struct Contact {
     std::uint32_t body_a = 0; ///< its slot, slot_of(id); body_a < body_b
     std::uint32_t body_b = 0;
-    VertexBody vertex_body = VertexBody::a; ///< whose vertex or edge it is
+    VertexBody vertex_body = VertexBody::a; ///< whose vertex it is; of edges a
     Feature feature = Feature::vertex;
     bool is_new = true; ///< the last step had no contact with this key in this pair
-    /// Of an edge: the number of the crossing at this end, or edge_start or edge_end. Of the middle of a piece: its
-    /// first crossing. Other features: 0.
-    std::uint32_t crossing = 0;
-    /// Source vertex, index of its file. Of an edge: 3 x its lowest triangle in the file + its first corner there.
-    std::uint32_t vertex = 0;
-    std::uint32_t triangle = 0;    ///< triangle of the other body that was hit, index of its file
-    Vec3 point;                    ///< the source vertex, or the end or middle of the piece; world frame, metres
+    std::uint32_t vertex = 0;      ///< of the source, index of its file; of edges: edge_a()
+    std::uint32_t triangle = 0;    ///< of the other body, that was hit, index of its file; of edges: edge_b()
+    Vec3 point;                    ///< the source vertex, or a point of a's edge; world frame, metres
     std::array<float, 3> normal{}; ///< unit, world frame, from A to B
     float depth = 0;               ///< > 0, metres along the normal (section 3.2: r . n)
     float ray_length = 0;          ///< |r|, metres from the point to the hit
-    /// Direction `weighted`: the share of the source's surface, m^2 (Shape::vertex_areas; of an edge, a sixth of the
-    /// area of its two triangles). Other directions: 1.
+    /// Direction `weighted`: the share of the source's surface, m^2 (Shape::vertex_areas; of edges, a sixth of the mean
+    /// area of their triangles, of two at each edge). Other directions: 1.
     float weight = 1;
+
+    /// Of Feature::edges: the edge of either body, 3 x its lowest triangle in the file + its first corner there.
+    std::uint32_t edge_a() const { return vertex; }
+    std::uint32_t edge_b() const { return triangle; }
+    /// LostContact::other
+    std::uint32_t other() const { return feature == Feature::edges ? triangle : 0; }
 };
 
 /// The witness points, world frame, metres: the source's own point, and the point on the other body that lies `depth`
@@ -50,10 +51,6 @@ struct Contact {
 Vec3 point_on_a(const Contact& contact);
 Vec3 point_on_b(const Contact& contact);
 
-/// Contact::crossing of an edge: the number of the crossing at which the piece ends, counted from the edge's first
-/// corner; or, where it ends at a vertex, one of these.
-inline constexpr std::uint32_t edge_start = 0xfffffffeu, edge_end = 0xffffffffu;
-
 /// A contact that the last step had and this step does not have. Read it before the next add(), which may give the slot
 /// of a removed body to another body.
 struct LostContact {
@@ -61,12 +58,12 @@ struct LostContact {
     std::uint32_t body_b = 0;
     VertexBody vertex_body = VertexBody::a;
     Feature feature = Feature::vertex;
-    std::uint32_t crossing = 0;
     std::uint32_t vertex = 0; ///< as Contact::vertex
+    std::uint32_t other = 0;  ///< of edges that of b, as Contact::triangle; of other features 0
 };
 
 /// Names the same physical contact from step to step, unique within its pair: source body ('a' or 'b'), feature type
-/// (0 vertex, 1 edge, 2 inside), feature index (8 hex digits) and, for an edge, its crossing (8 hex digits).
+/// (0 vertex, 1 edges, 2 inside), the vertex or the edge of a (8 hex digits) and, of edges, that of b (8 hex digits).
 std::string contact_key(const Contact& contact);
 std::string contact_key(const LostContact& contact);
 

@@ -219,7 +219,7 @@ void StackWorld::print_points(std::FILE* out) const {
             if (bullet::CollisionDispatcher::is_ours(p)) {
                 const bullet::PointKey key = bullet::CollisionDispatcher::key(p);
                 std::fprintf(out, " key %d:%d:%d:%u", key.vertex_body, static_cast<int>(key.feature), key.vertex,
-                             key.crossing);
+                             key.other);
             }
             std::fprintf(out, "\n");
         }

@@ -13,11 +13,14 @@ namespace {
 // What contacts are sorted by, in three words.
 using Order = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
 
-template <class Key>
-Order order_of(const Key& key) {
+Order order_of(const LostContact& key) {
     const std::uint64_t source =
-        static_cast<std::uint64_t>(key.vertex_body) << 8 | static_cast<std::uint8_t>(key.feature);
-    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.crossing};
+        static_cast<std::uint64_t>(key.feature) << 8 | static_cast<std::uint8_t>(key.vertex_body);
+    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.other};
+}
+
+LostContact key_of(const Contact& c) {
+    return {c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.other()};
 }
 
 } // namespace
@@ -27,7 +30,7 @@ void Changes::mark(std::span<Contact> contacts) {
     new_count_ = 0;
     std::size_t old = 0;
     for (Contact& contact : contacts) {
-        const Order order = order_of(contact);
+        const Order order = order_of(key_of(contact));
         while (old < previous_.size() && order_of(previous_[old]) < order) lost_.push_back(previous_[old++]);
         contact.is_new = old == previous_.size() || order_of(previous_[old]) != order;
         if (contact.is_new)
@@ -39,9 +42,7 @@ void Changes::mark(std::span<Contact> contacts) {
     previous_.resize(contacts.size());
     give_back(previous_);
     give_back(lost_);
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-        previous_[i] = {contacts[i].body_a,  contacts[i].body_b,   contacts[i].vertex_body,
-                        contacts[i].feature, contacts[i].crossing, contacts[i].vertex};
+    for (std::size_t i = 0; i < contacts.size(); ++i) previous_[i] = key_of(contacts[i]);
 }
 
 } // namespace raycontact

@@ -32,15 +32,15 @@ Vec3 point_on_b(const Contact& contact) {
 
 std::string contact_key(const Contact& contact) {
     return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.feature,
-                                   contact.crossing, contact.vertex});
+                                   contact.vertex, contact.other()});
 }
 
 std::string contact_key(const LostContact& contact) {
     char text[19];
     const int length = std::snprintf(text, sizeof text, "%c%u%08x", contact.vertex_body == VertexBody::a ? 'a' : 'b',
                                      static_cast<unsigned>(contact.feature), contact.vertex);
-    if (contact.feature == Feature::edge)
-        std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), "%08x", contact.crossing);
+    if (contact.feature == Feature::edges)
+        std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), "%08x", contact.other);
     return text;
 }
 

@@ -40,7 +40,6 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.body_b = side.pair.second;
     contact.vertex_body = side.from_a ? VertexBody::a : VertexBody::b;
     contact.feature = Feature::vertex; // with edges the place may have held one of theirs
-    contact.crossing = 0;
     contact.vertex = shape.mesh.vertex_index[local.vertex];
     contact.triangle = side.target.mesh.triangle_index[local.triangle];
     const Vec3 turned = rotate(side.source_pose, shape.mesh.vertices[local.vertex]);

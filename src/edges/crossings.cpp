@@ -8,38 +8,51 @@ namespace raycontact {
 
 namespace {
 
-// On which side of the directed edge p-q of the target the line passes. Exactly 0 is left to one of the two triangles
-// at the edge: so a surface crossed from one side is crossed once, and a fold touched by the line twice or not at all.
-bool is_within(double volume, std::uint32_t p, std::uint32_t q, bool leaves) {
-    if (volume != 0) return (volume > 0) == leaves;
-    return (p < q) == leaves;
+struct Corner {
+    std::uint32_t vertex;
+    Vec3 point;
+};
+
+// On which side the line p-q of a passes the line r-s of b. Each pair of edges is computed in one order.
+bool passes_left(const Corner& p, const Corner& q, const Corner& r, const Corner& s) {
+    const bool turned = (p.vertex > q.vertex) != (r.vertex > s.vertex);
+    const auto [from, to] = p.vertex > q.vertex ? std::pair(&q, &p) : std::pair(&p, &q);
+    const auto [other_from, other_to] = r.vertex > s.vertex ? std::pair(&s, &r) : std::pair(&r, &s);
+    const double volume =
+        dot(to->point - from->point, cross(other_from->point - from->point, other_to->point - from->point));
+    return (volume >= 0) != turned;
 }
 
 } // namespace
 
-void find_crossings(const SourceMesh& placed, std::span<const NearEdge> near, std::vector<Crossing>& found) {
-    const ShapeData &source = placed.source, &target = placed.target;
+void find_crossings(const PairMeshes& pair, std::size_t side, std::span<const NearEdge> near,
+                    std::vector<Crossing>& found) {
+    const ShapeData &source = pair.shape(side), &target = pair.shape(1 - side);
     const auto begin = static_cast<std::ptrdiff_t>(found.size());
     for (std::size_t i = 0, end = 0; i < near.size(); i = end) {
         const std::uint32_t edge = near[i].edge;
         while (end < near.size() && near[end].edge == edge) ++end;
-        if (!(source.edge_span(edge / 3, edge % 3) > placed.span)) continue;
         const auto [start, stop] = ends_of(source, edge);
-        const Vec3 origin = placed.vertex(start), last = placed.vertex(stop), along = last - origin;
+        const Corner p{start, pair.vertex(side, start)}, q{stop, pair.vertex(side, stop)};
         for (; i < end; ++i) {
             const std::uint32_t face = near[i].face;
-            const auto& index = target.mesh.triangles[face];
-            const Vec3 v0 = target.point(index[0]), v1 = target.point(index[1]), v2 = target.point(index[2]);
-            const Vec3 a = v0 - origin, b = v1 - origin, c = v2 - origin;
-            const Vec3 normal = cross(v1 - v0, v2 - v0);
-            const double from = dot(origin - v0, normal), to = dot(last - v0, normal);
-            if ((from < 0) == (to < 0)) continue;
-            const bool leaves = from < 0;
-            if (!is_within(dot(along, cross(b, c)), index[1], index[2], leaves)
-                || !is_within(dot(along, cross(c, a)), index[2], index[0], leaves)
-                || !is_within(dot(along, cross(a, b)), index[0], index[1], leaves))
-                continue;
-            found.push_back({edge, face, from / (from - to), leaves});
+            std::array<Corner, 3> c;
+            for (std::size_t k = 0; k < 3; ++k) {
+                c[k].vertex = target.mesh.triangles[face][k];
+                c[k].point = pair.vertex(1 - side, c[k].vertex);
+            }
+            const Vec3 normal = cross(c[1].point - c[0].point, c[2].point - c[0].point);
+            const double from = dot(p.point - c[0].point, normal), to = dot(q.point - c[0].point, normal);
+            if ((from >= 0) == (to >= 0)) continue;
+            std::array<bool, 3> left;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Corner &r = c[k], &s = c[(k + 1) % 3];
+                left[k] = side == 0 ? passes_left(p, q, r, s) : passes_left(r, s, p, q);
+            }
+            if (left[0] != left[1] || left[1] != left[2]) continue;
+            const double at = from / (from - to);
+            found.push_back(
+                {static_cast<std::uint32_t>(side), edge, face, at, from < 0, p.point + at * (q.point - p.point)});
         }
     }
     std::sort(found.begin() + begin, found.end(), [](const Crossing& p, const Crossing& q) {

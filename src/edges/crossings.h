@@ -2,31 +2,27 @@
 #pragma once
 
 #include "edges/near_edges.h"
+#include "edges/pair_meshes.h"
 
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
-/// Where a sharp edge of the source passes through a face of the target.
+/// Where an edge of one body pierces a face of the other.
 struct Crossing {
-    std::uint32_t edge; ///< of the source: 3 x its lowest triangle + its first corner
-    std::uint32_t face; ///< of the target
+    std::uint32_t side; ///< whose edge it is: 0 a, 1 b
+    std::uint32_t edge; ///< 3 x its lowest triangle + its first corner
+    std::uint32_t face; ///< of the other body
     double at;          ///< along the edge, from 0 at its first corner to 1
-    bool leaves;        ///< the edge leaves the target here
+    bool leaves;        ///< the edge comes out of the other body here
+    Vec3 point;         ///< frame of PairMeshes
 };
 
-/// Both ends of an edge, as SourceMesh::vertex() places them.
-struct EdgeEnds {
-    std::uint32_t start, end; ///< vertices
-};
-inline EdgeEnds ends_of(const ShapeData& shape, std::uint32_t edge) {
-    const auto& corners = shape.mesh.triangles[edge / 3];
-    return {corners[edge % 3], corners[(edge + 1) % 3]};
-}
-
-/// The crossings of the source's sharp edges with the target's faces, sorted by edge, place and face. near: sorted,
-/// with every edge that could cross a face.
-void find_crossings(const SourceMesh& placed, std::span<const NearEdge> near, std::vector<Crossing>& found);
+/// The crossings of one body's edges with the other's faces, added in the order of edge, place and face. near: sorted,
+/// with every edge that could cross a face. The side on which two edges pass each other has one sign, whichever body's
+/// edge asks: so two triangles that meet have two crossings, and the curves in which surfaces cross close.
+void find_crossings(const PairMeshes& pair, std::size_t side, std::span<const NearEdge> near,
+                    std::vector<Crossing>& found);
 
 } // namespace raycontact

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t pairs_in_block = 32, most_work = 64;
 
 auto order_of(const Contact& c) {
-    return std::tuple(c.vertex_body, c.feature, c.vertex, c.crossing);
+    return std::tuple(c.feature, c.vertex_body, c.vertex, c.triangle);
 }
 
 double area_of(const ShapeData& shape, std::uint32_t face) {
@@ -21,10 +21,20 @@ double area_of(const ShapeData& shape, std::uint32_t face) {
     return 0.5 * length(cross(shape.corner(face, 1) - a, shape.corner(face, 2) - a));
 }
 
-float weight_of(const ShapeData& source, const FeatureContact& found) {
+// Of an edge, the area of its faces.
+double area_at(const ShapeData& shape, std::uint32_t edge) {
+    const auto [own, across] = faces_of(shape, edge);
+    return area_of(shape, own) + (across == NONE ? 0 : area_of(shape, across));
+}
+
+float weight_of(const ShapeData& source, const ShapeData& target, const FeatureContact& found) {
     if (found.feature == Feature::inside) return source.vertex_areas[found.index];
-    const std::uint32_t across = source.neighbours[found.index / 3][found.index % 3];
-    return static_cast<float>((area_of(source, found.index / 3) + (across == NONE ? 0 : area_of(source, across))) / 6);
+    return static_cast<float>((area_at(source, found.index) + area_at(target, found.other)) / 12);
+}
+
+// As the file counts it.
+std::uint32_t file_edge(const ShapeData& shape, std::uint32_t edge) {
+    return 3 * shape.mesh.triangle_index[edge / 3] + edge % 3;
 }
 
 // Whether either body has a part inside the other. Of bodies whose surfaces do not cross.
@@ -39,27 +49,25 @@ bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureCon
     return any;
 }
 
-// Those that the rule asks, sorted.
-void choose(const SourceMesh& placed, std::span<const kernels::NearEdge> near, std::vector<NearEdge>& chosen) {
-    chosen.clear();
-    for (const auto& [edge, face, pair] : near)
-        if ((placed.source.sharp_edges[edge / 3] >> edge % 3 & 1u) != 0) chosen.push_back({edge, face});
-    std::sort(chosen.begin(), chosen.end(),
-              [](const NearEdge& p, const NearEdge& q) { return std::tie(p.edge, p.face) < std::tie(q.edge, q.face); });
+void sort_near(std::span<const kernels::NearEdge> near, std::vector<NearEdge>& sorted) {
+    sorted.clear();
+    for (const auto& [edge, face, pair] : near) sorted.push_back({edge, face});
+    std::sort(sorted.begin(), sorted.end(), [](const NearEdge& p, const NearEdge& q) {
+        return std::tie(p.edge, p.face) < std::tie(q.edge, q.face);
+    });
 }
 
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
               Direction direction) {
-    const ShapeData& shape = source.shape->data();
+    const ShapeData &shape = source.shape->data(), &other = target.shape->data();
+    const bool edges = found.feature == Feature::edges;
     Contact contact;
     contact.body_a = pair.first;
     contact.body_b = pair.second;
     contact.vertex_body = found.source;
     contact.feature = found.feature;
-    contact.crossing = found.crossing;
-    contact.vertex = found.feature == Feature::edge ? 3 * shape.mesh.triangle_index[found.index / 3] + found.index % 3
-                                                    : shape.mesh.vertex_index[found.index];
-    contact.triangle = target.shape->data().mesh.triangle_index[found.face];
+    contact.vertex = edges ? file_edge(shape, found.index) : shape.mesh.vertex_index[found.index];
+    contact.triangle = edges ? file_edge(other, found.other) : other.mesh.triangle_index[found.other];
     contact.point = transform_point(target.centred, found.point);
     const Vec3 out = transform_point({target.centred.rotation, {}}, found.normal);
     const double sign = found.source == VertexBody::a ? -1 : 1;
@@ -67,7 +75,7 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
                       static_cast<float>(sign * out.z)};
     contact.depth = static_cast<float>(found.depth);
     contact.ray_length = contact.depth;
-    if (direction == Direction::weighted) contact.weight = weight_of(shape, found);
+    if (direction == Direction::weighted) contact.weight = weight_of(shape, other, found);
     return contact;
 }
 
@@ -118,11 +126,11 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, st
         lists_.move(i, pair, *motion);
         if (!in_contact && lists_.is_apart(i)) return;
     }
-    const std::array<SourceMesh, 2> placed{SourceMesh(a, b, in_contact), SourceMesh(b, a, in_contact)};
+    const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
     NearEdges near;
     if (question.near != nullptr) {
         for (std::size_t side = 0; side < 2; ++side) {
-            choose(placed[side], question.near->of(2 * i + side), work.near[side]);
+            sort_near(question.near->of(2 * i + side), work.near[side]);
             near[side] = work.near[side];
         }
     } else if (motion != nullptr) {

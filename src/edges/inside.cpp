@@ -59,7 +59,7 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
         const double depth = length(out);
         const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : normal_of(target, nearest.face);
         if (!(depth > 0)) continue;
-        deepest = {source, Feature::inside, v, 0, nearest.face, p, normal, depth};
+        deepest = {source, Feature::inside, v, nearest.face, p, normal, depth};
     }
     return deepest;
 }

@@ -54,7 +54,7 @@ void add(const SourceMesh& placed, std::span<const TrianglePair> near, bool sour
             own = next;
             asked = 0;
             for (std::size_t k = 0; k < 3; ++k)
-                if ((source.sharp_edges[own] >> k & 1u) != 0 && source.edge_span(own, k) > placed.span)
+                if (const std::uint32_t across = source.neighbours[own][k]; across == NONE || across > own)
                     asked |= 1u << k;
             for (std::size_t k = 0; k < 3 && asked != 0; ++k) corners[k] = placed.vertex(source.mesh.triangles[own][k]);
         }
@@ -89,12 +89,12 @@ std::size_t NearSearch::find(const std::array<SourceMesh, 2>& placed, double mar
     find_near_triangles(placed[0], margin, triangles_);
     // More than what double rounds.
     const double apart =
-        margin + placed[0].hair
+        margin + 3 * placed[0].hair
         + 1e-12 * (placed[0].source.reach + placed[0].target.reach + length(placed[0].pose.translation));
     std::size_t first = 0;
     for (std::size_t side = 0; side < 2; ++side) {
         const std::size_t before = found.size();
-        if (placed[side].target.header.closed != 0) add(placed[side], triangles_, side == 0, apart, found);
+        add(placed[side], triangles_, side == 0, apart, found);
         if (side == 0) first = found.size() - before;
     }
     return first;

@@ -10,7 +10,7 @@
 
 namespace raycontact {
 
-/// A sharp edge of the source that could cross a face of the target.
+/// An edge of the source that could cross a face of the target.
 struct NearEdge {
     std::uint32_t edge; ///< 3 x its lowest triangle + its first corner
     std::uint32_t face;

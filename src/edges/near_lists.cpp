@@ -69,7 +69,7 @@ NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const P
                           Slice& slice) {
     List& list = table_.state(i);
     Slack& slack = table_.hot(i);
-    const bool serves = list.known && list.span <= placed[0].span;
+    const bool serves = list.known;
     const auto kept = [&]() -> NearEdges {
         const auto all = std::span<const NearEdge>(lists_).subspan(list.first, list.count());
         return {all.first(list.counts[0]), all.subspan(list.counts[0])};
@@ -95,7 +95,6 @@ NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const P
     slack = {list.known ? list.margin : -1, false};
     if (list.known) {
         list.reference = now;
-        list.span = placed[0].span;
         for (std::size_t side = 0; side < 2; ++side) list.counts[side] = static_cast<std::uint32_t>(near[side].size());
         slice.fresh_.push_back({i, first});
     }
@@ -104,8 +103,7 @@ NearEdges NearLists::near(std::size_t i, const SlotPair& pair, std::span<const P
 
 void NearLists::found_apart(std::size_t i) {
     const List& list = table_.state(i);
-    // Edges that were not asked say nothing.
-    table_.hot(i).apart = list.known && list.count() == 0 && list.span == 0;
+    table_.hot(i).apart = list.known && list.count() == 0;
 }
 
 void NearLists::keep(const Slice& slice) {

@@ -66,7 +66,6 @@ private:
     struct List {
         PairPlace reference; ///< at which it was made
         double margin = 0;   ///< metres beyond what is needed
-        float span = 0;      ///< SourceMesh::span of its search
         bool known = false;  ///< it was made
         std::uint32_t first = 0, capacity = 0;
         std::array<std::uint32_t, 2> counts{}; ///< of edges of a, of b

@@ -23,7 +23,7 @@ void find_near_triangles(const SourceMesh& first_to_second, double margin, std::
     for (std::size_t i = 0; i < 9; ++i) trees.rotation[i] = static_cast<float>(placed.pose.rotation[i]);
     const Vec3& t = placed.pose.translation;
     for (std::size_t i = 0; i < 3; ++i) trees.translation[i] = static_cast<float>(axis(t, i));
-    trees.span = placed.span;
+    trees.span = -1; // every triangle's edges are asked
     // Covers the hair of both, and the rounding of floats.
     trees.apart = static_cast<float>(margin + 2.1 * placed.hair + 2e-6 * (first.reach + second.reach + length(t)));
     std::array<TrianglePair, 256> pairs;

@@ -6,52 +6,78 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace raycontact {
 
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-// Ends are pulled into their piece by this part of the smaller body, so that a ray from there starts inside.
-constexpr double pull = 1e-3, most_pull = 0.01;
-// An end beside vertices in contact is a contact from this part of their depth on.
+// A contact counts beside others of its region from this part of their depth on.
 constexpr double comparable = 0.5;
-// Depths are equal if they differ by less: what was equal before vertices were moved by a hair may differ by two.
-constexpr double few_hairs = 3;
-// Of faces equally deep the one that looks most this way decides: of two that are not parallel, always the same.
-constexpr Vec3 preferred{0.31, 0.53, 0.79};
-// Of a larger region so many points stand for all.
-constexpr std::size_t most_points = 48;
+// The cross product of two edges is their normal if they are less parallel than this and it does not leave the arc
+// between the normals of either edge's faces by more than this, radians.
+constexpr double least_sine = 0.05, arc = 0.1;
+// ... and is no more than 60 degrees from where the loop points. Otherwise a face's normal serves, if it is no more
+// than 37 degrees from there.
+constexpr double same_way = 0.5, snap = 0.8;
+// Faces of the two bodies that are nearly parallel say nothing about how thin a region is.
+constexpr double parallel = 0.98;
+// Two edges whose normal has no larger part than this along the way of their region are passed over.
+constexpr double sideways = 0.1;
+constexpr std::size_t most_faces = 64;
+// A ray from a piece begins this part of its half inside.
+constexpr double pull = 1e-3;
+constexpr int most_triangles_around = 256;
 
-// How far a point must go along a face's normal to leave the target; if it is beyond the face's plane, its distance
-// from that plane, negative. A plane may reach past its face, so a ray decides.
-double way_out(const ShapeData& target, const Vec3& point, const Vec3& normal, double height) {
-    const double flat = height - dot(point, normal);
-    if (flat <= 0) return flat;
-    const MeshHit hit = closest_hit(target, point, normal, 0, never);
-    return hit.face != NONE && hit.from_inside ? hit.distance : flat;
+Vec3 unit(const Vec3& v) {
+    const double size = length(v);
+    return size > 0 ? (1 / size) * v : Vec3{};
 }
 
-// Inward mean of the normals of an edge's faces, in the source's frame; zero for a fold.
-Vec3 inward(const ShapeData& source, std::uint32_t edge) {
-    const std::uint32_t across = source.neighbours[edge / 3][edge % 3];
-    const Vec3 n = normal_of(source, edge / 3) + (across != NONE ? normal_of(source, across) : Vec3{});
-    const double size = length(n);
-    return size > 1e-6 ? (-1 / size) * n : Vec3{};
+bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
+    return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
 }
 
-// Beside a concave edge that is inside the target, the target is inside the source.
-bool is_concave(const ShapeData& source, std::uint32_t edge) {
-    const std::uint32_t face = edge / 3, across = source.neighbours[face][edge % 3];
-    if (across == NONE) return false;
-    const auto& own = source.mesh.triangles[face];
-    const Vec3 start = source.corner(face, edge % 3), n = normal_of(source, face);
-    double highest = 0; // of the corner that is not on the edge
+// Whether the far corner of the one face lies below the other. Borders count as convex.
+bool is_convex(const ShapeData& shape, std::uint32_t edge) {
+    const auto [own, across] = faces_of(shape, edge);
+    if (across == NONE) return true;
+    const auto [start, stop] = ends_of(shape, edge);
+    const Vec3 n = normal_of(shape, own), from = shape.point(start);
+    for (const std::uint32_t v : shape.mesh.triangles[across])
+        if (v != start && v != stop && dot(shape.point(v) - from, n) > 0) return false;
+    return true;
+}
+
+// The edge of a face that is nearest to a point of its plane.
+std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32_t face, const Vec3& point) {
+    const ShapeData& shape = pair.shape(side);
+    std::size_t best = 0;
+    double least = never;
     for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = source.mesh.triangles[across][k];
-        if (v != own[edge % 3] && v != own[(edge % 3 + 1) % 3]) highest = dot(source.point(v) - start, n);
+        const Vec3 from = pair.corner(side, face, k), along = pair.corner(side, face, (k + 1) % 3) - from;
+        const double size = length(along);
+        const double away = size > 0 ? length(cross(along, point - from)) / size : length(point - from);
+        if (away < least) {
+            least = away;
+            best = k;
+        }
     }
-    return highest > 0;
+    const std::uint32_t across = shape.neighbours[face][best];
+    if (across == NONE || across > face) return 3 * face + static_cast<std::uint32_t>(best);
+    for (std::uint32_t k = 0; k < 3; ++k)
+        if (shape.neighbours[across][k] == face
+            && shape.mesh.triangles[across][(k + 1) % 3] == shape.mesh.triangles[face][best])
+            return 3 * across + k;
+    return 3 * face + static_cast<std::uint32_t>(best);
+}
+
+// By how much a unit direction leaves the arc between the normals of an edge's faces, radians.
+double beyond(const Vec3& direction, const Vec3& n, const Vec3& m) {
+    const Vec3 middle = unit(n + m);
+    const auto angle = [&](const Vec3& v) { return std::acos(std::clamp(dot(v, middle), -1.0, 1.0)); };
+    return angle(direction) - angle(n);
 }
 
 } // namespace
@@ -59,316 +85,401 @@ bool is_concave(const ShapeData& source, std::uint32_t edge) {
 bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
                      std::vector<FeatureContact>& found) {
+    const PairMeshes pair(placed);
+    crossings_.clear();
     for (std::size_t side = 0; side < 2; ++side) {
-        crossings_[side].clear();
-        find_crossings(placed[side], near[side], crossings_[side]);
+        find_crossings(pair, side, near[side], crossings_);
     }
-    if (crossings_[0].empty() && crossings_[1].empty()) return false;
-    const std::size_t before = found.size();
-    ask(placed, vertices, false, found);
-    if (found.size() == before && vertices[0].empty() && vertices[1].empty()) ask(placed, vertices, true, found);
+    if (crossings_.empty()) return false;
+    loops_.find(pair, crossings_);
+    list_vertices(vertices);
+    list_pieces(pair, placed);
+    join_regions(pair);
+    list_regions(pair);
+    pass_edges(pair);
+    const auto before = static_cast<std::ptrdiff_t>(found.size());
+    give_edges(found);
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
+        deep_.clear();
+        if (!regions_[r].is_pierced())
+            list_deep(pair, r, way_of(pair, regions_[r]));
+        else if (!regions_[r].speaks)
+            list_pierced(pair, r);
+        give_deep(found);
+    }
+    // Two edges have one contact, the deepest.
+    const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
+    std::sort(found.begin() + before, found.end(), [&](const FeatureContact& p, const FeatureContact& q) {
+        return std::tuple(edges(p), -p.depth) < std::tuple(edges(q), -q.depth);
+    });
+    found.erase(std::unique(found.begin() + before, found.end(),
+                            [&](const auto& p, const auto& q) { return edges(p) == edges(q); }),
+                found.end());
     return true;
 }
 
-void PairEdges::ask(const std::array<SourceMesh, 2>& placed,
-                    const std::array<std::span<const kernels::LocalContact>, 2>& vertices, bool concave,
-                    std::vector<FeatureContact>& found) {
-    const std::array<std::uint32_t, 2> first{0, static_cast<std::uint32_t>(crossings_[0].size())};
-    auto node = static_cast<std::uint32_t>(crossings_[0].size() + crossings_[1].size());
-    for (std::size_t side = 0; side < 2; ++side) {
-        list_vertices(placed[side], vertices[side], node, vertices_[side]);
-        list_pieces(placed[side], crossings_[side], vertices_[side], first[side], concave, pieces_[side]);
-    }
-    regions_.reset(node);
-    curves_.clear(); // a step that failed half-way left some
-    for (std::size_t side = 0; side < 2; ++side) list_curves(placed, side, first[side]);
-    join_curves(placed[0]);
-    for (std::size_t side = 0; side < 2; ++side) join_vertices(placed[side], side);
-    for (std::size_t side = 0; side < 2; ++side) give_contacts(placed[side], side, found);
-}
-
-void PairEdges::list_vertices(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
-                              std::uint32_t& node, std::vector<VertexContact>& in_contact) {
-    in_contact.clear();
-    for (const kernels::LocalContact& c : vertices)
-        in_contact.push_back({c.vertex, c.triangle, double(c.distance) * double(c.facing), placed.vertex(c.vertex), 0});
-    std::sort(in_contact.begin(), in_contact.end(),
+void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
+    in_contact_.clear();
+    for (std::size_t side = 0; side < 2; ++side)
+        for (const kernels::LocalContact& c : vertices[side])
+            in_contact_.push_back({std::uint64_t{side} << 32 | c.vertex, double(c.distance) * double(c.facing)});
+    std::sort(in_contact_.begin(), in_contact_.end(),
               [](const VertexContact& p, const VertexContact& q) { return p.vertex < q.vertex; });
-    for (VertexContact& vertex_contact : in_contact) vertex_contact.region = node++;
 }
 
-void PairEdges::list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const VertexContact> in_contact, std::uint32_t first_node, bool concave,
-                            std::vector<Piece>& pieces) {
-    pieces.clear();
-    const auto contact_at = [&](std::uint32_t vertex) -> const VertexContact* {
-        const auto at = std::lower_bound(in_contact.begin(), in_contact.end(), vertex,
-                                         [](const VertexContact& s, std::uint32_t v) { return s.vertex < v; });
-        return at != in_contact.end() && at->vertex == vertex ? &*at : nullptr;
-    };
-    for (std::size_t begin = 0, end = 0; begin < crossings.size(); begin = end) {
-        const std::uint32_t edge = crossings[begin].edge;
-        while (end < crossings.size() && crossings[end].edge == edge) ++end;
-        if (!concave && is_concave(placed.source, edge)) continue;
-        const std::span<const Crossing> own = crossings.subspan(begin, end - begin);
-        const auto [start, stop] = ends_of(placed.source, edge);
-        const Vec3 origin = placed.vertex(start), along = placed.vertex(stop) - origin;
-        const double most = std::min(most_pull, pull * placed.size / length(along));
+void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh, 2>& placed) {
+    pieces_.clear();
+    piece_vertices_.clear();
+    crossed_.clear();
+    for (std::uint32_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
+        const std::uint32_t side = crossings_[begin].side, edge = crossings_[begin].edge;
+        while (end < crossings_.size() && crossings_[end].side == side && crossings_[end].edge == edge) ++end;
+        const auto [start, stop] = ends_of(pair.shape(side), edge);
+        const std::uint64_t of_side = std::uint64_t{side} << 32;
+        crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
+        if (placed[side].target.header.closed == 0) continue; // an open mesh has no inside
+        const bool speaks = is_sharp(pair.shape(side), edge) && is_convex(pair.shape(side), edge);
         // The piece before crossing k, if it is inside.
-        for (std::size_t k = 0; k <= own.size(); ++k) {
-            const bool enters = k > 0, leaves = k < own.size();
-            if ((enters && own[k - 1].leaves) || (leaves && !own[k].leaves)) continue;
-            const double p = enters ? own[k - 1].at : 0, q = leaves ? own[k].at : 1;
-            if (q <= p) continue;
-            const double by = std::min(most, (q - p) / 4);
-            Piece piece{edge, first_node + static_cast<std::uint32_t>(begin + (leaves ? k : k - 1)), {}, {NONE, NONE}};
-            if (enters) {
-                piece.faces[0] = own[k - 1].face;
-                piece.ends[0] = {origin + (p + by) * along, NONE, static_cast<std::uint32_t>(k - 1), nullptr};
-            } else {
-                piece.ends[0] = {origin, start, edge_start, contact_at(start)};
+        for (std::uint32_t k = begin; k <= end; ++k) {
+            const bool enters = k > begin, leaves = k < end;
+            if ((enters && crossings_[k - 1].leaves) || (leaves && !crossings_[k].leaves)) continue;
+            Piece piece{side, edge, leaves ? k : k - 1, {}, enters && leaves, speaks};
+            for (std::size_t e = 0; e < 2; ++e) {
+                if (e == 0 ? enters : leaves) {
+                    piece.ends[e] = crossings_[e == 0 ? k - 1 : k].point;
+                } else {
+                    const std::uint32_t vertex = e == 0 ? start : stop;
+                    piece.ends[e] = pair.vertex(side, vertex);
+                    piece_vertices_.emplace_back(piece.crossing, of_side | vertex);
+                }
             }
-            if (leaves) {
-                piece.faces[1] = own[k].face;
-                piece.ends[1] = {origin + (q - by) * along, NONE, static_cast<std::uint32_t>(k), nullptr};
-            } else {
-                piece.ends[1] = {origin + along, stop, edge_end, contact_at(stop)};
+            pieces_.push_back(piece);
+        }
+    }
+    std::sort(crossed_.begin(), crossed_.end());
+}
+
+std::uint32_t PairEdges::node_of(std::uint64_t vertex) const {
+    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), vertex);
+    if (at == vertices_.end() || *at != vertex) return NONE;
+    return static_cast<std::uint32_t>(crossings_.size() + std::size_t(at - vertices_.begin()));
+}
+
+void PairEdges::join_regions(const PairMeshes& pair) {
+    vertices_.clear();
+    for (const VertexContact& v : in_contact_) vertices_.push_back(v.vertex);
+    for (const auto& [crossing, vertex] : piece_vertices_) vertices_.push_back(vertex);
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    sets_.reset(crossings_.size() + vertices_.size());
+    for (const LoopSegment& s : loops_.segments()) sets_.join(s.from, s.to);
+    for (const Piece& piece : pieces_)
+        if (piece.through) sets_.join(piece.crossing - 1, piece.crossing);
+    for (const auto& [crossing, vertex] : piece_vertices_) sets_.join(crossing, node_of(vertex));
+    join_vertices(pair);
+}
+
+// Vertices in contact with their neighbours, over edges that stay in the other body.
+void PairEdges::join_vertices(const PairMeshes& pair) {
+    for (const VertexContact& contact : in_contact_) {
+        const std::size_t side = contact.vertex >> 32;
+        const auto own = static_cast<std::uint32_t>(contact.vertex);
+        const ShapeData& shape = pair.shape(side);
+        const auto is_in_contact = [this](std::uint64_t vertex) {
+            const auto at = std::lower_bound(in_contact_.begin(), in_contact_.end(), vertex,
+                                             [](const VertexContact& c, std::uint64_t v) { return c.vertex < v; });
+            return at != in_contact_.end() && at->vertex == vertex;
+        };
+        const auto join = [&](std::uint32_t other) {
+            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
+            const std::array<std::uint64_t, 2> edge{std::min(vertex, contact.vertex), std::max(vertex, contact.vertex)};
+            if (is_in_contact(vertex) && !std::binary_search(crossed_.begin(), crossed_.end(), edge))
+                sets_.join(node_of(vertex), node_of(contact.vertex));
+        };
+        // Around the vertex; where a border ends that, the other way round, too.
+        const std::uint32_t begin = shape.vertex_triangle[own];
+        std::uint32_t t = begin;
+        for (const std::size_t way : {0u, 2u}) {
+            for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
+                const auto& corners = shape.mesh.triangles[t];
+                const std::size_t c = corners[0] == own ? 0 : corners[1] == own ? 1 : 2;
+                join(corners[(c + 1) % 3]);
+                join(corners[(c + 2) % 3]);
+                t = shape.neighbours[t][(c + way) % 3];
+                if (t == begin) break;
             }
-            pieces.push_back(piece);
+            if (t != NONE) break;
+            t = begin;
         }
     }
 }
 
-void PairEdges::give_contacts(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found) {
+void PairEdges::list_regions(const PairMeshes& pair) {
+    regions_.clear();
     points_.clear();
-    deepest_.clear();
-    extents_.clear();
-    edge_contacts_.clear();
-    choices_.clear();
-    for (VertexContact& vertex_contact : vertices_[side]) {
-        vertex_contact.region = regions_.of(vertex_contact.region);
-        points_.push_back({vertex_contact.region, static_cast<std::uint32_t>(points_.size()), vertex_contact.point});
-        deepest_.push_back(&vertex_contact);
+    faces_.clear();
+    region_of_.assign(crossings_.size() + vertices_.size(), NONE);
+    for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
+        const std::uint32_t root = sets_.of(i); // the lowest, so seen already
+        if (root == i) {
+            region_of_[i] = static_cast<std::uint32_t>(regions_.size());
+            regions_.emplace_back();
+        } else {
+            region_of_[i] = region_of_[root];
+        }
     }
-    for (Piece& piece : pieces_[side]) {
-        piece.region = regions_.of(piece.region);
-        for (const End& end : piece.ends)
-            if (end.vertex_contact == nullptr)
-                points_.push_back({piece.region, static_cast<std::uint32_t>(points_.size()), end.point});
+    for (const Loop& loop : loops_.loops()) {
+        Region& region = regions_[region_of_[loops_.order()[loop.first]]];
+        region.area = region.area + loop.area;
+        region.area_sum += length(loop.area);
     }
-    std::sort(points_.begin(), points_.end(), [](const RegionPoint& p, const RegionPoint& q) {
-        return std::pair(p.region, p.number) < std::pair(q.region, q.number);
-    });
-    last_extent_.assign(points_.size(), NONE);
-    std::sort(deepest_.begin(), deepest_.end(), [](const VertexContact* p, const VertexContact* q) {
-        if (p->region != q->region) return p->region < q->region;
-        return p->depth != q->depth ? p->depth > q->depth : p->vertex < q->vertex;
-    });
-    for (const Piece& piece : pieces_[side]) choose(placed, piece);
-    std::sort(choices_.begin(), choices_.end(), [](const Choice& p, const Choice& q) {
-        return std::pair(p.piece->region, p.piece) < std::pair(q.piece->region, q.piece);
-    });
-    for (std::size_t begin = 0, end = 0; begin < choices_.size(); begin = end) {
-        while (end < choices_.size() && choices_[end].piece->region == choices_[begin].piece->region) ++end;
-        agree(placed, std::span(choices_).subspan(begin, end - begin));
+    for (std::uint32_t i = 0; i < crossings_.size(); ++i) points_.emplace_back(region_of_[i], crossings_[i].point);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+        points_.emplace_back(region_of_[crossings_.size() + i],
+                             pair.vertex(vertices_[i] >> 32, static_cast<std::uint32_t>(vertices_[i])));
+    for (const VertexContact& c : in_contact_) {
+        Region& region = regions_[region_of_[node_of(c.vertex)]];
+        region.deepest = std::max(region.deepest, c.depth);
+        region.told = region.deepest;
+        region.speaks = true;
     }
-    for (const Choice& choice : choices_) give_contacts(placed.target, static_cast<VertexBody>(side), choice, found);
-    // Several edges may have a contact at one vertex: the lowest counts.
-    std::sort(edge_contacts_.begin(), edge_contacts_.end(), [](const auto& p, const auto& q) {
-        return p.first != q.first ? p.first < q.first : p.second.index < q.second.index;
-    });
-    for (std::size_t i = 0; i < edge_contacts_.size(); ++i)
-        if (i == 0 || edge_contacts_[i].first != edge_contacts_[i - 1].first) found.push_back(edge_contacts_[i].second);
+    for (const LoopSegment& s : loops_.segments()) {
+        if (dot(s.normals[0], s.normals[1]) > parallel) continue;
+        faces_.emplace_back(region_of_[s.from], s.normals[1]);
+        faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
+    }
+    const auto by_region = [](const auto& p, const auto& q) { return p.first < q.first; };
+    std::stable_sort(points_.begin(), points_.end(), by_region);
+    std::stable_sort(faces_.begin(), faces_.end(), by_region);
+    std::uint32_t point = 0, face = 0;
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
+        Region& region = regions_[r];
+        region.first_point = point;
+        while (point < points_.size() && points_[point].first == r) ++point;
+        region.end_point = point;
+        region.first_face = face;
+        while (face < faces_.size() && faces_[face].first == r) ++face;
+        region.end_face = face;
+    }
 }
 
-PairEdges::Candidate PairEdges::candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face) {
-    Candidate candidate{face, normal_of(placed.target, face), 0, {}};
-    candidate.height = dot(placed.target.corner(face, 0), candidate.normal);
-    for (std::size_t k = 0; k < 2; ++k) {
-        const Vec3& end = piece.ends[k].point;
-        // Just below the face that it crosses the plane is the face.
-        candidate.depths[k] = piece.faces[k] == face ? candidate.height - dot(end, candidate.normal)
-                                                     : way_out(placed.target, end, candidate.normal, candidate.height);
+PairEdges::Range PairEdges::range(const Region& region, const Vec3& normal) const {
+    Range range{never, -never};
+    for (std::uint32_t i = region.first_point; i < region.end_point; ++i) {
+        const double at = dot(points_[i].second, normal);
+        range.low = std::min(range.low, at);
+        range.high = std::max(range.high, at);
     }
-    return candidate;
+    return range;
 }
 
-void PairEdges::choose(const SourceMesh& placed, const Piece& piece) {
-    const ShapeData& target = placed.target;
-    for (std::size_t k = 0; k < 2; ++k) {
-        const VertexContact* vertex_contact = piece.ends[k].vertex_contact;
-        if (vertex_contact == nullptr) continue;
-        // On a fine mesh nearly every piece begins at a vertex in contact and leaves through the border of the contact:
-        // it gives none.
-        const Vec3 normal = normal_of(target, vertex_contact->face);
-        if (dot(target.corner(vertex_contact->face, 0) - piece.ends[1 - k].point, normal)
-            < comparable * vertex_contact->depth)
-            return;
-    }
+// How thin a region is along a normal of a face that its loops cross.
+double PairEdges::thinnest(Region& region) const {
+    if (region.thinnest >= 0) return region.thinnest;
+    region.thinnest = never;
+    for (std::uint32_t i = region.first_face; i < region.end_face; ++i)
+        region.thinnest = std::min(region.thinnest, range(region, faces_[i].second).extent());
+    return region.thinnest;
+}
 
-    std::array<Candidate, 5> candidates;
-    std::size_t count = 0;
-    const auto add = [&](std::uint32_t face) {
-        for (std::size_t i = 0; i < count; ++i)
-            if (candidates[i].face == face) return;
-        const Vec3 normal = normal_of(target, face);
-        const double height = dot(target.corner(face, 0), normal);
-        for (std::size_t i = 0; i < count; ++i) // the other triangle of a flat face
-            if (dot(candidates[i].normal, normal) > 1 - 1e-12
-                && std::fabs(candidates[i].height - height) < 1e-9 * target.diagonal)
-                return;
-        candidates[count] = candidate_of(placed, piece, face);
-        if (candidates[count].deeper() > 0) ++count;
+// The way in which a region's a leaves b, of regions that are not pierced.
+const Vec3& PairEdges::way_of(const PairMeshes& pair, Region& region) const {
+    if (region.way == Vec3{}) region.way = find_way(pair, region);
+    return region.way;
+}
+
+Vec3 PairEdges::find_way(const PairMeshes& pair, Region& region) const {
+    const Vec3 way = unit(region.area);
+    const double thin = thinnest(region);
+    if (!(range(region, way).extent() > 2 * thin + 10 * pair.hair())) return way;
+    Vec3 by{};
+    double best = -never;
+    for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
+        const Vec3& n = faces_[i].second;
+        if (dot(n, way) > best && range(region, n).extent() <= 1.1 * thin + pair.hair()) {
+            best = dot(n, way);
+            by = n;
+        }
+    }
+    return by;
+}
+
+void PairEdges::pass_edges(const PairMeshes& pair) {
+    passing_.clear();
+    for (const Loop& loop : loops_.loops()) {
+        // Edges within a flat face are passed over.
+        std::uint32_t first = NONE, last = NONE;
+        const auto visit = [&](std::uint32_t c) {
+            const Crossing& now = crossings_[c];
+            if (last != NONE && crossings_[last].side != now.side)
+                pass(pair, loop, now.side == 0 ? c : last, now.side == 0 ? last : c);
+            last = c;
+        };
+        for (std::uint32_t i = 0; i < loop.count; ++i) {
+            const std::uint32_t c = loops_.order()[loop.first + i];
+            if (!is_sharp(pair.shape(crossings_[c].side), crossings_[c].edge)) continue;
+            if (first == NONE) first = c;
+            visit(c);
+        }
+        if (loop.closed && first != NONE && first != last) visit(first);
+    }
+}
+
+void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b) {
+    const Crossing &x = crossings_[of_a], &y = crossings_[of_b];
+    const std::uint32_t number = region_of_[of_a];
+    Region& region = regions_[number];
+    if (region.is_pierced()) return;
+    const double least = comparable * region.deepest;
+    const Vec3 &p = x.point, &q = y.point;
+    if (!(length(q - p) >= least)) return;
+    const ShapeData &a = pair.shape(0), &b = pair.shape(1);
+    if (!is_convex(a, x.edge) || !is_convex(b, y.edge)) return;
+    const Vec3 way = unit(loop.area);
+    const auto normals = [&](std::size_t side, std::uint32_t edge) {
+        const auto [own, across] = faces_of(pair.shape(side), edge);
+        const Vec3 n = pair.normal(side, own);
+        return std::array{n, across == NONE ? n : pair.normal(side, across)};
     };
-    for (const std::uint32_t face : piece.faces)
-        if (face != NONE) add(face);
-    const Vec3 own = inward(placed.source, piece.edge), in = placed.turned(own);
-    if (own != Vec3{}) {
-        const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
-        for (const Vec3& origin : {piece.ends[0].point, piece.ends[1].point, middle}) {
-            const MeshHit hit = closest_hit(target, origin, in, 0, never);
-            if (hit.face == NONE || !hit.from_inside) continue;
-            // The paper's second test: before leaving the source (section 2.1).
-            if (closest_hit(placed.source, placed.back(origin), own, placed.hair, hit.distance).distance
-                >= hit.distance)
-                add(hit.face);
-        }
+    const auto na = normals(0, x.edge), nb = normals(1, y.edge);
+    const auto [a0, a1] = ends_of(a, x.edge);
+    const auto [b0, b1] = ends_of(b, y.edge);
+    const Vec3 start = pair.vertex(0, a0), whole = pair.vertex(0, a1) - start;
+    const Vec3 ea = unit(whole), eb = unit(pair.vertex(1, b1) - pair.vertex(1, b0));
+    Vec3 n = cross(ea, eb);
+    const double sine = length(n);
+    n = unit(n);
+    if (dot(n, nb[0] + nb[1]) < 0) n = -1.0 * n;
+    const bool own = sine > least_sine && dot(n, way) >= same_way && beyond(n, nb[0], nb[1]) < arc
+                     && beyond(-1.0 * n, na[0], na[1]) < arc;
+    // Beside flush faces a loop's area leans, and two edges may pass each other sideways.
+    if (own && dot(n, way_of(pair, region)) <= sideways) return;
+    Vec3 point = p;
+    if (own) {
+        // The point of a's edge that is nearest to b's.
+        const Vec3 w = p - q;
+        const double cosine = dot(ea, eb), t = (cosine * dot(eb, w) - dot(ea, w)) / (sine * sine);
+        point = start + std::clamp(dot(p + t * ea - start, ea), 0.0, length(whole)) * ea;
+    } else {
+        // Of flush edges, say: a face's normal.
+        double best = snap;
+        n = {};
+        for (const Vec3& face : {nb[0], nb[1], -1.0 * na[0], -1.0 * na[1]})
+            if (dot(face, way) > best) {
+                best = dot(face, way);
+                n = face;
+            }
     }
-    double deepest = 0;
-    for (std::size_t i = 0; i < count; ++i) deepest = std::max(deepest, candidates[i].deeper());
-    if (count == 0 || deepest < comparable * vertex_depth(piece.region)) return;
-
-    // What is equal is so to a few hairs, by which vertices were moved: rounding decides nothing. No region is
-    // shallower than its piece: from the shallowest on, the rest need not be asked.
-    const double few = few_hairs * placed.hair;
-    std::array<double, 5> regions{never, never, never, never, never};
-    double shallowest = never, shallowest_piece = never;
-    for (;;) {
-        std::size_t next = count;
-        for (std::size_t i = 0; i < count; ++i)
-            if (regions[i] == never && (next == count || candidates[i].deeper() < candidates[next].deeper())) next = i;
-        if (next == count || candidates[next].deeper() >= shallowest + few) break;
-        const Candidate& c = candidates[next];
-        regions[next] = std::max(c.deeper(), extent(placed, piece.region, c.normal, c.height, shallowest + few));
-        shallowest = std::min(shallowest, regions[next]);
-    }
-    for (std::size_t i = 0; i < count; ++i)
-        if (regions[i] < shallowest + few) shallowest_piece = std::min(shallowest_piece, candidates[i].deeper());
-    // By its direction, not by which end comes first: all edges that pierce a plate leave by the same side.
-    std::size_t chosen = count;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (regions[i] >= shallowest + few || candidates[i].deeper() >= shallowest_piece + few) continue;
-        if (chosen == count || dot(preferred, candidates[i].normal) > dot(preferred, candidates[chosen].normal))
-            chosen = i;
-    }
-    choices_.push_back({&piece, candidates[chosen], regions[chosen]});
+    double depth = dot(q - p, n);
+    // Nearly parallel edges are pierced far apart, and only what lies across them counts.
+    if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
+    if (!(static_cast<float>(depth) > 0) || depth < least) return;
+    if (depth > 2 * thinnest(region) + 10 * pair.hair()) return;
+    passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
 
-// Where an edge grazes a side of the target, its own candidates may be that side and one a whole body away, although
-// the region leaves by another face at once: then by that.
-void PairEdges::agree(const SourceMesh& placed, std::span<Choice> region) {
-    double least = never, most = 0;
-    for (const Choice& choice : region) {
-        most = std::max(most, choice.metres);
-        least = std::min(least, choice.metres);
-    }
-    std::size_t shallowest = 0;
-    while (region[shallowest].metres >= least + few_hairs * placed.hair) ++shallowest;
-    std::uint32_t face = region[shallowest].by.face;
-    least = region[shallowest].metres;
-    if (const VertexContact* vertex_contact = deepest_vertex(region[0].piece->region);
-        vertex_contact && vertex_contact->depth < comparable * most) {
-        const Vec3 normal = normal_of(placed.target, vertex_contact->face);
-        const double height = dot(placed.target.corner(vertex_contact->face, 0), normal);
-        const double metres = extent(placed, vertex_contact->region, normal, height, least);
-        if (metres < least - few_hairs * placed.hair) {
-            least = metres;
-            face = vertex_contact->face;
-        }
-    }
-    if (!(least < comparable * most)) return;
-    for (Choice& choice : region) {
-        if (!(least < comparable * choice.metres)) continue;
-        const Candidate other = candidate_of(placed, *choice.piece, face);
-        if (other.deeper() > 0) choice = {choice.piece, other, least};
+// Two edges that pass each other more than once have the shallowest contact.
+void PairEdges::give_edges(std::vector<FeatureContact>& found) {
+    std::sort(passing_.begin(), passing_.end(), [](const Passing& p, const Passing& q) {
+        return std::tuple(p.contact.index, p.contact.other, p.contact.depth)
+               < std::tuple(q.contact.index, q.contact.other, q.contact.depth);
+    });
+    for (std::size_t i = 0; i < passing_.size(); ++i) {
+        const FeatureContact& c = passing_[i].contact;
+        if (i > 0 && passing_[i - 1].contact.index == c.index && passing_[i - 1].contact.other == c.other) continue;
+        Region& region = regions_[passing_[i].region];
+        region.told = std::max(region.told, c.depth);
+        region.speaks = true;
+        found.push_back(c);
     }
 }
 
-void PairEdges::give_contacts(const ShapeData& target, VertexBody source, const Choice& choice,
-                              std::vector<FeatureContact>& found) {
-    const Piece& piece = *choice.piece;
-    const Candidate& by = choice.by;
-    const double enough = deepest_vertex(piece.region) ? comparable * choice.metres : 0;
-    if (piece.ends[0].is_crossing() && piece.ends[1].is_crossing()) {
-        // Where round bodies cross, both ends lie on the target's surface, and the edge is deep between them.
-        const Vec3 middle = 0.5 * (piece.ends[0].point + piece.ends[1].point);
-        const double depth = way_out(target, middle, by.normal, by.height);
-        if (depth > enough && comparable * depth > std::max(by.depths[0], by.depths[1])
-            && static_cast<float>(depth) > 0) {
-            found.push_back(
-                {source, Feature::edge, piece.edge, piece.ends[0].crossing, by.face, middle, by.normal, depth});
-            return;
-        }
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-        const End &end = piece.ends[k], &other = piece.ends[1 - k];
-        // Above a vertex at which this piece has a contact, the crossing adds nothing.
-        if (end.is_crossing() && !other.is_crossing() && by.depths[k] < comparable * by.depths[1 - k]) continue;
-        if (end.vertex_contact != nullptr || !(by.depths[k] > enough) || !(static_cast<float>(by.depths[k]) > 0))
-            continue;
-        const FeatureContact contact{source,  Feature::edge, piece.edge, end.crossing,
-                                     by.face, end.point,     by.normal,  by.depths[k]};
-        if (end.is_crossing())
-            found.push_back(contact);
-        else
-            edge_contacts_.emplace_back(end.vertex, contact);
-    }
+// How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
+MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
+    const std::size_t other = 1 - piece.side;
+    const Vec3 from = point + pull * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
+    const MeshHit hit = closest_hit(pair.shape(other), pair.point_in(other, from),
+                                    pair.direction_in(other, piece.side == 0 ? way : -1.0 * way), 0, never);
+    return hit.face != NONE && hit.from_inside ? hit : MeshHit{0, NONE, false};
 }
 
-double PairEdges::extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height,
-                         double enough) {
-    const auto less = [](const RegionPoint& p, std::uint32_t r) { return p.region < r; };
-    const auto begin = std::lower_bound(points_.begin(), points_.end(), region, less);
-    const auto end = std::lower_bound(begin, points_.end(), region + 1, less);
-    std::uint32_t& last = last_extent_[static_cast<std::size_t>(begin - points_.begin())];
-    for (std::uint32_t i = last; i != NONE; i = extents_[i].next) {
-        const Extent& known = extents_[i];
-        if (known.region == region && known.normal == normal && known.height == height) return known.metres;
-    }
-    const auto count = static_cast<std::size_t>(end - begin);
-    const std::size_t asked = std::min(count, most_points);
-    const auto point_at = [&](std::size_t i) -> const Vec3& {
-        return begin[static_cast<std::ptrdiff_t>(i * count / asked)].point;
+// Adds the point of a piece, with the edge of the other body nearest to where it comes out.
+void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
+                         const MeshHit& hit) {
+    if (!(static_cast<float>(depth) > 0)) return;
+    const bool of_a = piece.side == 0;
+    const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
+    deep_.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
+                     of_a ? point : point - depth * way, way, depth});
+}
+
+// Where round bodies cross, a region's middle is deeper than its border: the middles of its pieces, by a ray. Of a
+// region without any contact the ends, too.
+void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number, const Vec3& way) {
+    const Region& region = regions_[number];
+    const Range along = range(region, way);
+    if (!(region.told < comparable * along.extent())) return;
+    const auto ask = [&](const Piece& piece, const Vec3& point) {
+        const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
+        if (!(most > region.told)) return;
+        const MeshHit hit = way_out(pair, piece, point, way);
+        double depth = std::min(most, hit.distance);
+        if (!(depth > region.told)) return;
+        const auto [own, across] = faces_of(pair.shape(piece.side), piece.edge);
+        Vec3 inward = pair.normal(piece.side, own);
+        if (across != NONE) inward = inward + pair.normal(piece.side, across);
+        inward = unit(inward);
+        const MeshHit in = way_out(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
+        if (in.face != NONE) depth = std::min(depth, in.distance);
+        if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
     };
-    // The point deepest below the plane first: it is likely to decide. Most others then need no more than a short ray.
-    std::size_t first = 0;
-    double lowest = -never;
-    for (std::size_t i = 0; i < asked; ++i) {
-        const double below = height - dot(point_at(i), normal);
-        if (below <= lowest) continue;
-        lowest = below;
-        first = i;
+    for (const Piece& piece : pieces_) {
+        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+        if (piece.through) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
+        if (region.speaks) continue;
+        for (const Vec3& end : piece.ends) ask(piece, end);
     }
-    double metres = 0;
-    for (std::size_t i = 0; i <= asked; ++i) {
-        if (i == first + 1) continue;
-        const Vec3& point = point_at(i == 0 ? first : i - 1);
-        if (metres > 0) {
-            const MeshHit hit = closest_hit(placed.target, point, normal, 0, metres);
-            if (hit.face != NONE && hit.from_inside) continue;
-        }
-        metres = std::max(metres, way_out(placed.target, point, normal, height));
-        if (metres >= enough) return metres;
-    }
-    extents_.push_back({region, normal, height, metres, last});
-    last = static_cast<std::uint32_t>(extents_.size() - 1);
-    return metres;
 }
 
-const PairEdges::VertexContact* PairEdges::deepest_vertex(std::uint32_t region) const {
-    const auto at = std::lower_bound(deepest_.begin(), deepest_.end(), region,
-                                     [](const VertexContact* s, std::uint32_t r) { return s->region < r; });
-    return at != deepest_.end() && (*at)->region == region ? *at : nullptr;
+// A body pierced through: the loops on either side cancel, and say nothing. Of the normals of the faces that they cross
+// the one along which the pieces are out soonest.
+void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
+    constexpr Vec3 preferred{0.31, 0.53, 0.79}; // of two ways alike always the same, whatever rounding does
+    const Region& region = regions_[number];
+    Vec3 way{};
+    double least = never;
+    std::vector<Vec3> asked;
+    for (std::uint32_t i = region.first_face; i < region.end_face && asked.size() < most_faces; ++i)
+        for (const Vec3& n : {faces_[i].second, -1.0 * faces_[i].second}) {
+            if (std::any_of(asked.begin(), asked.end(), [&](const Vec3& m) { return dot(n, m) > 0.9999; })) continue;
+            asked.push_back(n);
+            double most = 0;
+            for (const Piece& piece : pieces_) {
+                if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+                for (const Vec3& end : piece.ends) most = std::max(most, way_out(pair, piece, end, n).distance);
+                if (most > 1.001 * least) break;
+            }
+            if (!(most > 0)) continue;
+            if (most < 0.999 * least || (most <= 1.001 * least && dot(n, preferred) > dot(way, preferred))) {
+                way = n;
+                least = std::min(most, least);
+            }
+        }
+    if (way == Vec3{}) return;
+    for (const Piece& piece : pieces_) {
+        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+        for (const Vec3& end : piece.ends) {
+            const MeshHit hit = way_out(pair, piece, end, way);
+            add_deep(pair, piece, end, way, hit.distance, hit);
+        }
+    }
+}
+
+void PairEdges::give_deep(std::vector<FeatureContact>& found) const {
+    double most = 0;
+    for (const FeatureContact& c : deep_) most = std::max(most, c.depth);
+    for (const FeatureContact& c : deep_)
+        if (c.depth >= comparable * most) found.push_back(c);
 }
 
 } // namespace raycontact

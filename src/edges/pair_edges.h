@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/crossings.h"
 #include "edges/feature_contact.h"
+#include "edges/loops.h"
 #include "mesh/disjoint_sets.h"
+#include "shape/tree_walks.h"
 
 #include <array>
 #include <span>
@@ -21,104 +22,75 @@ public:
               std::vector<FeatureContact>& found);
 
 private:
-    /// A vertex in contact.
     struct VertexContact {
-        std::uint32_t vertex;
-        std::uint32_t face; ///< of the target, that its ray met
+        std::uint64_t vertex; ///< side in the upper half
         double depth;
-        Vec3 point;
-        std::uint32_t region; ///< its number among all, later of its region
     };
-    /// An end of a piece: a crossing, or a vertex of the source inside the target.
-    struct End {
-        Vec3 point; ///< pulled a little into the piece
-        std::uint32_t vertex = NONE;
-        std::uint32_t crossing = 0; ///< Contact::crossing
-        const VertexContact* vertex_contact = nullptr;
-        bool is_crossing() const { return vertex == NONE; }
-    };
-    /// A piece of an edge inside the target.
+    /// A part of an edge inside the other body, from a crossing or the edge's end to the next.
     struct Piece {
-        std::uint32_t edge;
-        std::uint32_t region; ///< the number of one of its crossings among all, later of its region
-        std::array<End, 2> ends;
-        std::array<std::uint32_t, 2> faces; ///< crossed at either end, NONE at a vertex
+        std::uint32_t side, edge;
+        std::uint32_t crossing; ///< one at its ends
+        std::array<Vec3, 2> ends;
+        bool through; ///< a crossing at both ends
+        bool speaks;  ///< its edge is sharp and convex
     };
-    /// A face by which a piece may leave the target.
-    struct Candidate {
-        std::uint32_t face;
-        Vec3 normal;
-        double height;                ///< of its plane
-        std::array<double, 2> depths; ///< of both ends of the piece
-        double deeper() const { return depths[0] > depths[1] ? depths[0] : depths[1]; }
-    };
-    /// The face by which a piece gives contacts.
-    struct Choice {
-        const Piece* piece;
-        Candidate by;
-        double metres; ///< that the region must move to leave by it
-    };
-    struct RegionPoint {
+    /// Two edges that pass each other.
+    struct Passing {
         std::uint32_t region;
-        std::uint32_t number; ///< among all
-        Vec3 point;
+        FeatureContact contact;
     };
-    /// A crossing on the line in which a flat face of either body meet.
-    struct OnCurve {
-        std::uint64_t faces; ///< of a in the upper half, of b in the lower
-        double at;           ///< along the line
-        std::uint32_t node;  ///< the crossing's number among all
-        Vec3 point;          ///< frame of b
+    /// Loops, pieces and vertices that hang together: they leave in one way.
+    struct Region {
+        Vec3 area;           ///< the sum of its loops'
+        double area_sum = 0; ///< of their lengths
+        double deepest = 0;  ///< of its vertices in contact
+        double told = 0;     ///< the deepest contact so far
+        bool speaks = false; ///< it has a contact
+        std::uint32_t first_point = 0, end_point = 0;
+        std::uint32_t first_face = 0, end_face = 0;
+        double thinnest = -1; ///< over its faces, once asked
+        Vec3 way;             ///< in which a leaves b, once asked
+        /// Its loops cancel: a body is pierced through.
+        bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
-    /// How far a region must move to leave the target by a face's plane.
-    struct Extent {
-        std::uint32_t region;
-        Vec3 normal;
-        double height; ///< of the plane
-        double metres;
-        std::uint32_t next; ///< the extent of that region found before, or NONE
+    struct Range {
+        double low, high;
+        double extent() const { return high - low; }
     };
 
-    /// concave: whether concave edges have pieces, too.
-    void ask(const std::array<SourceMesh, 2>& placed,
-             const std::array<std::span<const kernels::LocalContact>, 2>& vertices, bool concave,
-             std::vector<FeatureContact>& found);
-    static void list_vertices(const SourceMesh& placed, std::span<const kernels::LocalContact> vertices,
-                              std::uint32_t& node, std::vector<VertexContact>& in_contact);
-    static void list_pieces(const SourceMesh& placed, std::span<const Crossing> crossings,
-                            std::span<const VertexContact> in_contact, std::uint32_t first_node, bool concave,
-                            std::vector<Piece>& pieces);
-    void list_curves(const std::array<SourceMesh, 2>& placed, std::size_t side, std::uint32_t first_node);
-    void join_curves(const SourceMesh& a_in_b);
-    void join_vertices(const SourceMesh& placed, std::size_t side);
-    void give_contacts(const SourceMesh& placed, std::size_t side, std::vector<FeatureContact>& found);
-    static Candidate candidate_of(const SourceMesh& placed, const Piece& piece, std::uint32_t face);
-    void choose(const SourceMesh& placed, const Piece& piece);
-    void agree(const SourceMesh& placed, std::span<Choice> region);
-    void give_contacts(const ShapeData& target, VertexBody source, const Choice& choice,
-                       std::vector<FeatureContact>& found);
-    double extent(const SourceMesh& placed, std::uint32_t region, const Vec3& normal, double height, double enough);
-    /// The deepest vertex contact of this side in a region; null: none.
-    const VertexContact* deepest_vertex(std::uint32_t region) const;
-    double vertex_depth(std::uint32_t region) const {
-        const VertexContact* vertex_contact = deepest_vertex(region);
-        return vertex_contact ? vertex_contact->depth : 0;
-    }
+    void list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices);
+    void list_pieces(const PairMeshes& pair, const std::array<SourceMesh, 2>& placed);
+    void join_regions(const PairMeshes& pair);
+    void join_vertices(const PairMeshes& pair);
+    void list_regions(const PairMeshes& pair);
+    void pass_edges(const PairMeshes& pair);
+    void pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b);
+    void give_edges(std::vector<FeatureContact>& found);
+    const Vec3& way_of(const PairMeshes& pair, Region& region) const;
+    Vec3 find_way(const PairMeshes& pair, Region& region) const;
+    double thinnest(Region& region) const;
+    Range range(const Region& region, const Vec3& normal) const;
+    static MeshHit way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
+    void add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
+                  const MeshHit& hit);
+    void list_deep(const PairMeshes& pair, std::uint32_t region, const Vec3& way);
+    void list_pierced(const PairMeshes& pair, std::uint32_t region);
+    void give_deep(std::vector<FeatureContact>& found) const;
+    std::uint32_t node_of(std::uint64_t vertex) const;
 
-    std::array<std::vector<Crossing>, 2> crossings_;
-    std::array<std::vector<VertexContact>, 2> vertices_; ///< by vertex
-    std::array<std::vector<Piece>, 2> pieces_;
-    DisjointSets regions_;            ///< crossings and vertices that belong together
-    std::vector<OnCurve> curves_;     ///< of both sides
-    std::vector<RegionPoint> points_; ///< of one side, by region
-    std::vector<Extent> extents_;
-    std::vector<std::uint32_t> last_extent_;                         ///< by the first of a region's points_, or NONE
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_vertex_; ///< of one side: vertex, node
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> crossed_;   ///< of one side: edges, by their vertices
-    std::vector<std::pair<std::uint32_t, FeatureContact>>
-        edge_contacts_;                         ///< of one side: contacts of edges at vertices
-    std::vector<const VertexContact*> deepest_; ///< of one side: by region, the deepest first
-    std::vector<Choice> choices_;               ///< of one side
+    std::vector<Crossing> crossings_; ///< of a, then of b
+    Loops loops_;
+    std::vector<VertexContact> in_contact_; ///< by vertex
+    std::vector<Piece> pieces_;             ///< as their edges are numbered, and along these
+    std::vector<std::uint64_t> vertices_;   ///< in contact, or at an end of a piece; sorted
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> piece_vertices_; ///< crossing, vertex
+    std::vector<std::array<std::uint64_t, 2>> crossed_;                   ///< edges that are, by their vertices; sorted
+    DisjointSets sets_;                                                   ///< crossings, then vertices_
+    std::vector<std::uint32_t> region_of_;                                ///< by crossing and vertex
+    std::vector<Region> regions_;
+    std::vector<std::pair<std::uint32_t, Vec3>> points_, faces_; ///< by region: points, and normals of faces crossed
+    std::vector<Passing> passing_;
+    std::vector<FeatureContact> deep_; ///< of one region
 };
 
 } // namespace raycontact

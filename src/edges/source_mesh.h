@@ -11,20 +11,16 @@ namespace raycontact {
 /// moved inwards by a hair and shaken by a hundredth of it, so that aligned faces, shared vertices and coincident edges
 /// decide nothing (docs/edges.md).
 struct SourceMesh {
-    static constexpr double small_face = 0.1; ///< longest edge of a small face, in diagonals of the smaller body
     const ShapeData& source;
     const ShapeData& target;
     const Accelerators* target_accelerators; ///< null: it has none
     Pose pose;                               ///< of the source's centred frame in the target's
     double size;                             ///< of the smaller body's box, its diagonal, metres
     double hair;                             ///< metres
-    float span;                              ///< metres; only edges whose edge_span() is longer are asked
 
-    /// in_contact: a vertex of either body is. Then edges between small faces are not asked.
-    SourceMesh(const PlacedBody& from, const PlacedBody& to, bool in_contact)
+    SourceMesh(const PlacedBody& from, const PlacedBody& to)
         : source(from.shape->data()), target(to.shape->data()), target_accelerators(to.shape->accelerators()),
-          pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), hair(1e-7 * size),
-          span(in_contact ? static_cast<float>(small_face * size) : 0) {}
+          pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), hair(1e-7 * size) {}
 
     Vec3 turned(const Vec3& v) const {
         const auto& r = pose.rotation;

@@ -18,7 +18,7 @@ namespace {
 using Key = std::tuple<int, int, int, Feature, std::uint32_t>;
 Key key(const btManifoldPoint& p) {
     const bullet::PointKey k = bullet::CollisionDispatcher::key(p);
-    return {k.child0 * 1000 + k.child1, k.vertex_body, k.vertex, k.feature, k.crossing};
+    return {k.child0 * 1000 + k.child1, k.vertex_body, k.vertex, k.feature, k.other};
 }
 
 /// A pair of tables' size is one patch: four points for sixteen contacts.

@@ -37,7 +37,7 @@ struct BySlot {
 
 template <class Named>
 Key key(const Named& c) {
-    return {c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing};
+    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other()};
 }
 
 struct Guest {

@@ -17,13 +17,13 @@ namespace raycontact::reference {
 namespace {
 
 auto key(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing);
+    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
 }
 
 bool same_lost(std::span<const LostContact> x, std::span<const LostContact> y) {
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const LostContact& c, const LostContact& d) {
-        return std::tie(c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.crossing)
-               == std::tie(d.body_a, d.body_b, d.vertex_body, d.feature, d.vertex, d.crossing);
+        return std::tie(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other())
+               == std::tie(d.body_a, d.body_b, d.feature, d.vertex_body, d.vertex, d.other());
     });
 }
 
@@ -116,7 +116,7 @@ void Triplet::describe(const char* how, const Contact& c, const Scene& scene, Co
     char text[300];
     std::snprintf(text, sizeof text, "%s: %s, step %llu, threshold %g, bodies %u and %u, %s %u of %c, depth %g", how,
                   what_.c_str(), static_cast<unsigned long long>(steps_), threshold ? *threshold : -1.0, c.body_a,
-                  c.body_b, c.feature == Feature::edge ? "edge" : "vertex", c.vertex,
+                  c.body_b, c.feature == Feature::edges ? "edges" : "vertex", c.vertex,
                   c.vertex_body == VertexBody::a ? 'a' : 'b', static_cast<double>(c.depth));
     counts.first = text;
 }

@@ -79,8 +79,9 @@ void name_places(PairState& state) {
         const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(c.key.child0)];
         const Leaf& leaf1 = state.record1.leaves[static_cast<std::size_t>(c.key.child1)];
         const bool of_0 = c.key.vertex_body == 0;
-        c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, c.triangle);
-        c.name1 = of_0 ? name_of_triangle(leaf1, c.triangle) : name_of_feature(leaf1, c.key);
+        const int other = c.key.feature == Feature::edges ? c.triangle / 3 : c.triangle;
+        c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, other);
+        c.name1 = of_0 ? name_of_triangle(leaf1, other) : name_of_feature(leaf1, c.key);
     }
 }
 
@@ -420,9 +421,12 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
         const BatchEntry* entry = &batch[order[at].second];
         Candidate candidate;
         const int source = c.vertex_body == VertexBody::a ? 0 : 1;
-        candidate.key = {
-            entry->child0, entry->child1,           entry->swapped ? 1 - source : source, static_cast<int>(c.vertex),
-            c.feature,     key_crossing(c.crossing)};
+        candidate.key = {entry->child0,
+                         entry->child1,
+                         entry->swapped ? 1 - source : source,
+                         static_cast<int>(c.vertex),
+                         c.feature,
+                         static_cast<int>(c.other())};
         candidate.triangle = static_cast<int>(c.triangle);
         if (entry->swapped) {
             candidate.on0 = to_bullet(point_on_b(c));

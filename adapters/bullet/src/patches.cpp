@@ -16,8 +16,6 @@ namespace {
 constexpr int flag_ours = 1 << 30;
 constexpr int flag_vertex_on_1 = 1 << 29;
 constexpr int feature_shift = 8, feature_mask = 3 << feature_shift;
-constexpr int crossing_shift = 10, crossing_mask = 0x3ff << crossing_shift;
-constexpr std::uint32_t crossings = 1022; ///< what is left of ten bits beside edge_start and edge_end
 constexpr int absent_shift = 20;
 constexpr int absent_mask = most_keep_steps << absent_shift;
 
@@ -74,8 +72,7 @@ btManifoldPoint to_point(const Candidate& c, const btCollisionObject* a, const b
     p.m_index0 = c.key.vertex_body == 0 ? c.key.vertex : c.triangle;
     p.m_index1 = c.key.vertex_body == 0 ? c.triangle : c.key.vertex;
     p.m_contactPointFlags = flag_ours | (c.key.vertex_body == 0 ? 0 : flag_vertex_on_1)
-                            | static_cast<int>(c.key.feature) << feature_shift
-                            | static_cast<int>(c.key.crossing << crossing_shift & unsigned{crossing_mask});
+                            | static_cast<int>(c.key.feature) << feature_shift;
     combine_materials(p, a, b);
     return p;
 }
@@ -107,7 +104,7 @@ void call_added(btManifoldPoint& point, const Candidate& candidate, const btColl
 }
 
 bool of_edge(const PointKey& key) {
-    return key.feature == Feature::edge;
+    return key.feature == Feature::edges;
 }
 
 /// A point that was there in the step before under another key: where faces lie on each other, now a vertex speaks for
@@ -317,17 +314,9 @@ bool adds_are_told(const btCollisionObject& a, const btCollisionObject& b) {
 
 PointKey CollisionDispatcher::key(const btManifoldPoint& p) {
     const bool on1 = (p.m_contactPointFlags & flag_vertex_on_1) != 0;
-    const auto packed = static_cast<std::uint32_t>((p.m_contactPointFlags & crossing_mask) >> crossing_shift);
-    return {p.m_partId0,
-            p.m_partId1,
-            on1 ? 1 : 0,
-            on1 ? p.m_index1 : p.m_index0,
-            static_cast<Feature>((p.m_contactPointFlags & feature_mask) >> feature_shift),
-            packed < crossings ? packed : edge_start + (packed - crossings)};
-}
-
-std::uint32_t key_crossing(std::uint32_t crossing) {
-    return crossing >= edge_start ? crossing : crossing % crossings;
+    const auto feature = static_cast<Feature>((p.m_contactPointFlags & feature_mask) >> feature_shift);
+    const int own = on1 ? p.m_index1 : p.m_index0, other = on1 ? p.m_index0 : p.m_index1;
+    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, own, feature, feature == Feature::edges ? other : 0};
 }
 
 bool CollisionDispatcher::is_ours(const btManifoldPoint& p) {

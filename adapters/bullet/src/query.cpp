@@ -151,7 +151,8 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
         contacts.assign(found.begin(), found.end());
     }
     for (const Contact& c : contacts) {
-        const int source = static_cast<int>(c.vertex), target = static_cast<int>(c.triangle);
+        const auto source = static_cast<int>(c.vertex);
+        const auto target = static_cast<int>(c.feature == Feature::edges ? c.triangle / 3 : c.triangle);
         const bool of_a = c.vertex_body == VertexBody::a;
         const Leaf &source_leaf = of_a ? a.leaf : b.leaf, &target_leaf = of_a ? b.leaf : a.leaf;
         identify(result, of_a, name_of_feature(source_leaf, {.vertex = source, .feature = c.feature}),

@@ -37,7 +37,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         }
     }
     std::vector<Contact> contacts(local.size()); // as a step with edges leaves it to the next
-    for (Contact& contact : contacts) contact.feature = Feature::edge, contact.crossing = 3;
+    for (Contact& contact : contacts) contact.feature = Feature::edges;
     Placer placer;
     placer.run(*opened.executor, Direction::ray, bodies, pairs, local, contacts);
 
@@ -50,7 +50,6 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         EXPECT_EQ(contacts[i].vertex, shape->data().mesh.vertex_index[local[i].vertex]);
         EXPECT_EQ(contacts[i].ray_length, local[i].distance);
         EXPECT_EQ(contacts[i].feature, Feature::vertex);
-        EXPECT_EQ(contacts[i].crossing, 0u);
     }
 }
 

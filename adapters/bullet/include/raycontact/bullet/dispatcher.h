@@ -52,17 +52,13 @@ struct DispatcherStats {
 struct PointKey {
     int child0 = 0, child1 = 0; ///< index of the leaf shape, depth first, when a body is a compound; else 0
     int vertex_body = 0;        ///< 0: the feature belongs to the manifold's body 0; 1: to its body 1
-    /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of an edge as Contact::vertex. A
+    /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of edges as Contact::vertex. A
     /// ball's or capsule's: any number that stays.
     int vertex = 0;
     Feature feature = Feature::vertex;
-    std::uint32_t crossing = 0; ///< as Contact::crossing, but a manifold point has room for ten bits: key_crossing()
+    int other = 0; ///< of edges that of the other body, as Contact::triangle; of other features 0
     friend bool operator==(const PointKey&, const PointKey&) = default;
 };
-
-/// Contact::crossing as keys of points hold it: edge_start and edge_end stay, other numbers count modulo 1022. An edge
-/// that crosses the other mesh more often may have equal keys, which costs nothing but an impulse to start from.
-std::uint32_t key_crossing(std::uint32_t crossing);
 
 /// Use it in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
 /// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, also inside compounds) go to RayContact in one batch a step;
