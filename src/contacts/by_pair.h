@@ -29,10 +29,13 @@ public:
         }
     }
     std::span<const T> all() const { return all_; }
-    /// Of a directed pair.
+    /// Of a directed pair: the place of its first; all of them.
+    std::uint32_t first(std::size_t directed) const { return directed == 0 ? 0 : ends_[directed - 1]; }
     std::span<const T> of(std::size_t directed) const {
-        const std::uint32_t first = directed == 0 ? 0 : ends_[directed - 1];
-        return all().subspan(first, ends_[directed] - first);
+        return all().subspan(first(directed), ends_[directed] - first(directed));
+    }
+    std::span<T> of(std::size_t directed) {
+        return std::span(all_).subspan(first(directed), ends_[directed] - first(directed));
     }
     /// After a step: frees memory that it hardly used.
     void give_back() {

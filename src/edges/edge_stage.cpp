@@ -49,12 +49,11 @@ bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureCon
     return any;
 }
 
-void sort_near(std::span<const kernels::NearEdge> near, std::vector<NearEdge>& sorted) {
-    sorted.clear();
-    for (const auto& [edge, face, pair] : near) sorted.push_back({edge, face});
-    std::sort(sorted.begin(), sorted.end(), [](const NearEdge& p, const NearEdge& q) {
+void sort(std::span<NearEdge> near) {
+    const auto before = [](const NearEdge& p, const NearEdge& q) {
         return std::tie(p.edge, p.face) < std::tie(q.edge, q.face);
-    });
+    };
+    if (!std::is_sorted(near.begin(), near.end(), before)) std::sort(near.begin(), near.end(), before);
 }
 
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
@@ -81,14 +80,12 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 
 } // namespace
 
-void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local,
-                    const ByPair<kernels::NearEdge>* near, const Motion* motion, std::vector<Contact>& contacts) {
-    const std::span<const SlotPair> pairs = update.pairs;
-    const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
+void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
+                    std::vector<Contact>& contacts) {
+    const auto block_count = static_cast<std::uint32_t>((asked.size() + pairs_in_block - 1) / pairs_in_block);
     block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
-    if (motion != nullptr) lists_.match(pairs);
-    const Question question{update, local, near, motion};
+    const Question question{update, local, asked};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
     const std::uint32_t work_count = std::min(block_count, most_work);
     if (work_.size() < work_count) work_.resize(work_count);
@@ -96,55 +93,33 @@ void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& l
         for (std::uint32_t w = begin; w < end; ++w)
             for (std::uint32_t b = w; b < block_count; b += most_work) find(work_[w], question, b);
     });
-    if (motion != nullptr)
-        for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
-    merge(local, pairs.size(), contacts);
+    merge(question, contacts);
 }
 
 void EdgeStage::find(Workspace& work, const Question& question, std::size_t number) {
     Block& block = blocks_[number];
-    block.lists.clear();
     block.contacts.clear();
     block.ends.clear();
     const std::size_t first = number * pairs_in_block;
-    const std::size_t last = std::min(question.update.pairs.size(), first + pairs_in_block);
-    for (std::size_t i = first; i < last; ++i) {
-        find(work, block, question, i);
+    for (const AskedPair& asked :
+         question.asked.subspan(first, std::min<std::size_t>(pairs_in_block, question.asked.size() - first))) {
+        find(work, block, question, asked);
         block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
     }
 }
 
-void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i) {
-    const SlotPair& pair = question.update.pairs[i];
-    const std::span<const PlacedBody> bodies = question.update.bodies;
-    const PlacedBody &a = bodies[pair.first], &b = bodies[pair.second];
-    const std::array vertices{question.local.of(2 * i), question.local.of(2 * i + 1)};
-    if (!a.shape->has_inside() && !b.shape->has_inside()) return;
-    const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
-    const Motion* motion = question.motion;
-    if (motion != nullptr) {
-        lists_.move(i, pair, *motion);
-        if (!in_contact && lists_.is_apart(i)) return;
-    }
+void EdgeStage::find(Workspace& work, Block& block, const Question& question, const AskedPair& asked) {
+    const SlotPair& pair = question.update.pairs[asked.pair];
+    const PlacedBody &a = question.update.bodies[pair.first], &b = question.update.bodies[pair.second];
+    const std::array vertices{question.local.of(2 * asked.pair), question.local.of(2 * asked.pair + 1)};
+    for (const std::span<NearEdge>& near : asked.near) sort(near);
     const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
-    NearEdges near;
-    if (question.near != nullptr) {
-        for (std::size_t side = 0; side < 2; ++side) {
-            sort_near(question.near->of(2 * i + side), work.near[side]);
-            near[side] = work.near[side];
-        }
-    } else if (motion != nullptr) {
-        near = lists_.near(i, pair, bodies, placed, *motion, work.search, block.lists);
-    } else {
-        block.lists.clear();
-        near = block.lists.find(work.search, placed);
-    }
+    const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     work.found.clear();
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (!work.edges.find(placed, near, vertices, work.found) && !in_contact
-        && !(motion != nullptr && lists_.is_apart(i))) {
+    if (!work.edges.find(placed, {asked.near[0], asked.near[1]}, vertices, work.found) && !in_contact) {
         const bool apart = !find_inside(placed, work.found);
-        if (apart && motion != nullptr) lists_.found_apart(i);
+        if (asked.apart != nullptr) *asked.apart = apart && asked.near[0].empty() && asked.near[1].empty();
     }
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
@@ -157,9 +132,8 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, st
 }
 
 std::uint64_t EdgeStage::bytes() const {
-    std::uint64_t bytes = lists_.bytes();
-    for (std::size_t b = 0; b < block_count_; ++b)
-        bytes += blocks_[b].contacts.capacity() * sizeof(Contact) + blocks_[b].lists.bytes();
+    std::uint64_t bytes = 0;
+    for (std::size_t b = 0; b < block_count_; ++b) bytes += blocks_[b].contacts.capacity() * sizeof(Contact);
     return bytes;
 }
 
@@ -169,30 +143,31 @@ void EdgeStage::give_back() {
         blocks_.resize(block_count_);
         blocks_.shrink_to_fit();
     }
-    for (Block& block : blocks_) {
-        raycontact::give_back(block.contacts);
-        block.lists.give_back();
-    }
+    for (Block& block : blocks_) raycontact::give_back(block.contacts);
     raycontact::give_back(merged_);
 }
 
-void EdgeStage::merge(const ByPair<kernels::LocalContact>& local, std::size_t pair_count,
-                      std::vector<Contact>& contacts) {
+void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) {
     std::size_t added = 0;
-    for (std::size_t i = 0; i < pair_count; i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
+    for (std::size_t b = 0; b < block_count_; ++b) added += blocks_[b].contacts.size();
     merged_.clear();
     if (added == 0) return;
     merged_.reserve(contacts.size() + added);
     const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
-    auto own = contacts.begin();
-    for (std::size_t i = 0; i < pair_count; ++i) {
-        const Block& block = blocks_[i / pairs_in_block];
-        const std::size_t in = i % pairs_in_block;
-        const auto own_end = own + static_cast<std::ptrdiff_t>(local.of(2 * i).size() + local.of(2 * i + 1).size());
+    auto done = contacts.begin();
+    for (std::size_t k = 0; k < question.asked.size(); ++k) {
+        const Block& block = blocks_[k / pairs_in_block];
+        const std::size_t in = k % pairs_in_block, pair = question.asked[k].pair;
         const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
-        std::merge(own, own_end, more, block.contacts.begin() + block.ends[in], std::back_inserter(merged_), before);
-        own = own_end;
+        const auto more_end = block.contacts.begin() + block.ends[in];
+        if (more == more_end) continue;
+        const auto own = contacts.begin() + question.local.first(2 * pair);
+        const auto own_end = contacts.begin() + question.local.first(2 * pair + 2);
+        merged_.insert(merged_.end(), done, own);
+        std::merge(own, own_end, more, more_end, std::back_inserter(merged_), before);
+        done = own_end;
     }
+    merged_.insert(merged_.end(), done, contacts.end());
     contacts.swap(merged_);
 }
 

@@ -3,7 +3,7 @@
 
 #include "contacts/by_pair.h"
 #include "edges/inside.h"
-#include "edges/near_lists.h"
+#include "edges/near_edges.h"
 #include "edges/pair_edges.h"
 #include "pairs/update.h"
 
@@ -16,14 +16,11 @@ namespace raycontact {
 /// host, in double, for every device: so its contacts are the same for all.
 class EdgeStage {
 public:
-    /// local: the vertex contacts. near: the edges that may cross faces; null: they are sought here. contacts: those of
-    /// vertices, placed and sorted; the new ones are sorted in. motion: of this step, to go on with what was found in
-    /// the last ones; null: every pair is asked in full.
-    void run(const Update& update, const ByPair<kernels::LocalContact>& local, const ByPair<kernels::NearEdge>* near,
-             const Motion* motion, std::vector<Contact>& contacts);
-    /// Forgets what it kept for the next step.
-    void forget() { lists_.clear(); }
-    /// Of what it keeps for the pairs, and of what it found in the last step.
+    /// local: the vertex contacts. asked: in the order of the pairs. contacts: those of vertices, placed and sorted;
+    /// the new ones are sorted in.
+    void run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
+             std::vector<Contact>& contacts);
+    /// Of what it found in the last step.
     std::uint64_t bytes() const;
     /// After a step: frees memory that it hardly used.
     void give_back();
@@ -31,14 +28,11 @@ public:
 private:
     /// What some of the blocks are worked on in, one after the other.
     struct Workspace {
-        NearSearch search;
-        std::array<std::vector<NearEdge>, 2> near; ///< of a, of b
         PairEdges edges;
         std::vector<FeatureContact> found;
     };
     /// Pairs that one thread takes at once, and what it finds.
     struct Block {
-        NearLists::Slice lists;
         std::vector<Contact> contacts;   ///< sorted, pair by pair
         std::vector<std::uint32_t> ends; ///< of each pair's, in contacts
     };
@@ -46,14 +40,12 @@ private:
     struct Question {
         const Update& update;
         const ByPair<kernels::LocalContact>& local;
-        const ByPair<kernels::NearEdge>* near;
-        const Motion* motion;
+        std::span<const AskedPair> asked;
     };
     void find(Workspace& work, const Question& question, std::size_t number);
-    void find(Workspace& work, Block& block, const Question& question, std::size_t i);
-    void merge(const ByPair<kernels::LocalContact>& local, std::size_t pair_count, std::vector<Contact>& contacts);
+    void find(Workspace& work, Block& block, const Question& question, const AskedPair& asked);
+    void merge(const Question& question, std::vector<Contact>& contacts);
 
-    NearLists lists_;
     std::vector<Block> blocks_;
     std::size_t block_count_ = 0; ///< of the last step
     std::vector<Contact> merged_;

@@ -7,7 +7,8 @@
 // Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
 // vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
 // side by side.
-KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes, WRITES(float) margins) {
+KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) more, READS(ShapeHeader) shapes,
+                         WRITES(float) margins) {
     FOR_EACH(p, count) {
         READS(DirectedPair) there = pairs + p;
         READS(DirectedPair) back = pairs + (p ^ 1u);
@@ -24,7 +25,7 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHea
             off += magnitude_of(((row[0] * t[0] + row[1] * t[1]) + row[2] * t[2]) + back->translation[i]);
         }
         const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
-        margins[p] = (1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off);
+        margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
     }
 }
 

@@ -18,7 +18,6 @@ Part::Part(OpenDevice opened)
 
 void Part::forget() {
     pipeline_.forget();
-    edges_.forget();
 }
 
 void Part::give_back() {
@@ -49,8 +48,7 @@ void Part::end(std::vector<Contact>& contacts) {
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
     placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
     if (settings_->features != Features::edges) return;
-    const Motion* motion = &found == &pipeline_ && found.near_edges() == nullptr ? &motion_ : nullptr;
-    edges_.run(now, found.contacts(), found.near_edges(), motion, contacts);
+    edges_.run(now, found.contacts(), found.asked(), contacts);
 }
 
 void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {

@@ -38,7 +38,7 @@ void Pipeline::give_back(const Update& last) {
         rays = batch_.sums[RayBatch::ray_sum].sums[0];
         break;
     case Finds::certified:
-        certified_.give_back();
+        certified_.give_back(batch_);
         break;
     case Finds::coherent:
         coherent_.give_back();
@@ -49,6 +49,7 @@ void Pipeline::give_back(const Update& last) {
     gather_.give_back();
     local_.give_back();
     near_.give_back();
+    raycontact::give_back(asked_);
 }
 
 void Pipeline::begin(const Update& update) {
@@ -66,7 +67,7 @@ void Pipeline::begin(const Update& update) {
     gather_.run(update, batch_);
     has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
     if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
-    if (has_near_) edges_.cast(update, pairs_of(update).placed(), batch_);
+    if (has_near_) edges_.cast(update, pairs_of(update).placed(), {}, batch_);
 }
 
 // All, on the device.
@@ -82,11 +83,26 @@ void Pipeline::end(const Update& update) {
         if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather_.run(update, batch_);
-        if (!all_near) edges_.cast(update, pairs_of(update).placed(), batch_);
+        if (!all_near) edges_.cast(update, pairs_of(update).placed(), {}, batch_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(gather_.contacts(), batch_.directed, update.pairs.size());
     if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    list_asked(update);
+}
+
+void Pipeline::list_asked(const Update& update) {
+    asked_.clear();
+    if (update.settings.features != Features::edges) return;
+    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        if (!has_near_ && certified_.is_apart(i) && local_.first(2 * i) == local_.first(2 * i + 2)) continue;
+        const auto [a, b] = update.pairs[i];
+        if (!update.bodies[a].shape->has_inside() && !update.bodies[b].shape->has_inside()) continue;
+        if (has_near_)
+            asked_.push_back({i, {near_.of(2 * i), near_.of(2 * i + 1)}});
+        else
+            asked_.push_back({i, certified_.near(i), certified_.apart(i)});
+    }
 }
 
 std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {

@@ -3,6 +3,7 @@
 
 #include "contacts/by_pair.h"
 #include "contacts/gather.h"
+#include "edges/near_edges.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
 #include "rays/edge_rays.h"
@@ -22,8 +23,9 @@ public:
     void end(const Update& update);
     /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }
-    /// The edges that may cross faces; null if the step did not look for them.
-    const ByPair<kernels::NearEdge>* near_edges() const { return has_near_ ? &near_ : nullptr; }
+    /// The pairs whose edges may cross faces, or that may be inside one another,
+    /// in order; none without edges.
+    std::span<const AskedPair> asked() const { return asked_; }
 
     /// As Part's.
     std::vector<std::byte> take_out(const Update& last, std::span<const SlotPair> pairs);
@@ -40,6 +42,7 @@ public:
 
 private:
     const DevicePairs& pairs_of(const Update& update) const;
+    void list_asked(const Update& update);
 
     StandardRays standard_;
     CertifiedRays certified_;
@@ -49,8 +52,9 @@ private:
     EdgeRays edges_;
     Gather gather_;
     ByPair<kernels::LocalContact> local_;
-    ByPair<kernels::NearEdge> near_;
-    bool has_near_ = false;
+    ByPair<NearEdge> near_;
+    bool has_near_ = false; ///< edges_ were cast
+    std::vector<AskedPair> asked_;
 };
 
 /// Whether the method needs the motion of bodies on this device.

@@ -15,7 +15,8 @@ constexpr std::size_t least_room = 4096; // edges
 
 } // namespace
 
-void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const RayBatch& batch) {
+void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& more,
+                    const RayBatch& batch) {
     Device& device = update.device;
     const ShapeStore::Arrays& arrays = update.arrays();
     const Array<kernels::Totals>& totals = batch.totals;
@@ -24,7 +25,7 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     rays_.resize(device, room);
     hits_.resize(device, room);
     counts_.resize(device, 1, room);
-    launch<KernelId::find_margins>(device, pairs.size(), pairs, arrays.headers, margins_);
+    launch<KernelId::find_margins>(device, pairs.size(), pairs, more, arrays.headers, margins_);
     search_.find(update, pairs, margins_, totals, RayBatch::edge_block_sum);
     search_.count_edges(update, pairs, margins_, totals, RayBatch::edge_ray_sum, room);
     search_.write_rays(update, totals, RayBatch::edge_ray_sum, 0, rays_);

@@ -3,7 +3,6 @@
 #include "device/work.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
-#include "reference/vector.h"
 #include "scenes/models/model.h"
 
 #include "part/part.h"

@@ -29,7 +29,7 @@ constexpr Ceiling ceilings[] = {{Method::standard, 11, 1},
                                 {Method::standard, 21, 1, Features::edges},
                                 {Method::iterative, 26, 4, Features::edges},
                                 {Method::predictive, 26, 4, Features::edges},
-                                {Method::certified, 16, 4, Features::edges}};
+                                {Method::certified, 26, 5, Features::edges}};
 
 std::uint64_t median(std::vector<std::uint64_t> values) {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
