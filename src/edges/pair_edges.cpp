@@ -99,13 +99,11 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
     pass_edges(pair);
     const auto before = static_cast<std::ptrdiff_t>(found.size());
     give_edges(found);
-    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
-        deep_.clear();
-        if (!regions_[r].is_pierced())
-            list_deep(pair, r, way_of(pair, regions_[r]));
-        else if (!regions_[r].speaks)
-            list_pierced(pair, r);
-        give_deep(found);
+    give_deep(pair, found);
+    // Concave and flat edges speak where nothing else does.
+    if (found.size() == std::size_t(before) && in_contact_.empty()) {
+        for (Piece& piece : pieces_) piece.speaks = true;
+        give_deep(pair, found);
     }
     // Two edges have one contact, the deepest.
     const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
@@ -244,7 +242,13 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         region.speaks = true;
     }
     for (const LoopSegment& s : loops_.segments()) {
-        if (dot(s.normals[0], s.normals[1]) > parallel) continue;
+        Region& region = regions_[region_of_[s.from]];
+        const double along = length(crossings_[s.to].point - crossings_[s.from].point);
+        region.loop_length += along;
+        if (dot(s.normals[0], s.normals[1]) > parallel) {
+            region.flush_length += along;
+            continue;
+        }
         faces_.emplace_back(region_of_[s.from], s.normals[1]);
         faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
     }
@@ -265,33 +269,35 @@ void PairEdges::list_regions(const PairMeshes& pair) {
 
 PairEdges::Range PairEdges::range(const Region& region, const Vec3& normal) const {
     Range range{never, -never};
-    for (std::uint32_t i = region.first_point; i < region.end_point; ++i) {
-        const double at = dot(points_[i].second, normal);
-        range.low = std::min(range.low, at);
-        range.high = std::max(range.high, at);
-    }
+    for (std::uint32_t i = region.first_point; i < region.end_point; ++i) range.add(dot(points_[i].second, normal));
     return range;
 }
 
-// How thin a region is along a normal of a face that its loops cross.
-double PairEdges::thinnest(Region& region) const {
-    if (region.thinnest >= 0) return region.thinnest;
-    region.thinnest = never;
-    for (std::uint32_t i = region.first_face; i < region.end_face; ++i)
-        region.thinnest = std::min(region.thinnest, range(region, faces_[i].second).extent());
-    return region.thinnest;
+// Whether a region is thinner than `limit` along a normal of a face that its loops cross.
+bool PairEdges::is_thinner(const Region& region, double limit) const {
+    for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
+        Range range{never, -never};
+        std::uint32_t k = region.first_point;
+        for (; k < region.end_point && !(range.extent() >= limit); ++k)
+            range.add(dot(points_[k].second, faces_[i].second));
+        if (range.extent() < limit) return true;
+    }
+    return false;
 }
 
-// The way in which a region's a leaves b, of regions that are not pierced.
+// The way in which a region's a leaves b, of regions that are not pierced: as its loops' area, or by a face along which
+// it is less than half as deep.
 const Vec3& PairEdges::way_of(const PairMeshes& pair, Region& region) const {
     if (region.way == Vec3{}) region.way = find_way(pair, region);
     return region.way;
 }
 
-Vec3 PairEdges::find_way(const PairMeshes& pair, Region& region) const {
+Vec3 PairEdges::find_way(const PairMeshes& pair, const Region& region) const {
     const Vec3 way = unit(region.area);
-    const double thin = thinnest(region);
-    if (!(range(region, way).extent() > 2 * thin + 10 * pair.hair())) return way;
+    if (!is_thinner(region, 0.5 * range(region, way).extent() - 5 * pair.hair())) return way;
+    double thin = never;
+    for (std::uint32_t i = region.first_face; i < region.end_face; ++i)
+        thin = std::min(thin, range(region, faces_[i].second).extent());
     Vec3 by{};
     double best = -never;
     for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
@@ -374,7 +380,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     // Nearly parallel edges are pierced far apart, and only what lies across them counts.
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
     if (!(static_cast<float>(depth) > 0) || depth < least) return;
-    if (depth > 2 * thinnest(region) + 10 * pair.hair()) return;
+    if (is_thinner(region, 0.5 * depth - 5 * pair.hair())) return;
     passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
 
@@ -415,10 +421,24 @@ void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3&
 
 // Where round bodies cross, a region's middle is deeper than its border: the middles of its pieces, by a ray. Of a
 // region without any contact the ends, too.
-void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number, const Vec3& way) {
-    const Region& region = regions_[number];
-    const Range along = range(region, way);
+void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
+    Region& region = regions_[number];
+    if (!(region.told < comparable * range(region, unit(region.area)).extent())) return;
+    Vec3 way = way_of(pair, region);
+    Range along = range(region, way);
     if (!(region.told < comparable * along.extent())) return;
+    // Beside flush faces a loop's area leans: then along the face that looks most that way.
+    double best = snap;
+    for (std::uint32_t i = region.first_face; i < region.end_face && region.is_flush(); ++i) {
+        const Vec3& n = faces_[i].second;
+        const double facing = dot(n, way_of(pair, region));
+        if (!(facing > best)) continue;
+        const Range by_face = range(region, n);
+        if (!(by_face.extent() <= along.extent())) continue;
+        best = facing;
+        way = n;
+        along = by_face;
+    }
     const auto ask = [&](const Piece& piece, const Vec3& point) {
         const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
         if (!(most > region.told)) return;
@@ -448,11 +468,11 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
     const Region& region = regions_[number];
     Vec3 way{};
     double least = never;
-    std::vector<Vec3> asked;
-    for (std::uint32_t i = region.first_face; i < region.end_face && asked.size() < most_faces; ++i)
+    asked_.clear();
+    for (std::uint32_t i = region.first_face; i < region.end_face && asked_.size() < most_faces; ++i)
         for (const Vec3& n : {faces_[i].second, -1.0 * faces_[i].second}) {
-            if (std::any_of(asked.begin(), asked.end(), [&](const Vec3& m) { return dot(n, m) > 0.9999; })) continue;
-            asked.push_back(n);
+            if (std::any_of(asked_.begin(), asked_.end(), [&](const Vec3& m) { return dot(n, m) > 0.9999; })) continue;
+            asked_.push_back(n);
             double most = 0;
             for (const Piece& piece : pieces_) {
                 if (!piece.speaks || region_of_[piece.crossing] != number) continue;
@@ -475,11 +495,18 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
     }
 }
 
-void PairEdges::give_deep(std::vector<FeatureContact>& found) const {
-    double most = 0;
-    for (const FeatureContact& c : deep_) most = std::max(most, c.depth);
-    for (const FeatureContact& c : deep_)
-        if (c.depth >= comparable * most) found.push_back(c);
+void PairEdges::give_deep(const PairMeshes& pair, std::vector<FeatureContact>& found) {
+    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
+        deep_.clear();
+        if (!regions_[r].is_pierced())
+            list_deep(pair, r);
+        else if (!regions_[r].speaks)
+            list_pierced(pair, r);
+        double most = 0;
+        for (const FeatureContact& c : deep_) most = std::max(most, c.depth);
+        for (const FeatureContact& c : deep_)
+            if (c.depth >= comparable * most) found.push_back(c);
+    }
 }
 
 } // namespace raycontact

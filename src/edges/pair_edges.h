@@ -41,21 +41,26 @@ private:
     };
     /// Loops, pieces and vertices that hang together: they leave in one way.
     struct Region {
-        Vec3 area;           ///< the sum of its loops'
-        double area_sum = 0; ///< of their lengths
-        double deepest = 0;  ///< of its vertices in contact
-        double told = 0;     ///< the deepest contact so far
-        bool speaks = false; ///< it has a contact
+        Vec3 area;                                ///< the sum of its loops'
+        double area_sum = 0;                      ///< of their lengths
+        double loop_length = 0, flush_length = 0; ///< of its loops; of them between faces that look nearly the same way
+        double deepest = 0;                       ///< of its vertices in contact
+        double told = 0;                          ///< the deepest contact so far
+        bool speaks = false;                      ///< it has a contact
         std::uint32_t first_point = 0, end_point = 0;
         std::uint32_t first_face = 0, end_face = 0;
-        double thinnest = -1; ///< over its faces, once asked
-        Vec3 way;             ///< in which a leaves b, once asked
+        Vec3 way; ///< in which a leaves b, once asked
         /// Its loops cancel: a body is pierced through.
+        bool is_flush() const { return flush_length > 0.1 * loop_length; }
         bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
     struct Range {
         double low, high;
         double extent() const { return high - low; }
+        void add(double at) {
+            low = at < low ? at : low;
+            high = at > high ? at : high;
+        }
     };
 
     void list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices);
@@ -67,15 +72,15 @@ private:
     void pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b);
     void give_edges(std::vector<FeatureContact>& found);
     const Vec3& way_of(const PairMeshes& pair, Region& region) const;
-    Vec3 find_way(const PairMeshes& pair, Region& region) const;
-    double thinnest(Region& region) const;
+    Vec3 find_way(const PairMeshes& pair, const Region& region) const;
+    bool is_thinner(const Region& region, double limit) const;
     Range range(const Region& region, const Vec3& normal) const;
     static MeshHit way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
     void add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
                   const MeshHit& hit);
-    void list_deep(const PairMeshes& pair, std::uint32_t region, const Vec3& way);
+    void list_deep(const PairMeshes& pair, std::uint32_t region);
     void list_pierced(const PairMeshes& pair, std::uint32_t region);
-    void give_deep(std::vector<FeatureContact>& found) const;
+    void give_deep(const PairMeshes& pair, std::vector<FeatureContact>& found);
     std::uint32_t node_of(std::uint64_t vertex) const;
 
     std::vector<Crossing> crossings_; ///< of a, then of b
@@ -91,6 +96,7 @@ private:
     std::vector<std::pair<std::uint32_t, Vec3>> points_, faces_; ///< by region: points, and normals of faces crossed
     std::vector<Passing> passing_;
     std::vector<FeatureContact> deep_; ///< of one region
+    std::vector<Vec3> asked_;          ///< ways, of one region
 };
 
 } // namespace raycontact

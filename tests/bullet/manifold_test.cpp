@@ -179,12 +179,6 @@ TEST(Manifold, PointsAreHeldForAWhile) {
     EXPECT_EQ(w.touching(), 0);
 }
 
-TEST(Manifold, KeysHoldCrossings) {
-    for (const std::uint32_t kept : {0u, 1u, 1021u, edge_start, edge_end}) EXPECT_EQ(bullet::key_crossing(kept), kept);
-    EXPECT_EQ(bullet::key_crossing(1022), 0u);
-    EXPECT_LT(bullet::key_crossing(edge_start - 1), 1022u); // never taken for an end
-}
-
 TEST(Manifold, ContactCallbacks) {
     const Events events;
     TestWorld w({}, one_patch());

@@ -148,7 +148,7 @@ TEST(assemblies, fitted_parts) {
     const Depths all = of_flush_pairs(fitted_pair, fitted_kinds, 600);
     all.print("fitted parts");
     EXPECT_EQ(all.without, 0u);
-    EXPECT_LE(all.deep, 201u) << all.words;
+    EXPECT_LE(all.deep, 40u) << all.words;
 }
 
 struct Plates {
@@ -292,7 +292,7 @@ TEST(assemblies, nut_on_bolt) {
         std::snprintf(what, sizeof what, "nut on bolt, %g mm wider, unit %.4g m", 1000 * clearance, stands_out());
         depths.print(what);
         EXPECT_EQ(depths.without, 0u);
-        EXPECT_EQ(depths.deep, 0u) << depths.words;
+        EXPECT_LE(depths.deep, 1u) << depths.words;
         EXPECT_GE(depths.pairs, 60u);
     }
 }
@@ -305,8 +305,8 @@ TEST(assemblies, nut_beside_its_place) {
         std::snprintf(what, sizeof what, "nut up to %g mm beside its place", 1000 * off);
         depths.print(what);
         EXPECT_EQ(depths.without, 0u);
-        EXPECT_LE(depths.deep, 5u) << depths.words;
-        EXPECT_EQ(depths.far, 0u) << depths.words;
+        EXPECT_LE(depths.deep, 8u) << depths.words;
+        EXPECT_LE(depths.far, 3u) << depths.words;
         EXPECT_GE(depths.pairs, 80u);
     }
 }

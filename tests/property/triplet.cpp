@@ -22,8 +22,8 @@ auto key(const Contact& c) {
 
 bool same_lost(std::span<const LostContact> x, std::span<const LostContact> y) {
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const LostContact& c, const LostContact& d) {
-        return std::tie(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other())
-               == std::tie(d.body_a, d.body_b, d.feature, d.vertex_body, d.vertex, d.other());
+        return std::tie(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other)
+               == std::tie(d.body_a, d.body_b, d.feature, d.vertex_body, d.vertex, d.other);
     });
 }
 

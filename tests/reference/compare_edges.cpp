@@ -34,7 +34,7 @@ Answers answers(std::span<const Contact> contacts) {
         ReferenceContact r;
         r.vertex_body = c.vertex_body;
         r.feature = c.feature;
-        r.crossing = c.crossing;
+        r.crossing = c.other();
         r.vertex = c.vertex;
         r.triangle = c.triangle;
         r.point = c.point;
@@ -42,7 +42,7 @@ Answers answers(std::span<const Contact> contacts) {
         r.depth = c.depth;
         r.ray_length = c.ray_length;
         r.weight = c.weight;
-        list[{c.vertex_body, c.feature, c.vertex, c.crossing}] = r;
+        list[{c.vertex_body, c.feature, c.vertex, c.other()}] = r;
     }
     return list;
 }
@@ -148,7 +148,7 @@ void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pos
         if (sum.complaints.size() >= 5) continue;
         const auto [body, feature, vertex, crossing] = key;
         sum.complaints.push_back(
-            text("%s %u, crossing %#x of ", feature == Feature::edge ? "edge" : "inside", vertex, crossing)
+            text("%s %u, crossing %#x of ", feature == Feature::edges ? "edge" : "inside", vertex, crossing)
             + (body == VertexBody::a ? a.name + " (a) against " + b.name : b.name + " (b) against " + a.name)
             + answer_of("reference", expected, key) + answer_of("library", found, key) + "\n  pose a " + text(pose_a)
             + "\n  pose b " + text(pose_b));

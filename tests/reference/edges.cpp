@@ -23,6 +23,7 @@
 namespace raycontact::reference {
 
 namespace {
+constexpr std::uint32_t edge_start = 0xfffffffeu, edge_end = 0xffffffffu;
 
 Vec3 shake(std::uint32_t vertex) {
     std::uint64_t state = vertex;
@@ -456,7 +457,7 @@ private:
         const Edge& edge = edges[piece.edge];
         ReferenceContact c;
         c.vertex_body = body;
-        c.feature = Feature::edge;
+        c.feature = Feature::edges;
         c.crossing = end.crossing;
         c.vertex = edge.number;
         c.triangle = target.triangle_index[face];

@@ -213,7 +213,7 @@ TEST(reference_edges, of_crossed_bars) {
     EXPECT_TRUE(find_contacts(low, {}, high, at(0, 0, 0.25 - 1.0 / 64)).empty());
     ASSERT_EQ(contacts.size(), 8u);
     for (const auto& c : contacts) {
-        EXPECT_EQ(c.feature, Feature::edge);
+        EXPECT_EQ(c.feature, Feature::edges);
         EXPECT_NEAR(c.depth, 1.0 / 64, 1e-6);
         EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15);
     }
