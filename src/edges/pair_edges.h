@@ -29,10 +29,10 @@ private:
     /// A part of an edge inside the other body, from a crossing or the edge's end to the next.
     struct Piece {
         std::uint32_t side, edge;
-        std::uint32_t crossing; ///< one at its ends
+        std::array<std::uint32_t, 2> crossings; ///< at its ends; NONE: it ends at a vertex there
         std::array<Vec3, 2> ends;
-        bool through; ///< a crossing at both ends
-        bool speaks;  ///< its edge is sharp and convex
+        bool speaks; ///< its edge is sharp and convex
+        bool is_through() const { return crossings[0] != NONE && crossings[1] != NONE; }
     };
     /// Two edges that pass each other.
     struct Passing {
@@ -50,8 +50,8 @@ private:
         std::uint32_t first_point = 0, end_point = 0;
         std::uint32_t first_face = 0, end_face = 0;
         Vec3 way; ///< in which a leaves b, once asked
-        /// Its loops cancel: a body is pierced through.
         bool is_flush() const { return flush_length > 0.1 * loop_length; }
+        /// Its loops cancel: a body is pierced through.
         bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
     struct Range {
@@ -82,9 +82,14 @@ private:
     void list_pierced(const PairMeshes& pair, std::uint32_t region);
     void give_deep(const PairMeshes& pair, std::vector<FeatureContact>& found);
     std::uint32_t node_of(std::uint64_t vertex) const;
+    std::span<const Crossing> crossings() const { return loops_.crossings(); }
+    std::uint32_t region_of(const Piece& piece) const {
+        return region_of_[piece.crossings[0] == NONE ? piece.crossings[1] : piece.crossings[0]];
+    }
+    void follow_loops(const PairMeshes& pair, const NearEdges& near, bool in_contact);
 
-    std::vector<Crossing> crossings_; ///< of a, then of b
     Loops loops_;
+    std::vector<std::uint32_t> by_edge_;    ///< crossings, those of an edge along it
     std::vector<VertexContact> in_contact_; ///< by vertex
     std::vector<Piece> pieces_;             ///< as their edges are numbered, and along these
     std::vector<std::uint64_t> vertices_;   ///< in contact, or at an end of a piece; sorted
