@@ -45,6 +45,8 @@ public:
         return true;
     }
     std::span<const T> values() const { return std::span(values_).first(count_); }
+    /// There are none in this step, nor likely in the next.
+    void rest() { count_ = expected_ = 0; }
     /// After a step: frees memory that it hardly used.
     void give_back() {
         array_.give_back(expected_);

@@ -38,13 +38,13 @@ void Pipeline::give_back(const Update& last) {
         rays = batch_.sums[RayBatch::ray_sum].sums[0];
         break;
     case Finds::certified:
-        certified_.give_back(batch_);
+        certified_.give_back();
         break;
     case Finds::coherent:
         coherent_.give_back();
         break;
     }
-    if (has_near_) edges_.give_back(batch_);
+    if (has_near_) edges_.give_back();
     batch_.give_back(rays);
     gather_.give_back();
     local_.give_back();
@@ -123,7 +123,8 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
-    if (has_near_) stats.pair_bytes += edges_.bytes(batch_) + near_.all().size_bytes();
+    stats.pair_bytes += asked_.capacity() * sizeof(AskedPair);
+    if (has_near_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:
         return standard_.count(batch_, last.pairs.size(), stats);

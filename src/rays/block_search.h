@@ -37,6 +37,8 @@ public:
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;
 
+    /// Instead of a search: there are no pairs in this step.
+    void rest() { pair_count_ = 0; }
     /// After a step that found so many blocks: frees memory that it hardly used.
     void give_back(std::size_t used);
     /// Of the last find.

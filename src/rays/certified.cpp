@@ -268,13 +268,13 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
                         + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
                         + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
                         + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult))
-                        + standard_.bytes() + edges_.bytes(batch);
+                        + standard_.bytes() + edges_.bytes() + near_.bytes();
 }
 
 // Not the rays held: the next step needs them.
-void CertifiedRays::give_back(const RayBatch& batch) {
+void CertifiedRays::give_back() {
     wake_up_.give_back();
-    edges_.give_back(batch);
+    edges_.give_back();
     raycontact::give_back(stale_);
     raycontact::give_back(directed_);
     const std::size_t segments = segments_.size();

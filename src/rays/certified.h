@@ -30,7 +30,7 @@ public:
     /// Adds what the last step did.
     void count(const RayBatch& batch, StepStats& stats) const;
     /// After a step: frees memory that it hardly used.
-    void give_back(const RayBatch& batch);
+    void give_back();
 
 private:
     struct Stale {

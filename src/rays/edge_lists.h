@@ -24,14 +24,16 @@ public:
     }
     void clear();
 
-    std::uint64_t bytes(const RayBatch& batch) const;
+    std::uint64_t bytes() const;
     /// After a step: frees memory that it hardly used. Not what is kept.
-    void give_back(const RayBatch& batch);
+    void give_back();
 
 private:
-    std::vector<std::uint32_t> due_,
-        directed_;                       ///< places of the pairs; 0, 1, 2 and so on
-    Array<kernels::DirectedPair> pairs_; ///< both directions of those due
+    void find(const Update& update, std::span<const DueEdges> due, WatchedPairs& table, RayBatch& batch);
+
+    std::vector<DueEdges> due_;
+    std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
+    Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
     Array<float> margins_;
     EdgeRays rays_;
     ByPair<kernels::NearEdge> found_;

@@ -40,28 +40,32 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
 }
 
 bool EdgeRays::had_room(Device& device, const RayBatch& batch) {
-    const std::size_t cast = batch.sums[RayBatch::edge_ray_sum].sums[0];
+    block_count_ = batch.sums[RayBatch::edge_block_sum].sums[0];
+    ray_count_ = batch.sums[RayBatch::edge_ray_sum].sums[0];
     const bool blocks_had = search_.had_room(device, batch.sums[RayBatch::edge_block_sum]);
-    const bool rays_had = cast <= rays_.size();
-    if (!rays_had) rays_.resize(device, cast + cast / 2);
+    const bool rays_had = ray_count_ <= rays_.size();
+    if (!rays_had) rays_.resize(device, ray_count_ + ray_count_ / 2);
     return found_.take(device, batch.sums[RayBatch::edge_sum].sums[0]) && blocks_had && rays_had;
 }
 
-std::uint64_t EdgeRays::bytes(const RayBatch& batch) const {
-    return std::uint64_t{batch.sums[RayBatch::edge_block_sum].sums[0]}
-               * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
-           + batch.sums[RayBatch::edge_ray_sum].sums[0]
-                 * (sizeof(kernels::Ray) + sizeof(kernels::EdgeHits) + 2 * sizeof(kernels::uint))
+void EdgeRays::rest() {
+    search_.rest();
+    found_.rest();
+    block_count_ = ray_count_ = 0;
+}
+
+std::uint64_t EdgeRays::bytes() const {
+    return search_.bytes() + margins_.size() * sizeof(float)
+           + ray_count_ * (sizeof(kernels::Ray) + sizeof(kernels::EdgeHits) + 2 * sizeof(kernels::uint))
            + found_.values().size_bytes();
 }
 
-void EdgeRays::give_back(const RayBatch& batch) {
-    const std::size_t cast = batch.sums[RayBatch::edge_ray_sum].sums[0];
-    search_.give_back(batch.sums[RayBatch::edge_block_sum].sums[0]);
+void EdgeRays::give_back() {
+    search_.give_back(block_count_);
     margins_.give_back();
-    rays_.give_back(cast);
-    hits_.give_back(cast);
-    counts_.give_back(cast);
+    rays_.give_back(ray_count_);
+    hits_.give_back(ray_count_);
+    counts_.give_back(ray_count_);
     found_.give_back();
 }
 

@@ -20,9 +20,11 @@ public:
     /// In the order of the pairs.
     Results<kernels::NearEdge>& found() { return found_; }
 
-    std::uint64_t bytes(const RayBatch& batch) const;
+    /// Instead of a cast: there is nothing to do in this step.
+    void rest();
+    std::uint64_t bytes() const;
     /// After a step: frees memory that it hardly used.
-    void give_back(const RayBatch& batch);
+    void give_back();
 
 private:
     BlockSearch search_{BlockSearch::Sources::edges};
@@ -31,6 +33,7 @@ private:
     Array<kernels::EdgeHits> hits_;
     Columns counts_; ///< by ray: faces
     Results<kernels::NearEdge> found_;
+    std::size_t block_count_ = 0, ray_count_ = 0; ///< of the last cast
 };
 
 } // namespace raycontact

@@ -91,11 +91,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         slack.apart = false;
         for (std::size_t d = 0; d < 2; ++d)
             state.directions[d].edge_expiry = state.directions[d].clock + moved[d] + edges_last;
-        DueEdges& due = slice.edges.add();
-        due.pair = i;
-        due.margin = static_cast<float>(margin);
-        place_source(*body[0], *body[1], now.pose, due.places[0]);
-        place_source(*body[1], *body[0], now.pose_of_second(), due.places[1]);
+        slice.edges.add() = {i, static_cast<float>(margin)};
     }
     for (std::uint32_t d = 0; d < 2; ++d) {
         const PlacedBody &source = *body[d], &target = *body[1 - d];
@@ -122,18 +118,6 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     }
 }
 
-// Of a pair that keeps nothing.
-void WakeUp::find_edges(const Update& update, std::uint32_t i, Slice& slice) {
-    const auto [first, second] = update.pairs[i];
-    const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-    if (!asks_edges(update, a, b)) return;
-    DueEdges& due = slice.edges.add();
-    due.pair = i;
-    due.margin = 0;
-    place_source(a, b, due.places[0]);
-    place_source(b, a, due.places[1]);
-}
-
 // The cheap bound comes first; most pairs at rest need no more.
 void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                         Slice& slice) {
@@ -148,7 +132,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
             slice.as_standard.add() = i;
-            find_edges(update, i, slice);
+            if (asks_edges(update, update.bodies[pair.first], update.bodies[pair.second])) slice.edges.add() = {i, 0};
             if (as_standard > 0) --as_standard;
         } else {
             wake_pair(update, table, i, speed, slice);
@@ -183,7 +167,7 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
 
 void WakeUp::give_back() {
     std::size_t due = 0;
-    for (const Slice& slice : slices()) due += slice.due.size();
+    for (const Slice& slice : slices()) due += slice.due.size() + slice.edges.size();
     most_due_ = std::max(most_due_, due);
     if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
     rooms_.reset();

@@ -67,7 +67,6 @@ private:
     };
     static void wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                            Slice& slice);
-    static void find_edges(const Update& update, std::uint32_t i, Slice& slice);
     static void wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice);
 
     std::unique_ptr<Room[]> rooms_;

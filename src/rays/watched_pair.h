@@ -63,7 +63,6 @@ struct Due {
 struct DueEdges {
     std::uint32_t pair; ///< its place
     float margin;       ///< metres that it may move before they are due again
-    kernels::DirectedPair places[2];
 };
 
 } // namespace raycontact

@@ -22,6 +22,7 @@ public:
         opened_ = open_device("cpu", 1);
         store_ = std::make_unique<ShapeStore>(*opened_.device);
         for (const auto& shape : shapes) store_->add(shape);
+        settings_.method = Method::standard;
         settings_.features = Features::edges;
     }
     void add(std::size_t a, const Pose& pose_a, std::size_t b, const Pose& pose_b) {
@@ -122,7 +123,7 @@ TEST(EdgeRays, FindEveryCrossing) {
             for (Pose* pose : {&far, &far_a}) pose->translation = pose->translation + Vec3{10000, 3000, -2000};
         all.add(at(placed.a), far_a, at(placed.b), far);
     }
-    expect_all_found(all, 4000, 0.1);
+    expect_all_found(all, 3000, 0.1);
 }
 
 // Faces in one plane, edges along edges.
