@@ -28,16 +28,18 @@ using namespace raycontact::reference;
 
 namespace {
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, VertexBody, Feature, std::uint32_t, std::uint32_t>;
+using Key = std::tuple<std::uint32_t, std::uint32_t, Feature, VertexBody, std::uint32_t, std::uint32_t>;
 
 /// The order of contacts; a slot, as a contact names it, finds the body that is there.
 struct BySlot {
     bool operator()(BodyId a, BodyId b) const { return slot_of(a) < slot_of(b); }
 };
 
-template <class Named>
-Key key(const Named& c) {
+Key key(const Contact& c) {
     return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other()};
+}
+Key key(const LostContact& c) {
+    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
 }
 
 struct Guest {
