@@ -63,25 +63,27 @@ bool crosses(const PairMeshes& pair, std::size_t side, std::uint32_t edge, const
     return true;
 }
 
-std::size_t find_crossings(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, std::span<Crossing> found) {
-    std::size_t count = 0;
+bool find_other(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, const Crossing& known,
+                Crossing& found) {
     for (std::size_t side = 0; side < 2; ++side) {
         const PlacedFace &own = faces[side], &other = faces[1 - side];
         std::array<double, 3> heights;
         for (std::size_t k = 0; k < 3; ++k) heights[k] = height(other, own.corners[k]);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = (k + 1) % 3;
-            if ((heights[k] >= 0) == (heights[next] >= 0) || count == found.size()) continue;
+            if ((heights[k] >= 0) == (heights[next] >= 0)) continue;
+            const std::uint32_t edge = edge_of(pair.shape(side), own.face, static_cast<std::uint32_t>(k));
+            if (known.side == side && known.edge == edge) continue;
             const Corner p{own.vertices[k], own.corners[k]}, q{own.vertices[next], own.corners[next]};
             if (!pierces(side, p, q, other)) continue;
-            const std::uint32_t edge = edge_of(pair.shape(side), own.face, static_cast<std::uint32_t>(k));
             // From the edge's first corner: where an edge is crossed is one number.
             const bool turned = ends_of(pair.shape(side), edge)[0] != p.vertex;
-            found[count++] = turned ? crossing(side, edge, other.face, q.point, p.point, heights[next], heights[k])
-                                    : crossing(side, edge, other.face, p.point, q.point, heights[k], heights[next]);
+            found = turned ? crossing(side, edge, other.face, q.point, p.point, heights[next], heights[k])
+                           : crossing(side, edge, other.face, p.point, q.point, heights[k], heights[next]);
+            return true;
         }
     }
-    return count;
+    return false;
 }
 
 } // namespace raycontact

@@ -4,8 +4,7 @@
 #include "edges/near_edges.h"
 #include "edges/pair_meshes.h"
 
-#include <span>
-#include <vector>
+#include <array>
 
 namespace raycontact {
 
@@ -36,8 +35,8 @@ struct PlacedFace {
 /// close.
 bool crosses(const PairMeshes& pair, std::size_t side, std::uint32_t edge, const PlacedFace& face, Crossing& found);
 
-/// The crossings of the edges of a triangle of a with one of b and the other way round; returns their number, at most
-/// `found` has room for.
-std::size_t find_crossings(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, std::span<Crossing> found);
+/// The other crossing of a triangle of a and one of b that have `known` (which may lie on either); false if there is
+/// none.
+bool find_other(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, const Crossing& known, Crossing& found);
 
 } // namespace raycontact

@@ -10,7 +10,6 @@ namespace {
 // The vector area says which way unless the normals along the loop say otherwise by more than 60 degrees: of flush
 // faces rounding decides where a loop runs, and they add nothing to the sum of normals.
 constexpr double same_way = 0.5;
-constexpr std::size_t longest_loop = 1u << 24;
 
 Vec3 unit(const Vec3& v) {
     const double size = length(v);
@@ -69,13 +68,13 @@ bool Loops::walk(const PairMeshes& pair, const Crossing& seed, bool onward) {
     Crossing at = seed;
     const EdgeFaces first = faces_of(pair.shape(at.side), at.edge);
     std::uint32_t next = onward ? first.own : first.across; // beyond the edge of `at`
-    while (next != NONE && steps.size() < longest_loop) {
+    Crossing mark = seed; // of a fault in the mesh: the walk comes by here again (after Brent)
+    std::size_t until = 1;
+    while (next != NONE) {
         faces_[at.side].set(pair, at.side, next);
         faces_[1 - at.side].set(pair, 1 - at.side, at.face);
-        std::array<Crossing, 3> found;
-        if (find_crossings(pair, faces_, found) != 2) return false; // no manifold: the curve ends here
-        if (!found[0].is_same(at) && !found[1].is_same(at)) return false;
-        const Crossing& other = found[found[0].is_same(at) ? 1 : 0];
+        Crossing other;
+        if (!find_other(pair, faces_, at, other)) return false; // no manifold: the curve ends here
         for (std::size_t side = 0; side < 2; ++side) {
             if (normal_faces_[side] == faces_[side].face) continue;
             normal_faces_[side] = faces_[side].face;
@@ -83,6 +82,14 @@ bool Loops::walk(const PairMeshes& pair, const Crossing& seed, bool onward) {
         }
         steps.push_back({other, normals_});
         if (other.is_same(seed)) return true;
+        if (other.is_same(mark)) {
+            steps.clear();
+            return false;
+        }
+        if (steps.size() == until) {
+            mark = other;
+            until *= 2;
+        }
         const std::uint32_t here = faces_[other.side].face;
         const EdgeFaces beyond = faces_of(pair.shape(other.side), other.edge);
         at = other;

@@ -27,8 +27,6 @@ constexpr double parallel = 0.98;
 // Two edges whose normal has no larger part than this along the way of their region are passed over.
 constexpr double sideways = 0.1;
 constexpr std::size_t most_faces = 64;
-// An edge is short up to this, in diagonals of the smaller body.
-constexpr double short_edge = 0.1;
 // A ray from a piece begins this part of its half inside.
 constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;
@@ -98,12 +96,10 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
     pass_edges(pair);
     const auto before = static_cast<std::ptrdiff_t>(found.size());
     give_edges(found);
+    all_speak_ = false;
     give_deep(pair, found);
-    // Concave and flat edges speak where nothing else does.
-    if (found.size() == std::size_t(before) && in_contact_.empty()) {
-        for (Piece& piece : pieces_) piece.speaks = true;
-        give_deep(pair, found);
-    }
+    all_speak_ = found.size() == std::size_t(before) && in_contact_.empty();
+    if (all_speak_) give_deep(pair, found);
     // Two edges have one contact, the deepest.
     const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
     std::sort(found.begin() + before, found.end(), [&](const FeatureContact& p, const FeatureContact& q) {
@@ -168,10 +164,9 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
         const std::uint64_t of_side = std::uint64_t{side} << 32;
         crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
         if (placed[side].target.header.closed == 0) continue; // an open mesh has no inside
-        const bool speaks = is_sharp(pair.shape(side), edge) && is_convex(pair.shape(side), edge);
         // The piece before crossing k, if it is inside.
         for (std::size_t k = begin; k <= end; ++k) {
-            Piece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}, speaks};
+            Piece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}};
             const auto [enters, leaves] = piece.crossings;
             if ((enters != NONE && crossings()[enters].leaves) || (leaves != NONE && !crossings()[leaves].leaves))
                 continue;
@@ -181,7 +176,7 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
                 } else {
                     const std::uint32_t vertex = e == 0 ? start : stop;
                     piece.ends[e] = pair.vertex(side, vertex);
-                    piece_vertices_.emplace_back(piece.crossings[1 - e], of_side | vertex);
+                    piece_vertices_.emplace_back(of_side | vertex, piece.crossings[1 - e]);
                 }
             }
             pieces_.push_back(piece);
@@ -190,24 +185,29 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
     std::sort(crossed_.begin(), crossed_.end());
 }
 
-std::uint32_t PairEdges::node_of(std::uint64_t vertex) const {
-    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), vertex);
-    if (at == vertices_.end() || *at != vertex) return NONE;
-    return static_cast<std::uint32_t>(crossings().size() + std::size_t(at - vertices_.begin()));
-}
-
 void PairEdges::join_regions(const PairMeshes& pair) {
-    vertices_.clear();
-    for (const VertexContact& v : in_contact_) vertices_.push_back(v.vertex);
-    for (const auto& [crossing, vertex] : piece_vertices_) vertices_.push_back(vertex);
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    sets_.reset(crossings().size() + vertices_.size());
+    // The nodes are the crossings, the vertices in contact, and the other vertices at ends of pieces.
+    const auto first = static_cast<std::uint32_t>(crossings().size());
+    const std::uint32_t first_other = first + static_cast<std::uint32_t>(in_contact_.size());
+    sets_.reset(first_other + piece_vertices_.size());
     for (const LoopSegment& s : loops_.segments()) sets_.join(s.from, s.to);
     for (const Piece& piece : pieces_)
         if (piece.is_through()) sets_.join(piece.crossings[0], piece.crossings[1]);
-    for (const auto& [crossing, vertex] : piece_vertices_) sets_.join(crossing, node_of(vertex));
-    join_vertices(pair);
+    std::sort(piece_vertices_.begin(), piece_vertices_.end());
+    other_vertices_.clear();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < piece_vertices_.size(); ++i) {
+        const auto [vertex, crossing] = piece_vertices_[i];
+        while (at < in_contact_.size() && in_contact_[at].vertex < vertex) ++at;
+        if (at < in_contact_.size() && in_contact_[at].vertex == vertex) {
+            sets_.join(crossing, first + static_cast<std::uint32_t>(at));
+            continue;
+        }
+        if (other_vertices_.empty() || other_vertices_.back() != vertex) other_vertices_.push_back(vertex);
+        sets_.join(crossing, first_other + static_cast<std::uint32_t>(other_vertices_.size() - 1));
+    }
+    node_count_ = first_other + other_vertices_.size();
+    if (in_contact_.size() > 1) join_vertices(pair);
 }
 
 // Vertices in contact with their neighbours, over edges that stay in the other body.
@@ -216,16 +216,14 @@ void PairEdges::join_vertices(const PairMeshes& pair) {
         const std::size_t side = contact.vertex >> 32;
         const auto own = static_cast<std::uint32_t>(contact.vertex);
         const ShapeData& shape = pair.shape(side);
-        const auto is_in_contact = [this](std::uint64_t vertex) {
+        const auto join = [&](std::uint32_t other) {
+            if (other < own) return; // joined there
+            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
             const auto at = std::lower_bound(in_contact_.begin(), in_contact_.end(), vertex,
                                              [](const VertexContact& c, std::uint64_t v) { return c.vertex < v; });
-            return at != in_contact_.end() && at->vertex == vertex;
-        };
-        const auto join = [&](std::uint32_t other) {
-            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
-            const std::array<std::uint64_t, 2> edge{std::min(vertex, contact.vertex), std::max(vertex, contact.vertex)};
-            if (is_in_contact(vertex) && !std::binary_search(crossed_.begin(), crossed_.end(), edge))
-                sets_.join(node_of(vertex), node_of(contact.vertex));
+            if (at == in_contact_.end() || at->vertex != vertex) return;
+            if (!std::binary_search(crossed_.begin(), crossed_.end(), std::array{contact.vertex, vertex}))
+                sets_.join(node_of(*at), node_of(contact));
         };
         // Around the vertex; where a border ends that, the other way round, too.
         const std::uint32_t begin = shape.vertex_triangle[own];
@@ -249,7 +247,7 @@ void PairEdges::list_regions(const PairMeshes& pair) {
     regions_.clear();
     points_.clear();
     faces_.clear();
-    region_of_.assign(crossings().size() + vertices_.size(), NONE);
+    region_of_.assign(node_count_, NONE);
     for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
         const std::uint32_t root = sets_.of(i); // the lowest, so seen already
         if (root == i) {
@@ -265,15 +263,18 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         region.area_sum += length(loop.area);
     }
     for (std::uint32_t i = 0; i < crossings().size(); ++i) points_.emplace_back(region_of_[i], crossings()[i].point);
-    for (std::size_t i = 0; i < vertices_.size(); ++i)
-        points_.emplace_back(region_of_[crossings().size() + i],
-                             pair.vertex(vertices_[i] >> 32, static_cast<std::uint32_t>(vertices_[i])));
+    const auto place = [&](std::uint32_t node, std::uint64_t vertex) {
+        points_.emplace_back(region_of_[node], pair.vertex(vertex >> 32, static_cast<std::uint32_t>(vertex)));
+    };
     for (const VertexContact& c : in_contact_) {
-        Region& region = regions_[region_of_[node_of(c.vertex)]];
+        place(node_of(c), c.vertex);
+        Region& region = regions_[region_of_[node_of(c)]];
         region.deepest = std::max(region.deepest, c.depth);
         region.told = region.deepest;
         region.speaks = true;
     }
+    for (std::size_t i = 0; i < other_vertices_.size(); ++i)
+        place(static_cast<std::uint32_t>(node_count_ - other_vertices_.size() + i), other_vertices_[i]);
     for (const LoopSegment& s : loops_.segments()) {
         Region& region = regions_[region_of_[s.from]];
         const double along = length(crossings()[s.to].point - crossings()[s.from].point);
@@ -286,8 +287,10 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
     }
     const auto by_region = [](const auto& p, const auto& q) { return p.first < q.first; };
-    std::stable_sort(points_.begin(), points_.end(), by_region);
-    std::stable_sort(faces_.begin(), faces_.end(), by_region);
+    if (regions_.size() > 1) {
+        std::stable_sort(points_.begin(), points_.end(), by_region);
+        std::stable_sort(faces_.begin(), faces_.end(), by_region);
+    }
     std::uint32_t point = 0, face = 0;
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {
         Region& region = regions_[r];
@@ -432,6 +435,12 @@ void PairEdges::give_edges(std::vector<FeatureContact>& found) {
     }
 }
 
+// Sharp and convex edges speak; concave ones and those within flat faces only where nothing else does.
+bool PairEdges::speaks(const PairMeshes& pair, const Piece& piece) const {
+    const ShapeData& shape = pair.shape(piece.side);
+    return all_speak_ || (is_sharp(shape, piece.edge) && is_convex(shape, piece.edge));
+}
+
 // How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
 MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
     const std::size_t other = 1 - piece.side;
@@ -486,7 +495,7 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
         if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
     };
     for (const Piece& piece : pieces_) {
-        if (!piece.speaks || region_of(piece) != number) continue;
+        if (region_of(piece) != number || !speaks(pair, piece)) continue;
         if (piece.is_through()) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
         if (region.speaks) continue;
         for (const Vec3& end : piece.ends) ask(piece, end);
@@ -507,7 +516,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
             asked_.push_back(n);
             double most = 0;
             for (const Piece& piece : pieces_) {
-                if (!piece.speaks || region_of(piece) != number) continue;
+                if (region_of(piece) != number || !speaks(pair, piece)) continue;
                 for (const Vec3& end : piece.ends) most = std::max(most, way_out(pair, piece, end, n).distance);
                 if (most > 1.001 * least) break;
             }
@@ -519,7 +528,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
         }
     if (way == Vec3{}) return;
     for (const Piece& piece : pieces_) {
-        if (!piece.speaks || region_of(piece) != number) continue;
+        if (region_of(piece) != number || !speaks(pair, piece)) continue;
         for (const Vec3& end : piece.ends) {
             const MeshHit hit = way_out(pair, piece, end, way);
             add_deep(pair, piece, end, way, hit.distance, hit);
