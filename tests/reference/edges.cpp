@@ -14,7 +14,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -23,7 +22,8 @@
 namespace raycontact::reference {
 
 namespace {
-constexpr std::uint32_t edge_start = 0xfffffffeu, edge_end = 0xffffffffu;
+
+constexpr double inf = std::numeric_limits<double>::infinity();
 
 Vec3 shake(std::uint32_t vertex) {
     std::uint64_t state = vertex;
@@ -33,563 +33,565 @@ Vec3 shake(std::uint32_t vertex) {
     return {x, y, next()};
 }
 
-struct Crossing {
-    std::uint32_t face = 0; ///< of the target
-    double along = 0;       ///< 0 at the edge's first vertex, 1 at its second
-    bool enters = false;
-    Vec3 point;
-    std::uint32_t node = 0; ///< of the graph of regions
+// A body of the pair, in the frame in which all is decided: that of b, about its centre.
+struct Body {
+    const Solid& solid;
+    Pose pose;  ///< in that frame
+    Pose world; ///< of that frame
+    std::vector<Edge> edges;
+    std::vector<Vec3> vertices, normals;     ///< moved by a hair; of faces
+    std::map<std::uint32_t, double> contact; ///< vertices in contact: their depth
+    RayCaster caster;
+
+    Body(const Solid& s, const Pose& p, const Pose& w, double hair, double shaken)
+        : solid(s), pose(p), world(w), edges(edges_of(s)), caster(s) {
+        for (std::uint32_t v = 0; v < s.vertices.size(); ++v)
+            vertices.push_back(pose.translation
+                               + rotate(pose, s.vertices[v] + hair * (shaken * shake(v) - s.vertex_normals[v])));
+        for (const Vec3& n : s.face_normals) normals.push_back(rotate(pose, n));
+    }
+
+    std::array<Vec3, 2> faces_at(const Edge& e) const {
+        return {normals[e.faces[0]], normals[e.faces[e.faces[1] == none ? 0 : 1]]};
+    }
+    Vec3 along(const Edge& e) const { return vertices[e.to] - vertices[e.from]; }
+    bool speaks(const Edge& e) const { return e.sharp && !e.concave; }
+
+    double area_at(const Edge& e) const {
+        double area = 0;
+        for (const std::uint32_t f : e.faces) {
+            if (f == none) continue;
+            const auto& t = solid.triangles[f];
+            area +=
+                length(cross(solid.vertices[t[1]] - solid.vertices[t[0]], solid.vertices[t[2]] - solid.vertices[t[0]]))
+                / 2;
+        }
+        return area;
+    }
+
+    // How far it is from a point inside to the way out.
+    Hit way_out(const Vec3& from, const Vec3& way) {
+        const Hit hit = caster.closest(rotate_back(pose, from - pose.translation), rotate_back(pose, way));
+        return hit.triangle != Hit::none && hit.from_inside ? hit : Hit{Hit::none, 0, false};
+    }
+
+    // Of a face that whose line is nearest to a point.
+    const Edge& nearest_edge(std::uint32_t face, const Vec3& point) const {
+        const Edge* nearest = nullptr;
+        double least = inf;
+        for (const Edge& e : edges) {
+            if (e.faces[0] != face && e.faces[1] != face) continue;
+            const double away = length(cross(unit(along(e)), point - vertices[e.from]));
+            if (away >= least) continue;
+            least = away;
+            nearest = &e;
+        }
+        return *nearest;
+    }
 };
 
-struct End {
-    std::uint32_t vertex = none;   ///< of the source; none: it is at a crossing
-    std::uint32_t crossing = none; ///< of the edge, or edge_start, edge_end
-    std::uint32_t face = none;     ///< that is crossed
-    std::uint32_t node = 0;
-    std::uint32_t point = 0; ///< of OneWay::points_
+struct Crossing {
+    std::size_t side; ///< whose edge: 0 a, 1 b
+    const Edge* edge;
+    std::uint32_t face; ///< of the other
+    double at;          ///< 0 to 1
+    bool leaves;
+    Vec3 point;
+    std::vector<std::size_t> links = {};
+};
+
+// Two crossings that follow each other.
+struct Link {
+    std::size_t from, to;
+    std::uint32_t faces[2]; ///< of a, of b
+    bool seen = false;
+};
+
+struct Loop {
+    std::vector<std::size_t> crossings, links;
+    bool closed = false;
+    Vec3 area; ///< S
 };
 
 struct Piece {
-    std::uint32_t edge = 0;
-    End ends[2];
+    std::size_t side;
+    const Edge* edge;
+    std::size_t crossing;
+    Vec3 ends[2];
+    bool through;
 };
 
-// One direction of the pair: the edges of a source against a target, in the target's frame, minus its centre.
-class OneWay {
+struct Extent {
+    double low = inf, high = -inf;
+    double deep() const { return high - low; }
+};
+
+struct Region {
+    Vec3 area;
+    double areas = 0, whole = 0, flush = 0; ///< lengths of S; of loops; of those between flush faces
+    double deepest = 0, told = 0;           ///< vertex; contact
+    bool speaks = false;
+    std::vector<Vec3> points, faces;
+
+    bool pierced() const { return length(area) <= areas / 4; }
+    Extent extent(const Vec3& n) const {
+        Extent e;
+        for (const Vec3& p : points) e = {std::min(e.low, dot(p, n)), std::max(e.high, dot(p, n))};
+        return e;
+    }
+    double thinnest() const {
+        double least = inf;
+        for (const Vec3& n : faces) least = std::min(least, extent(n).deep());
+        return least;
+    }
+    Vec3 way(double hair) const {
+        const Vec3 along = unit(area);
+        const double thin = thinnest();
+        if (thin >= extent(along).deep() / 2 - 5 * hair) return along;
+        Vec3 best;
+        for (const Vec3& n : faces)
+            if (extent(n).deep() <= 1.1 * thin + hair && (best == Vec3{} || dot(n, along) > dot(best, along))) best = n;
+        return best;
+    }
+};
+
+class PairOfBodies {
 public:
-    OneWay(const Solid& from, const Pose& from_pose, const Solid& to, const Pose& to_pose)
-        : source(from), target(to), source_pose(from_pose), target_pose(to_pose), edges(edges_of(from)),
-          small(std::min(from.diagonal, to.diagonal)), hair(1e-7 * small), to_target_(to), to_source_(from),
-          contact(from.vertices.size()), nodes(from.vertices.size()) {
-        shift_ = (source_pose.translation - target_pose.translation)
-                 + (rotate(source_pose, source.centre) - rotate(target_pose, target.centre));
-        for (std::uint32_t v = 0; v < source.vertices.size(); ++v)
-            vertices.push_back(to_target(source.vertices[v] + hair * (0.01 * shake(v) - source.vertex_normals[v])));
-        for (const CastRay& ray : cast_all(source, source_pose, target, target_pose))
-            if (ray.contact) contact[ray.vertex] = ray;
+    PairOfBodies(Body& a, Body& b, double hair) : bodies_{&a, &b}, hair_(hair) {}
+
+    bool cross() {
+        for (const std::size_t side : {0u, 1u})
+            for (const Edge& edge : bodies_[side]->edges) cross(side, edge);
+        return !crossings_.empty();
     }
 
-    Vec3 to_target(const Vec3& p) const { return rotate_back(target_pose, rotate(source_pose, p) + shift_); }
-    Vec3 to_source(const Vec3& p) const { return rotate_back(source_pose, rotate(target_pose, p) - shift_); }
-    Vec3 to_world(const Vec3& p) const { return target_pose.translation + rotate(target_pose, target.centre + p); }
-
-    bool is_small(std::uint32_t face) const {
-        double longest = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto& t = source.triangles[face];
-            longest = std::max(longest, length(source.vertices[t[(k + 1) % 3]] - source.vertices[t[k]]));
-        }
-        return longest <= 0.1 * small;
-    }
-
-    double edge_length(const Edge& edge) const { return length(source.vertices[edge.to] - source.vertices[edge.from]); }
-
-    // touching: a vertex of the pair is in contact.
-    void cross_all(bool touching) {
-        for (const Edge& edge : edges) {
-            auto& list = crossings.emplace_back();
-            if (!target.closed || !edge.sharp) continue;
-            if (touching && is_small(edge.faces[0]) && (edge.faces[1] == none || is_small(edge.faces[1]))) continue;
-            const Vec3 p = vertices[edge.from], q = vertices[edge.to];
-            for (std::uint32_t f = 0; f < target.triangles.size(); ++f) {
-                const auto& t = target.triangles[f];
-                const Vec3 a = target.vertices[t[0]], b = target.vertices[t[1]], c = target.vertices[t[2]];
-                const double above_p = dot(target.face_normals[f], p - a);
-                const double above_q = dot(target.face_normals[f], q - a);
-                if ((above_p > 0) == (above_q > 0)) continue;
-                const Vec3 d = q - p;
-                const double u = dot(d, cross(a - p, b - p));
-                const double v = dot(d, cross(b - p, c - p));
-                const double w = dot(d, cross(c - p, a - p));
-                if (!(u >= 0 && v >= 0 && w >= 0) && !(u <= 0 && v <= 0 && w <= 0)) continue;
-                Crossing crossing;
-                crossing.face = f;
-                crossing.along = above_p / (above_p - above_q);
-                crossing.enters = above_p > 0;
-                crossing.point = p + crossing.along * d;
-                list.push_back(crossing);
-            }
-            std::sort(list.begin(), list.end(), [](const Crossing& x, const Crossing& y) { return x.along < y.along; });
-        }
-    }
-
-    void add_nodes(Graph& graph) {
-        for (auto& node : nodes) node = graph.add();
-        for (auto& list : crossings)
-            for (Crossing& c : list) c.node = graph.add();
-    }
-
-    void cut_pieces(bool with_concave) {
-        vertex_points_.assign(source.vertices.size(), none);
-        for (std::uint32_t e = 0; e < edges.size(); ++e) {
-            if (!edges[e].sharp || (edges[e].concave && !with_concave)) continue;
-            const auto& list = crossings[e];
-            const auto n = static_cast<std::uint32_t>(list.size());
-            if (n == 0) continue;
-            if (!list[0].enters) add_piece(e, edge_start, 0);
-            for (std::uint32_t i = 0; i < n; ++i) {
-                if (!list[i].enters) continue;
-                if (i + 1 == n)
-                    add_piece(e, i, edge_end);
-                else if (!list[i + 1].enters)
-                    add_piece(e, i, i + 1);
-            }
-        }
-    }
-
-    void join_regions(Graph& graph) const {
-        std::vector<bool> ends(source.vertices.size(), false);
-        for (const Piece& piece : pieces) {
-            graph.join(piece.ends[0].node, piece.ends[1].node);
-            for (const End& end : piece.ends)
-                if (end.vertex != none) ends[end.vertex] = true;
-        }
-        std::set<std::pair<std::uint32_t, std::uint32_t>> crossed; // or long ones in a flat face, which may be
-        for (std::size_t e = 0; e < edges.size(); ++e)
-            if (!crossings[e].empty() || (!edges[e].sharp && edge_length(edges[e]) > 0.1 * small))
-                crossed.insert(std::minmax(edges[e].from, edges[e].to));
-        for (const auto& [v, w] : source.edges) {
-            if (crossed.contains(std::minmax(v, w))) continue;
-            if (contact[v] && (contact[w] || ends[w])) graph.join(nodes[v], nodes[w]);
-            if (contact[w] && ends[v]) graph.join(nodes[v], nodes[w]);
-        }
-    }
-
-    std::vector<ReferenceContact> contacts_of(const std::vector<std::uint32_t>& region, VertexBody body,
-                                              Direction direction) {
-        gather_points(region);
-        std::vector<std::optional<Choice>> choices;
-        for (const Piece& piece : pieces) choices.push_back(choose(piece, region[piece.ends[0].node]));
-        agree(choices, region);
-        std::vector<ReferenceContact> contacts;
-        std::set<std::uint32_t> spoken; // vertices
-        for (std::size_t i = 0; i < pieces.size(); ++i) {
-            const Piece& piece = pieces[i];
-            const std::optional<Choice>& choice = choices[i];
-            if (!choice) continue;
-            if (const auto middle = deep_middle(piece, *choice)) {
-                End end = piece.ends[0];
-                end.point = middle->first;
-                contacts.push_back(made(piece, end, choice->face, middle->second, body, direction));
-                continue;
-            }
-            for (const int k : {0, 1}) {
-                const End& end = piece.ends[k];
-                const End& other = piece.ends[1 - k];
-                if (end.vertex != none && contact[end.vertex]) continue;
-                const double out = end_out(end, choice->face);
-                if (out <= 0) continue;
-                if (choice->deepest > 0 && out < choice->region / 2) continue;
-                if (other.vertex != none && out < end_out(other, choice->face) / 2) continue;
-                if (end.vertex != none && !spoken.insert(end.vertex).second) continue;
-                contacts.push_back(made(piece, end, choice->face, out, body, direction));
-            }
-        }
-        return contacts;
-    }
-
-    // A component of the source that lies in the target, where nothing crosses and no vertex is in contact.
-    std::optional<ReferenceContact> inside(VertexBody body, Direction direction) const {
-        if (!target.closed) return {};
-        Graph graph;
-        for (std::size_t v = 0; v < source.vertices.size(); ++v) graph.add();
-        for (const auto& t : source.triangles) {
-            graph.join(t[0], t[1]);
-            graph.join(t[1], t[2]);
-        }
-        const auto component = graph.flood();
-        std::map<std::uint32_t, bool> lies_in;
-        double farthest = 0;
-        std::optional<ReferenceContact> found;
-        for (const auto& t : source.triangles)
-            for (const std::uint32_t v : t) {
-                const auto [at, fresh] = lies_in.try_emplace(component[v]);
-                if (fresh) at->second = winding_number(target, vertices[v]) > 0.5;
-                if (!at->second) continue;
-                const auto [point, face] = nearest(vertices[v]);
-                const double distance = length(point - vertices[v]);
-                if (distance <= farthest) continue;
-                farthest = distance;
-                ReferenceContact c;
-                c.vertex_body = body;
-                c.feature = Feature::inside;
-                c.vertex = source.vertex_index[v];
-                c.triangle = target.triangle_index[face];
-                c.point = to_world(vertices[v]);
-                const Vec3 out = rotate(target_pose, unit(point - vertices[v]));
-                c.normal = body == VertexBody::a ? -out : out;
-                c.depth = c.ray_length = distance;
-                if (direction == Direction::weighted) c.weight = source.vertex_areas[v];
-                found = c;
-            }
-        return found;
-    }
-
-    bool in_contact() const {
-        return std::any_of(contact.begin(), contact.end(), [](const auto& c) { return c.has_value(); });
-    }
-    bool crosses() const {
-        return std::any_of(crossings.begin(), crossings.end(), [](const auto& list) { return !list.empty(); });
-    }
-
-    const Solid& source;
-    const Solid& target;
-    const Pose& source_pose;
-    const Pose& target_pose;
-    std::vector<Edge> edges;
-    double small, hair;
-
-private:
-    struct Choice {
-        std::uint32_t face = 0;
-        double region = 0;  ///< R
-        double deepest = 0; ///< V
+    using Key = std::pair<const Edge*, const Edge*>;
+    struct Told {
+        double depth;
+        Vec3 point, normal;
     };
 
-    void add_piece(std::uint32_t e, std::uint32_t from, std::uint32_t to) {
-        const Edge& edge = edges[e];
-        Piece piece;
-        piece.edge = e;
-        const std::uint32_t names[2] = {from, to};
-        Vec3 at[2];
-        for (const int k : {0, 1}) {
-            End& end = piece.ends[k];
-            end.crossing = names[k];
-            if (names[k] == edge_start || names[k] == edge_end) {
-                end.vertex = names[k] == edge_start ? edge.from : edge.to;
-                end.node = nodes[end.vertex];
-                at[k] = vertices[end.vertex];
+    std::map<Key, Told> contacts() {
+        link();
+        find_loops();
+        cut_pieces();
+        find_regions();
+        std::map<Key, Told> all;
+        pass_edges(all);
+        give_deep(all, false);
+        if (all.empty() && bodies_[0]->contact.empty() && bodies_[1]->contact.empty()) give_deep(all, true);
+        return all;
+    }
+
+private:
+    struct Deep {
+        Key key;
+        Told told;
+    };
+
+    // The volume that two edges span: its sign says on which side they pass each other, whichever asks.
+    double volume(const Edge& of_a, const Edge& of_b) const {
+        const auto &v = bodies_[0]->vertices, &w = bodies_[1]->vertices;
+        return dot(v[of_a.to] - v[of_a.from], reference::cross(w[of_b.from] - v[of_a.from], w[of_b.to] - v[of_a.from]));
+    }
+
+    void cross(std::size_t side, const Edge& edge) {
+        const Body &own = *bodies_[side], &other = *bodies_[1 - side];
+        const Vec3 p = own.vertices[edge.from], q = own.vertices[edge.to];
+        const auto first = static_cast<std::ptrdiff_t>(crossings_.size());
+        for (std::uint32_t f = 0; f < other.normals.size(); ++f) {
+            const auto& t = other.solid.triangles[f];
+            const Vec3 a = other.vertices[t[0]], b = other.vertices[t[1]], c = other.vertices[t[2]];
+            const Vec3 n = reference::cross(b - a, c - a);
+            const double from = dot(n, p - a), to = dot(n, q - a);
+            if ((from >= 0) == (to >= 0)) continue;
+            int left = 0;
+            for (const Edge* e : edges_around(1 - side, f)) {
+                left += ((side == 0 ? volume(edge, *e) : volume(*e, edge)) >= 0) == (e->faces[0] == f);
+            }
+            if (left != 0 && left != 3) continue;
+            crossings_.push_back({side, &edge, f, from / (from - to), from < 0, p + from / (from - to) * (q - p)});
+        }
+        std::sort(crossings_.begin() + first, crossings_.end(),
+                  [](const Crossing& x, const Crossing& y) { return x.at < y.at; });
+    }
+
+    const std::array<const Edge*, 3>& edges_around(std::size_t side, std::uint32_t face) {
+        auto& around = around_[side];
+        if (around.empty()) {
+            around.resize(bodies_[side]->normals.size());
+            std::vector<std::size_t> count(around.size());
+            for (const Edge& e : bodies_[side]->edges)
+                for (const std::uint32_t f : e.faces)
+                    if (f != none) around[f][count[f]++] = &e;
+        }
+        return around[face];
+    }
+
+    void link() {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> on; // triangles of a and b
+        for (std::size_t i = 0; i < crossings_.size(); ++i)
+            for (const std::uint32_t f : crossings_[i].edge->faces)
+                if (f != none)
+                    on[crossings_[i].side == 0 ? std::pair(f, crossings_[i].face) : std::pair(crossings_[i].face, f)]
+                        .push_back(i);
+        for (const auto& [faces, list] : on) {
+            if (list.size() != 2) continue;
+            for (const std::size_t i : list) crossings_[i].links.push_back(links_.size());
+            links_.push_back({list[0], list[1], {faces.first, faces.second}});
+        }
+    }
+
+    void find_loops() {
+        std::vector<bool> seen(crossings_.size());
+        for (const std::size_t links : {0u, 1u, 2u}) // curves that end begin at an end
+            for (std::size_t i = 0; i < crossings_.size(); ++i) {
+                if (seen[i] || crossings_[i].links.size() != links) continue;
+                Loop loop;
+                for (std::size_t at = i; !loop.closed;) {
+                    seen[at] = true;
+                    loop.crossings.push_back(at);
+                    const auto& out = crossings_[at].links;
+                    const auto next = std::find_if(out.begin(), out.end(), [&](auto l) { return !links_[l].seen; });
+                    if (next == out.end()) break;
+                    Link& l = links_[*next];
+                    l.seen = true;
+                    if (l.from != at) std::swap(l.from, l.to);
+                    loop.links.push_back(*next);
+                    at = l.to;
+                    loop.closed = at == i;
+                }
+                measure(loop);
+                loops_.push_back(loop);
+            }
+    }
+
+    void measure(Loop& loop) const {
+        const Vec3 origin = crossings_[loop.crossings[0]].point;
+        Vec3 normals;
+        double runs = 0;
+        for (const std::size_t l : loop.links) {
+            const Vec3 p = crossings_[links_[l].from].point, q = crossings_[links_[l].to].point;
+            const Vec3 n_a = bodies_[0]->normals[links_[l].faces[0]], n_b = bodies_[1]->normals[links_[l].faces[1]];
+            loop.area = loop.area + 0.5 * reference::cross(p - origin, q - origin);
+            normals = normals + length(q - p) * (n_b - n_a);
+            runs += dot(q - p, reference::cross(n_b, n_a));
+        }
+        if (runs < 0) loop.area = -loop.area;
+        if (length(normals) > 0 && dot(unit(loop.area), unit(normals)) < 0.5)
+            loop.area = length(loop.area) * unit(normals);
+    }
+
+    void cut_pieces() {
+        for (std::size_t i = 0; i < crossings_.size(); ++i) {
+            const Crossing& c = crossings_[i];
+            const Body& own = *bodies_[c.side];
+            if (!bodies_[1 - c.side]->solid.closed) continue;
+            const bool first = i == 0 || crossings_[i - 1].edge != c.edge;
+            const bool last = i + 1 == crossings_.size() || crossings_[i + 1].edge != c.edge;
+            if (c.leaves && first) pieces_.push_back({c.side, c.edge, i, {own.vertices[c.edge->from], c.point}, false});
+            if (!c.leaves && last) pieces_.push_back({c.side, c.edge, i, {c.point, own.vertices[c.edge->to]}, false});
+            if (c.leaves && !first && !crossings_[i - 1].leaves)
+                pieces_.push_back({c.side, c.edge, i, {crossings_[i - 1].point, c.point}, true});
+        }
+    }
+
+    void find_regions() {
+        Graph graph;
+        for (std::size_t i = 0; i < crossings_.size(); ++i) graph.add();
+        std::uint32_t first[2]; // vertices
+        for (const std::size_t side : {0u, 1u})
+            for (std::size_t v = 0; v < bodies_[side]->vertices.size(); ++v) {
+                const std::uint32_t node = graph.add();
+                if (v == 0) first[side] = node;
+            }
+        const auto node = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
+        for (const Link& l : links_) graph.join(node(l.from), node(l.to));
+        std::set<std::pair<std::size_t, std::uint32_t>> speaking; // vertices at the end of a piece, or in contact
+        for (const Piece& p : pieces_) {
+            if (p.through) {
+                graph.join(node(p.crossing), node(p.crossing - 1));
+                continue;
+            }
+            const std::uint32_t v = crossings_[p.crossing].leaves ? p.edge->from : p.edge->to;
+            graph.join(node(p.crossing), first[p.side] + v);
+            speaking.emplace(p.side, v);
+        }
+        std::set<const Edge*> crossed;
+        for (const Crossing& c : crossings_) crossed.insert(c.edge);
+        for (const std::size_t side : {0u, 1u}) {
+            const auto& contact = bodies_[side]->contact;
+            for (const auto& [v, depth] : contact) speaking.emplace(side, v);
+            for (const Edge& e : bodies_[side]->edges)
+                if (contact.contains(e.from) && contact.contains(e.to) && !crossed.contains(&e))
+                    graph.join(first[side] + e.from, first[side] + e.to);
+        }
+        region_ = graph.flood();
+        for (std::size_t i = 0; i < crossings_.size(); ++i) regions_[region_[i]].points.push_back(crossings_[i].point);
+        for (const auto& [side, v] : speaking) {
+            Region& region = regions_[region_[first[side] + v]];
+            region.points.push_back(bodies_[side]->vertices[v]);
+            const auto at = bodies_[side]->contact.find(v);
+            if (at == bodies_[side]->contact.end()) continue;
+            region.speaks = true;
+            region.told = region.deepest = std::max(region.deepest, at->second);
+        }
+        for (const Loop& loop : loops_) {
+            Region& region = regions_[region_[loop.crossings[0]]];
+            region.area = region.area + loop.area;
+            region.areas += length(loop.area);
+        }
+        for (const Link& l : links_) {
+            Region& region = regions_[region_[l.from]];
+            const double part = length(crossings_[l.to].point - crossings_[l.from].point);
+            const Vec3 n_a = bodies_[0]->normals[l.faces[0]], n_b = bodies_[1]->normals[l.faces[1]];
+            region.whole += part;
+            if (dot(n_a, n_b) > 0.98) {
+                region.flush += part;
             } else {
-                const Crossing& crossing = crossings[e][names[k]];
-                end.face = crossing.face;
-                end.node = crossing.node;
-                at[k] = crossing.point;
+                region.faces.push_back(n_b);
+                region.faces.push_back(-n_a);
             }
         }
-        const double whole = length(vertices[edge.to] - vertices[edge.from]);
-        const double part = length(at[1] - at[0]);
-        const double pull = std::min({1e-3 * small, 0.01 * whole, 0.25 * part});
-        const Vec3 along = unit(at[1] - at[0]);
-        for (const int k : {0, 1}) {
-            End& end = piece.ends[k];
-            if (end.vertex == none) {
-                end.point = add_point(at[k] + (k == 0 ? pull : -pull) * along);
-            } else {
-                std::uint32_t& point = vertex_points_[end.vertex];
-                if (point == none) point = add_point(at[k]);
-                end.point = point;
+    }
+
+    void pass_edges(std::map<Key, Told>& all) {
+        std::map<Key, std::pair<Told, Region*>> passing;
+        for (const Loop& loop : loops_) {
+            std::vector<const Crossing*> sharp;
+            for (const std::size_t i : loop.crossings)
+                if (crossings_[i].edge->sharp) sharp.push_back(&crossings_[i]);
+            for (std::size_t i = loop.closed ? 0 : 1; i < sharp.size(); ++i) {
+                const Crossing *x = sharp[(i + sharp.size() - 1) % sharp.size()], *y = sharp[i];
+                if (x->side == y->side) continue;
+                if (x->side == 1) std::swap(x, y);
+                Region& region = regions_[region_[loop.crossings[0]]];
+                const auto told = pass(loop, region, *x, *y);
+                if (!told) continue;
+                const auto [at, fresh] = passing.try_emplace({x->edge, y->edge}, *told, &region);
+                if (!fresh && told->depth < at->second.first.depth) at->second = {*told, &region};
             }
         }
-        pieces.push_back(piece);
-    }
-
-    std::uint32_t add_point(const Vec3& p) {
-        points_.push_back(p);
-        return static_cast<std::uint32_t>(points_.size() - 1);
-    }
-
-    // Of each region: its points, vertex contacts first, and the depth of the deepest vertex contact.
-    void gather_points(const std::vector<std::uint32_t>& region) {
-        for (std::uint32_t v = 0; v < source.vertices.size(); ++v) {
-            if (!contact[v]) continue;
-            std::uint32_t& point = vertex_points_[v];
-            if (point == none) point = add_point(vertices[v]);
-            region_points_[region[nodes[v]]].push_back(point);
-            double& deepest = deepest_[region[nodes[v]]];
-            deepest = std::max(deepest, contact[v]->depth);
-        }
-        for (const Piece& piece : pieces)
-            for (const End& end : piece.ends)
-                if (end.vertex == none || !contact[end.vertex]) region_points_[region[end.node]].push_back(end.point);
-        for (auto& [name, list] : region_points_) {
-            constexpr std::size_t most = 48;
-            if (list.size() <= most) continue;
-            std::vector<std::uint32_t> chosen;
-            for (std::size_t i = 0; i < most; ++i) chosen.push_back(list[i * list.size() / most]);
-            list = chosen;
+        for (const auto& [key, found] : passing) {
+            all[key] = found.first;
+            found.second->speaks = true;
+            found.second->told = std::max(found.second->told, found.first.depth);
         }
     }
 
-    double way_out(std::uint32_t point, std::uint32_t face) {
-        const auto [at, fresh] = ways_out_.try_emplace({point, face});
-        if (!fresh) return at->second;
-        const Vec3& p = points_[point];
-        const Vec3& n = target.face_normals[face];
-        const double below = dot(n, target.vertices[target.triangles[face][0]] - p);
-        double out = below;
-        if (below >= 0) {
-            const Hit hit = to_target_.closest(p, n);
-            if (hit.triangle != Hit::none && hit.from_inside) out = hit.distance;
+    std::optional<Told> pass(const Loop& loop, const Region& region, const Crossing& x, const Crossing& y) const {
+        if (region.pierced() || x.edge->concave || y.edge->concave) return {};
+        const auto n_a = bodies_[0]->faces_at(*x.edge), n_b = bodies_[1]->faces_at(*y.edge);
+        const Vec3 e_a = unit(bodies_[0]->along(*x.edge)), e_b = unit(bodies_[1]->along(*y.edge));
+        const Vec3 s = unit(loop.area), gap = y.point - x.point;
+        Vec3 n = reference::cross(e_a, e_b);
+        const double sine = length(n);
+        n = dot(n, n_b[0] + n_b[1]) < 0 ? -unit(n) : unit(n);
+        const auto within = [](const Vec3& d, const std::array<Vec3, 2>& faces) {
+            const Vec3 middle = unit(faces[0] + faces[1]);
+            const auto angle = [&](const Vec3& v) { return std::acos(std::clamp(dot(v, middle), -1.0, 1.0)); };
+            return angle(d) < angle(faces[0]) + 0.1;
+        };
+        Told told{0, x.point, n};
+        if (sine > 0.05 && within(n, n_b) && within(-n, n_a) && dot(n, s) >= 0.5) {
+            if (dot(n, region.way(hair_)) <= 0.1) return {};
+            told.depth = dot(gap, n);
+            // The point of a's edge that is nearest to b's line.
+            const Vec3 start = bodies_[0]->vertices[x.edge->from], across = reference::cross(e_b, n);
+            const double t = dot(y.point - start, across) / dot(e_a, across);
+            told.point = start + std::clamp(t, 0.0, length(bodies_[0]->along(*x.edge))) * e_a;
+        } else {
+            double best = 0.8;
+            for (const Vec3& face : {n_b[0], n_b[1], -n_a[0], -n_a[1]})
+                if (dot(face, s) > best) {
+                    best = dot(face, s);
+                    told.normal = face;
+                }
+            if (best == 0.8) return {};
+            told.depth = std::min(
+                {dot(gap, told.normal), length(reference::cross(gap, e_a)), length(reference::cross(gap, e_b))});
         }
-        return at->second = out;
+        if (told.depth <= 0 || told.depth < region.deepest / 2) return {};
+        if (region.thinnest() < told.depth / 2 - 5 * hair_) return {};
+        return told;
     }
 
-    double end_out(const End& end, std::uint32_t face) {
-        if (end.face != face) return way_out(end.point, face);
-        return dot(target.face_normals[face], target.vertices[target.triangles[face][0]] - points_[end.point]);
+    Hit out_of_other(const Piece& piece, const Vec3& point, const Vec3& way) const {
+        const Vec3 from = point + 1e-3 * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
+        return bodies_[1 - piece.side]->way_out(from, piece.side == 0 ? way : -way);
     }
 
-    double piece_depth(const Piece& piece, std::uint32_t face) {
-        return std::max(end_out(piece.ends[0], face), end_out(piece.ends[1], face));
+    void add(std::vector<Deep>& list, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
+             std::uint32_t face) const {
+        if (depth <= 0) return;
+        const Vec3 out = piece.side == 0 ? point + depth * way : point - depth * way;
+        const Edge* other = &bodies_[1 - piece.side]->nearest_edge(face, out);
+        if (piece.side == 0)
+            list.push_back({{piece.edge, other}, {depth, point, way}});
+        else
+            list.push_back({{other, piece.edge}, {depth, out, way}});
     }
 
-    double region_depth(std::uint32_t region, std::uint32_t face) {
-        double depth = -std::numeric_limits<double>::infinity();
-        for (const std::uint32_t point : region_points_[region]) depth = std::max(depth, way_out(point, face));
-        return depth;
-    }
-
-    bool in_one_plane(std::uint32_t f, std::uint32_t g) const {
-        const Vec3 &n = target.face_normals[f], &m = target.face_normals[g];
-        const Vec3 &p = target.vertices[target.triangles[f][0]], &q = target.vertices[target.triangles[g][0]];
-        return dot(n, m) > 1 - 1e-12 && std::fabs(dot(n, p) - dot(m, q)) < 1e-9 * target.diagonal;
-    }
-
-    std::vector<std::uint32_t> candidates_of(const Piece& piece) {
-        std::vector<std::uint32_t> all;
-        for (const End& end : piece.ends)
-            if (end.face != none) all.push_back(end.face);
-        const Edge& edge = edges[piece.edge];
-        const Vec3 other = edge.faces[1] == none ? Vec3{} : source.face_normals[edge.faces[1]];
-        const Vec3 inward = -unit(source.face_normals[edge.faces[0]] + other);
-        const Vec3 down = rotate_back(target_pose, rotate(source_pose, inward));
-        const Vec3& first = points_[piece.ends[0].point];
-        const Vec3& last = points_[piece.ends[1].point];
-        for (const Vec3& origin : {first, last, 0.5 * (first + last)}) {
-            const Hit hit = to_target_.closest(origin, down);
-            if (hit.triangle == Hit::none || !hit.from_inside) continue;
-            const Vec3 beyond = to_source(origin) + hair * inward; // of the faces at the edge itself
-            if (hit.distance > hair + to_source_.closest(beyond, inward).distance) continue;
-            all.push_back(hit.triangle);
+    // A region that is deeper than its contacts.
+    std::vector<Deep> deeper(const Region& region, const std::vector<const Piece*>& pieces) const {
+        const Vec3 toward = region.way(hair_);
+        Vec3 way = toward;
+        if (region.told >= region.extent(way).deep() / 2) return {};
+        if (region.flush > region.whole / 10) {
+            double best = 0.8;
+            for (const Vec3& n : region.faces)
+                if (dot(n, toward) > best && region.extent(n).deep() <= region.extent(toward).deep()) {
+                    best = dot(n, toward);
+                    way = n;
+                }
         }
-        std::vector<std::uint32_t> list;
-        for (const std::uint32_t face : all) {
-            if (std::any_of(list.begin(), list.end(), [&](std::uint32_t f) { return in_one_plane(f, face); })) continue;
-            list.push_back(face);
+        const Extent whole = region.extent(way);
+        std::vector<Deep> list;
+        for (const Piece* piece : pieces) {
+            std::vector<Vec3> points;
+            if (piece->through) points.push_back(0.5 * (piece->ends[0] + piece->ends[1]));
+            if (!region.speaks) points.insert(points.end(), {piece->ends[0], piece->ends[1]});
+            const auto normals = bodies_[piece->side]->faces_at(*piece->edge);
+            const Vec3 outward = unit(normals[0] + normals[1]);
+            for (const Vec3& p : points) {
+                const double most = piece->side == 0 ? whole.high - dot(p, way) : dot(p, way) - whole.low;
+                const Hit hit = out_of_other(*piece, p, way);
+                const Hit in = out_of_other(*piece, p, piece->side == 0 ? -outward : outward);
+                double depth = std::min(most, hit.distance);
+                if (in.triangle != Hit::none) depth = std::min(depth, in.distance);
+                if (depth > region.told) add(list, *piece, p, way, depth, hit.triangle);
+            }
         }
-        std::erase_if(list, [&](std::uint32_t face) { return piece_depth(piece, face) <= 0; });
         return list;
     }
 
-    // The middle of a piece between two crossings, and its way out, if it stands for both.
-    std::optional<std::pair<std::uint32_t, double>> deep_middle(const Piece& piece, const Choice& choice) {
-        const auto& [first, last] = piece.ends;
-        if (first.vertex != none || last.vertex != none) return {};
-        const std::uint32_t middle = add_point(0.5 * (points_[first.point] + points_[last.point]));
-        const double out = way_out(middle, choice.face);
-        if (out <= 2 * std::max(end_out(first, choice.face), end_out(last, choice.face))) return {};
-        if (out <= 0 || (choice.deepest > 0 && out < choice.region / 2)) return {};
-        return std::pair(middle, out);
-    }
-
-    bool leaves_by_the_border(const Piece& piece) const {
-        for (const int k : {0, 1}) {
-            const End& end = piece.ends[k];
-            if (end.vertex == none || !contact[end.vertex]) continue;
-            const CastRay& ray = *contact[end.vertex];
-            const Vec3& other = points_[piece.ends[1 - k].point];
-            const Vec3 on_face = target.vertices[target.triangles[ray.triangle][0]];
-            if (dot(target.face_normals[ray.triangle], on_face - other) < ray.depth / 2) return true;
-        }
-        return false;
-    }
-
-    std::optional<Choice> choose(const Piece& piece, std::uint32_t region) {
-        if (leaves_by_the_border(piece)) return {};
-        Choice choice;
-        choice.deepest = deepest_.contains(region) ? deepest_.at(region) : 0;
-        const auto candidates = candidates_of(piece);
-        std::vector<double> of_piece, of_region;
-        for (const std::uint32_t face : candidates) {
-            of_piece.push_back(piece_depth(piece, face));
-            of_region.push_back(std::max(of_piece.back(), region_depth(region, face)));
-        }
-        if (candidates.empty()) return {};
-        if (*std::max_element(of_piece.begin(), of_piece.end()) < choice.deepest / 2) return {};
-        const double least = *std::min_element(of_region.begin(), of_region.end());
-        double least_piece = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < candidates.size(); ++i)
-            if (of_region[i] < least + 3 * hair) least_piece = std::min(least_piece, of_piece[i]);
-        bool chosen = false;
-        for (std::size_t i = 0; i < candidates.size(); ++i) {
-            if (of_region[i] >= least + 3 * hair || of_piece[i] >= least_piece + 3 * hair) continue;
-            const Vec3 &n = target.face_normals[candidates[i]], &best = target.face_normals[choice.face];
-            if (chosen && dot({0.31, 0.53, 0.79}, n) <= dot({0.31, 0.53, 0.79}, best)) continue;
-            choice.face = candidates[i];
-            choice.region = of_region[i];
-            chosen = true;
-        }
-        return choice;
-    }
-
-    // Step 5: a region that leaves by another face at once.
-    void agree(std::vector<std::optional<Choice>>& choices, const std::vector<std::uint32_t>& region) {
-        std::map<std::uint32_t, std::vector<std::size_t>> of_region; // pieces that give contacts
-        for (std::size_t i = 0; i < pieces.size(); ++i)
-            if (choices[i]) of_region[region[pieces[i].ends[0].node]].push_back(i);
-        for (const auto& [name, list] : of_region) {
-            double least = std::numeric_limits<double>::infinity(), most = 0;
-            for (const std::size_t i : list) {
-                least = std::min(least, choices[i]->region);
-                most = std::max(most, choices[i]->region);
+    std::vector<Deep> pierced(const Region& region, const std::vector<const Piece*>& pieces) const {
+        const Vec3 preferred{0.31, 0.53, 0.79};
+        Vec3 way;
+        double least = inf;
+        std::vector<Vec3> ways;
+        for (const Vec3& face : region.faces)
+            for (const Vec3& n : {face, -face}) {
+                if (std::any_of(ways.begin(), ways.end(), [&](const Vec3& m) { return dot(n, m) > 0.9999; })) continue;
+                ways.push_back(n);
+                double most = 0;
+                for (const Piece* piece : pieces)
+                    for (const Vec3& end : piece->ends) most = std::max(most, out_of_other(*piece, end, n).distance);
+                if (most <= 0 || most > 1.001 * least) continue;
+                if (most >= 0.999 * least && dot(n, preferred) <= dot(way, preferred)) continue;
+                way = n;
+                least = std::min(least, most);
             }
-            const auto first = std::find_if(list.begin(), list.end(),
-                                            [&](std::size_t i) { return choices[i]->region < least + 3 * hair; });
-            Choice other = *choices[*first];
-            const CastRay* deepest = nullptr;
-            for (std::uint32_t v = 0; v < source.vertices.size(); ++v)
-                if (contact[v] && region[nodes[v]] == name && (!deepest || contact[v]->depth > deepest->depth))
-                    deepest = &*contact[v];
-            if (deepest && deepest->depth < most / 2) {
-                const double depth = std::max(0.0, region_depth(name, deepest->triangle));
-                if (depth < other.region - 3 * hair) {
-                    other.region = depth;
-                    other.face = deepest->triangle;
-                }
+        std::vector<Deep> list;
+        if (way == Vec3{}) return list;
+        for (const Piece* piece : pieces)
+            for (const Vec3& end : piece->ends) {
+                const Hit hit = out_of_other(*piece, end, way);
+                add(list, *piece, end, way, hit.distance, hit.triangle);
             }
-            for (const std::size_t i : list)
-                if (other.region < choices[i]->region / 2 && piece_depth(pieces[i], other.face) > 0) choices[i] = other;
+        return list;
+    }
+
+    void give_deep(std::map<Key, Told>& all, bool with_all) {
+        for (const auto& [name, region] : regions_) {
+            std::vector<const Piece*> pieces;
+            for (const Piece& p : pieces_)
+                if (region_[p.crossing] == name && (with_all || bodies_[p.side]->speaks(*p.edge))) pieces.push_back(&p);
+            std::vector<Deep> list;
+            if (!region.pierced())
+                list = deeper(region, pieces);
+            else if (!region.speaks)
+                list = pierced(region, pieces);
+            double most = 0;
+            for (const Deep& d : list) most = std::max(most, d.told.depth);
+            for (const Deep& d : list) {
+                if (d.told.depth < most / 2) continue;
+                const auto [at, fresh] = all.try_emplace(d.key, d.told);
+                if (!fresh && d.told.depth > at->second.depth) at->second = d.told;
+            }
         }
     }
 
-    ReferenceContact made(const Piece& piece, const End& end, std::uint32_t face, double out, VertexBody body,
-                          Direction direction) const {
-        const Edge& edge = edges[piece.edge];
+    std::array<Body*, 2> bodies_;
+    double hair_;
+    std::vector<Crossing> crossings_; ///< of an edge in a row, along it
+    std::vector<Link> links_;
+    std::vector<Loop> loops_;
+    std::vector<Piece> pieces_;
+    std::vector<std::uint32_t> region_; ///< by crossing, then vertices of a and b
+    std::map<std::uint32_t, Region> regions_;
+    std::array<std::vector<std::array<const Edge*, 3>>, 2> around_;
+};
+
+// The vertex of a source that is farthest inside.
+std::optional<ReferenceContact> inside(const Body& source, const Body& target, VertexBody body, Direction direction) {
+    std::optional<ReferenceContact> found;
+    if (!target.solid.closed) return found;
+    for (std::uint32_t v = 0; v < source.vertices.size(); ++v) {
+        const Vec3 p = rotate_back(target.pose, source.vertices[v] - target.pose.translation);
+        if (source.solid.vertex_areas[v] <= 0 || winding_number(target.solid, p) < 0.5) continue;
         ReferenceContact c;
+        c.depth = inf;
+        for (std::uint32_t f = 0; f < target.solid.triangles.size(); ++f) {
+            const auto& t = target.solid.triangles[f];
+            const auto& at = target.solid.vertices;
+            const Vec3 out = closest_on_triangle(p, at[t[0]], at[t[1]], at[t[2]]) - p;
+            if (length(out) >= c.depth) continue;
+            c.depth = c.ray_length = length(out);
+            c.normal = rotate(target.world, rotate(target.pose, unit(body == VertexBody::a ? -out : out)));
+            c.triangle = target.solid.triangle_index[f];
+        }
+        if (found && found->depth >= c.depth) continue;
         c.vertex_body = body;
-        c.feature = Feature::edges;
-        c.crossing = end.crossing;
-        c.vertex = edge.number;
-        c.triangle = target.triangle_index[face];
-        c.point = to_world(points_[end.point]);
-        const Vec3 n = rotate(target_pose, target.face_normals[face]);
-        c.normal = body == VertexBody::a ? -n : n;
-        c.depth = c.ray_length = out;
-        if (direction == Direction::weighted) {
-            double area = 0;
-            for (const std::uint32_t f : edge.faces) {
-                if (f == none) continue;
-                const auto& t = source.triangles[f];
-                area += length(cross(source.vertices[t[1]] - source.vertices[t[0]],
-                                     source.vertices[t[2]] - source.vertices[t[0]]))
-                        / 2;
-            }
-            c.weight = area / 6;
-        }
-        return c;
+        c.feature = Feature::inside;
+        c.vertex = source.solid.vertex_index[v];
+        c.point = source.world.translation + rotate(source.world, source.vertices[v]);
+        if (direction == Direction::weighted) c.weight = source.solid.vertex_areas[v];
+        found = c;
     }
-
-    std::pair<Vec3, std::uint32_t> nearest(const Vec3& p) const {
-        double least = std::numeric_limits<double>::infinity();
-        std::pair<Vec3, std::uint32_t> best;
-        for (std::uint32_t f = 0; f < target.triangles.size(); ++f) {
-            const auto& t = target.triangles[f];
-            const Vec3 point =
-                closest_on_triangle(p, target.vertices[t[0]], target.vertices[t[1]], target.vertices[t[2]]);
-            if (dot(point - p, point - p) < least) {
-                least = dot(point - p, point - p);
-                best = {point, f};
-            }
-        }
-        return best;
-    }
-
-    RayCaster to_target_, to_source_;
-    Vec3 shift_;
-    std::vector<Vec3> points_;                 ///< ends of pieces and vertex contacts
-    std::vector<std::uint32_t> vertex_points_; ///< of each vertex in points_, or none
-    std::map<std::uint32_t, std::vector<std::uint32_t>> region_points_;
-    std::map<std::uint32_t, double> deepest_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, double> ways_out_; ///< of points by faces
-
-public:
-    std::vector<Vec3> vertices;                   ///< of the source, moved by a hair
-    std::vector<std::optional<CastRay>> contact;  ///< of each vertex of the source
-    std::vector<std::uint32_t> nodes;             ///< of each vertex of the source
-    std::vector<std::vector<Crossing>> crossings; ///< of each edge, along it
-    std::vector<Piece> pieces;
-};
-
-// Names the flat face of each triangle.
-std::vector<std::uint32_t> flat_faces(const OneWay& side) {
-    Graph graph;
-    for (std::size_t t = 0; t < side.source.triangles.size(); ++t) graph.add();
-    for (const Edge& edge : side.edges)
-        if (!edge.sharp) graph.join(edge.faces[0], edge.faces[1]);
-    return graph.flood();
-}
-
-// A crossing on the line in which two flat faces meet.
-struct OnLine {
-    double at;
-    std::uint32_t node;
-    friend bool operator<(const OnLine& p, const OnLine& q) {
-        return std::pair(p.at, p.node) < std::pair(q.at, q.node);
-    }
-};
-
-// Crossings that share a flat face of each body: along their line the first and second, the third and fourth, ...
-void join_curves(const OneWay& of_a, const OneWay& of_b, Graph& graph) {
-    const std::vector<std::uint32_t> flat_a = flat_faces(of_a), flat_b = flat_faces(of_b);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<OnLine>> lines; // by flat faces of a and of b
-    const auto along = [&](std::uint32_t a, std::uint32_t b) {                    // frame of b
-        return cross(rotate_back(of_a.target_pose, rotate(of_a.source_pose, of_a.source.face_normals[a])),
-                     of_b.source.face_normals[b]);
-    };
-    const auto add = [&](std::uint32_t face_a, std::uint32_t face_b, const Vec3& point, std::uint32_t node) {
-        const std::uint32_t a = flat_a[face_a], b = flat_b[face_b];
-        lines[{a, b}].push_back({dot(point, along(a, b)), node});
-    };
-    for (std::size_t e = 0; e < of_a.edges.size(); ++e)
-        for (const Crossing& c : of_a.crossings[e])
-            for (const std::uint32_t face : of_a.edges[e].faces)
-                if (face != none) add(face, c.face, c.point, c.node);
-    for (std::size_t e = 0; e < of_b.edges.size(); ++e)
-        for (const Crossing& c : of_b.crossings[e])
-            for (const std::uint32_t face : of_b.edges[e].faces)
-                if (face != none) add(c.face, face, of_b.to_source(c.point), c.node);
-    for (auto& [faces, line] : lines) {
-        const bool in_twos = line.size() % 2 == 0 && length(along(faces.first, faces.second)) > 1e-6;
-        if (in_twos) std::sort(line.begin(), line.end());
-        for (std::size_t i = 1; i < line.size(); i += in_twos ? 2 : 1) graph.join(line[i - 1].node, line[i].node);
-    }
-}
-
-std::vector<ReferenceContact> find_with(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
-                                        Direction direction, bool with_concave) {
-    OneWay of_a(a, pose_a, b, pose_b);
-    OneWay of_b(b, pose_b, a, pose_a);
-    Graph graph;
-    const bool touching = of_a.in_contact() || of_b.in_contact();
-    for (OneWay* side : {&of_a, &of_b}) {
-        side->cross_all(touching);
-        side->add_nodes(graph);
-        side->cut_pieces(with_concave);
-        side->join_regions(graph);
-    }
-    join_curves(of_a, of_b, graph);
-    const auto region = graph.flood();
-    std::vector<ReferenceContact> contacts = of_a.contacts_of(region, VertexBody::a, direction);
-    const std::vector<ReferenceContact> others = of_b.contacts_of(region, VertexBody::b, direction);
-    contacts.insert(contacts.end(), others.begin(), others.end());
-    if (!with_concave && contacts.empty() && !touching && (of_a.crosses() || of_b.crosses()))
-        return find_with(a, pose_a, b, pose_b, direction, true);
-    if (!of_a.crosses() && !of_b.crosses() && !of_a.in_contact() && !of_b.in_contact()) {
-        if (const auto c = of_a.inside(VertexBody::a, direction)) contacts.push_back(*c);
-        if (const auto c = of_b.inside(VertexBody::b, direction)) contacts.push_back(*c);
-    }
-    std::stable_sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
-        return std::tuple(x.vertex_body, x.feature, x.vertex, x.crossing)
-               < std::tuple(y.vertex_body, y.feature, y.vertex, y.crossing);
-    });
-    return contacts;
+    return found;
 }
 
 } // namespace
 
 std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
                                          Direction direction) {
-    return find_with(a, pose_a, b, pose_b, direction, false);
+    std::vector<ReferenceContact> contacts;
+    if (!a.closed && !b.closed) return contacts;
+    Pose world = pose_b, a_in_b;
+    world.translation = pose_b.translation + rotate(pose_b, b.centre);
+    a_in_b.translation = rotate_back(pose_b, (pose_a.translation - pose_b.translation)
+                                                 + (rotate(pose_a, a.centre) - rotate(pose_b, b.centre)));
+    for (std::size_t i = 0; i < 9; ++i) {
+        a_in_b.rotation[i] = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            a_in_b.rotation[i] += pose_b.rotation[3 * k + i / 3] * pose_a.rotation[3 * k + i % 3];
+    }
+    const double hair = 1e-7 * std::min(a.diagonal, b.diagonal);
+    Body of_a(a, a_in_b, world, hair, 0.01), of_b(b, {}, world, hair, -0.01);
+    for (const CastRay& r : cast_all(a, pose_a, b, pose_b))
+        if (r.contact) of_a.contact[r.vertex] = r.depth;
+    for (const CastRay& r : cast_all(b, pose_b, a, pose_a))
+        if (r.contact) of_b.contact[r.vertex] = r.depth;
+    PairOfBodies pair(of_a, of_b, hair);
+    if (pair.cross()) {
+        for (const auto& [edges, told] : pair.contacts()) {
+            ReferenceContact c;
+            c.feature = Feature::edges;
+            c.vertex = edges.first->number;
+            c.triangle = edges.second->number;
+            c.point = world.translation + rotate(world, told.point);
+            c.normal = -rotate(world, told.normal);
+            c.depth = c.ray_length = told.depth;
+            if (direction == Direction::weighted)
+                c.weight = (of_a.area_at(*edges.first) + of_b.area_at(*edges.second)) / 12;
+            contacts.push_back(c);
+        }
+    } else if (of_a.contact.empty() && of_b.contact.empty()) {
+        if (const auto c = inside(of_a, of_b, VertexBody::a, direction)) contacts.push_back(*c);
+        if (const auto c = inside(of_b, of_a, VertexBody::b, direction)) contacts.push_back(*c);
+    }
+    return contacts;
 }
 
 } // namespace raycontact::reference
