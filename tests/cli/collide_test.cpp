@@ -100,7 +100,7 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
     EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "b");
     EXPECT_EQ(lines[1]["contacts"].size(), 8u);
     for (const json& contact : lines[1]["contacts"]) {
-        EXPECT_EQ(contact["feature"], "edge");
+        EXPECT_EQ(contact["feature"], "edges");
         EXPECT_EQ(contact["key"].get<std::string>().size(), 18u);
         EXPECT_NEAR(contact["depth"].get<double>(), 0.01, 1e-6);
         expect_vector(contact["normal"], 0, 0, 1);

@@ -181,8 +181,8 @@ void report_edges(const Counts& c) {
     EXPECT_EQ(c.sum.wrong, 0u);
     EXPECT_EQ(c.edges.wrong, 0u);
     EXPECT_LT(static_cast<double>(c.edges.pairs_excused), 0.002 * static_cast<double>(c.edges.pairs));
-    EXPECT_LT(static_cast<double>(c.edges.excused), 0.002 * static_cast<double>(c.edges.contacts));
-    EXPECT_LT(static_cast<double>(c.swapped_otherwise), 0.002 * static_cast<double>(c.edges.contacts));
+    EXPECT_LT(static_cast<double>(c.edges.excused), 0.003 * static_cast<double>(c.edges.contacts));
+    EXPECT_LT(static_cast<double>(c.swapped_otherwise), 0.12 * static_cast<double>(c.edges.contacts));
 }
 
 const std::vector<Subject>& coarse_subjects() {
@@ -202,7 +202,7 @@ TEST(agreement, edges_of_coarse_meshes) {
     Counts counts;
     run([&] { return random_placement(pointers(coarse_subjects()), random); }, 30000, counts, Features::edges);
     report_edges(counts);
-    EXPECT_GE(counts.edges.agreed, 100000u);
+    EXPECT_GE(counts.edges.agreed, 35000u);
 }
 
 TEST(agreement, edges_of_coarse_and_fine_meshes) {
@@ -212,7 +212,7 @@ TEST(agreement, edges_of_coarse_and_fine_meshes) {
     Counts counts;
     run([&] { return random_placement(subjects, random); }, 2000, counts, Features::edges);
     report_edges(counts);
-    EXPECT_GE(counts.edges.agreed, 5000u);
+    EXPECT_GE(counts.edges.agreed, 1500u);
 }
 
 // Small ones anywhere within large ones.
@@ -240,7 +240,7 @@ TEST(agreement, bodies_inside_others) {
     EXPECT_GE(counts.edges.inside, 100u);
 }
 
-// An open source: its edges speak against a closed target, and none against it.
+// An open body's edges can lie in a closed one, and pass its edges; nothing lies in the open one.
 TEST(agreement, edges_of_open_meshes) {
     auto subjects = pointers(open_subjects());
     for (const Subject& subject : coarse_subjects()) subjects.push_back(&subject);
@@ -308,7 +308,7 @@ TEST(agreement, at_other_scales) {
         Counts edges;
         run([&] { return random_placement(pointers(subjects), random); }, 200, edges, Features::edges);
         report_edges(edges);
-        EXPECT_GE(edges.edges.agreed, 400u); // concave edges are silent
+        EXPECT_GE(edges.edges.agreed, 100u); // fine meshes: mostly vertices
     }
 }
 

@@ -28,7 +28,7 @@ using namespace raycontact::reference;
 
 namespace {
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, VertexBody, Feature, std::uint32_t, std::uint32_t>;
+using Key = std::tuple<std::uint32_t, std::uint32_t, Feature, VertexBody, std::uint32_t, std::uint32_t>;
 
 /// The order of contacts; a slot, as a contact names it, finds the body that is there.
 struct BySlot {
