@@ -35,9 +35,12 @@ struct BySlot {
     bool operator()(BodyId a, BodyId b) const { return slot_of(a) < slot_of(b); }
 };
 
-template <class Named>
-Key key(const Named& c) {
+Key key(const Contact& c) {
     return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other()};
+}
+
+Key key(const LostContact& c) {
+    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
 }
 
 struct Guest {
