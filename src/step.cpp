@@ -40,12 +40,7 @@ NarrowPhase::NarrowPhase(const Settings& settings, std::vector<OpenDevice> opene
 
 void NarrowPhase::set_settings(const Settings& settings) {
     settings_ = settings;
-    forget();
-}
-
-void NarrowPhase::forget() {
     parts_.forget();
-    for (Found& found : found_) found.edges.forget();
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
@@ -64,11 +59,11 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         const bool alone = parts_.left() == 1;
         auto failed =
             parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
-        while (!failed.empty()) failed = replace(failed, bodies, stats);
+        while (!failed.empty()) failed = replace(failed, stats);
         if (!alone) merge(contacts);
         changes_.mark(contacts);
     } catch (...) {
-        forget(); // the step failed half-way: what it kept may be wrong
+        parts_.forget(); // the step failed half-way: what it kept may be wrong
         contacts.clear();
         throw;
     }
@@ -104,35 +99,16 @@ void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, s
     const auto start = Clock::now();
     Part& part = parts_[number];
     const Pin pin(part.executor().core());
-    const auto pairs = assignment_.pairs_of(number);
-    part.begin(bodies, pairs, settings_);
-    const Motion* motion = keeps_near_lists(settings_) ? &part.motion() : nullptr;
-    place(found_[number], part, bodies, pairs, part.end(), motion, contacts);
+    part.begin(bodies, assignment_.pairs_of(number), settings_);
+    part.end(contacts);
     found_[number].ms = milliseconds_since(start);
 }
 
-// local: the vertex contacts of these pairs.
-void NarrowPhase::place(Found& found, Part& part, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-                        std::span<const kernels::LocalContact> local, const Motion* motion,
-                        std::vector<Contact>& contacts) {
-    found.placer.run(part.executor(), settings_.direction, bodies, pairs, local, contacts);
-    if (settings_.features == Features::edges)
-        found.edges.run(part.executor(), settings_.direction, bodies, pairs, local, motion, contacts);
-}
-
 // The others cast the pairs of failed parts in full. Returns the parts that failed in doing so.
-std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& failed,
-                                              std::span<const PlacedBody> bodies, StepStats& stats) {
+std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& failed, StepStats& stats) {
     const auto given = give_away(failed, stats);
     return parts_.run([&](std::size_t number) {
-        if (given[number].empty()) return;
-        Found& found = found_[number];
-        Part& part = parts_[number];
-        std::vector<Contact> more;
-        place(found, part, bodies, given[number], part.adopt(given[number]), nullptr, more);
-        const auto old = static_cast<std::ptrdiff_t>(found.contacts.size());
-        found.contacts.insert(found.contacts.end(), more.begin(), more.end());
-        std::ranges::inplace_merge(found.contacts, found.contacts.begin() + old, {}, pair_of);
+        if (!given[number].empty()) parts_[number].adopt(given[number], found_[number].contacts);
     });
 }
 
@@ -199,13 +175,10 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
         }
         const double before = load_of(stats);
         parts_[i].count(stats);
-        stats.pair_bytes += found_[i].edges.bytes();
         work = parts_[i].take_work();
         work.load = load_of(stats) - before;
         work.ms = found_[i].ms;
         parts_[i].give_back();
-        found_[i].placer.give_back();
-        found_[i].edges.give_back();
         give_back(found_[i].contacts);
         balance_.record(i, work.load, work.ms);
     }

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "contacts/changes.h"
-#include "contacts/place.h"
-#include "edges/edge_stage.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
 
@@ -33,17 +31,11 @@ private:
     /// What a part found in a step.
     struct Found {
         std::vector<Contact> contacts;
-        Placer placer;
-        EdgeStage edges;
         double ms = 0;
     };
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
-    void place(Found& found, Part& part, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
-               std::span<const kernels::LocalContact> local, const Motion* motion, std::vector<Contact>& contacts);
-    void forget();
     void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
-    std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, std::span<const PlacedBody> bodies,
-                                     StepStats& stats);
+    std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
     void count(std::size_t pair_count, StepStats& stats);

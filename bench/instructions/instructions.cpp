@@ -19,7 +19,6 @@
 
 namespace rb = raycontact::bench;
 namespace rc = raycontact;
-namespace rk = raycontact::kernels;
 
 namespace {
 
@@ -46,23 +45,24 @@ public:
             // Others in the same slots: that the bodies went back to where they began is no motion.
             for (rc::PlacedBody& body : bodies) ++body.generation;
             device_->start();
-            const std::size_t contacts = step(bodies).size();
+            step(bodies);
             device_->stop();
-            if (contacts == 0) throw std::logic_error("a step without contacts is nothing to count");
+            if (contacts_.empty()) throw std::logic_error("a step without contacts is nothing to count");
         }
         device_->print(batch_.pairs.size() * batch_.steps.size());
     }
 
-    std::span<const rk::LocalContact> step(std::span<const rc::PlacedBody> bodies) {
+private:
+    void step(std::span<const rc::PlacedBody> bodies) {
         part_->begin(bodies, batch_.pairs, settings_);
-        return part_->end();
+        part_->end(contacts_);
     }
 
-private:
     const rb::Batch& batch_;
     rc::Settings settings_;
     rb::CallgrindDevice* device_ = nullptr; ///< the part's
     std::unique_ptr<rc::Part> part_;
+    std::vector<rc::Contact> contacts_;
 };
 
 /// Counts what needs no device.
@@ -96,9 +96,17 @@ void count_all() {
     Run(few, "standard_basic", settings(rc::Method::standard, rc::Caster::basic)).count();
     Run(few, "predictive_basic", settings(rc::Method::predictive, rc::Caster::basic)).count();
 
-    rc::Executor executor(1);
-    Run run(small, "", settings(rc::Method::standard));
-    const auto local = run.step(small.steps[0]);
+    rc::OpenDevice opened = rc::open_device("cpu", 1);
+    rc::Executor& executor = *opened.executor;
+    rc::ShapeStore shapes(*opened.device);
+    shapes.add(small.shape);
+    const rc::Settings standard = settings(rc::Method::standard);
+    const rc::Motion motion;
+    const rc::Update update{*opened.device, executor, shapes, small.steps[0], small.pairs, motion, standard};
+    rc::Pipeline pipeline;
+    pipeline.begin(update);
+    pipeline.end(update);
+    const auto local = pipeline.contacts().all();
     rc::Placer placer;
     std::vector<rc::Contact> placed;
     count_host("place_contacts,standard", local.size(),

@@ -40,8 +40,8 @@ struct Prototype;
 
 /// Whether the kernel's items are blocks of vertices (FOR_EACH_VERTICES), which a GPU takes apart.
 constexpr bool is_over_vertices(KernelId kernel) {
-    return kernel == KernelId::count_rays || kernel == KernelId::write_rays || kernel == KernelId::count_near_rays
-           || kernel == KernelId::write_near_rays;
+    return kernel == KernelId::count_rays || kernel == KernelId::write_rays || kernel == KernelId::count_edges
+           || kernel == KernelId::count_near_rays || kernel == KernelId::write_near_rays;
 }
 
 } // namespace raycontact

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/crossings.h"
 
-#include <algorithm>
-#include <tuple>
-
 namespace raycontact {
 
 namespace {
@@ -23,41 +20,70 @@ bool passes_left(const Corner& p, const Corner& q, const Corner& r, const Corner
     return (volume >= 0) != turned;
 }
 
+// from, to: heights of the edge's ends over the face's plane, one of them below it.
+bool pierces(std::size_t side, const Corner& p, const Corner& q, const PlacedFace& face) {
+    bool first = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Corner r{face.vertices[k], face.corners[k]}, s{face.vertices[(k + 1) % 3], face.corners[(k + 1) % 3]};
+        const bool left = side == 0 ? passes_left(p, q, r, s) : passes_left(r, s, p, q);
+        if (k == 0)
+            first = left;
+        else if (left != first)
+            return false;
+    }
+    return true;
+}
+
+double height(const PlacedFace& face, const Vec3& point) {
+    return dot(point - face.corners[0], face.normal);
+}
+
+Crossing crossing(std::size_t side, std::uint32_t edge, std::uint32_t face, const Vec3& p, const Vec3& q, double from,
+                  double to) {
+    const double at = from / (from - to);
+    return {static_cast<std::uint32_t>(side), edge, face, at, from < 0, p + at * (q - p)};
+}
+
 } // namespace
 
-void find_crossings(const PairMeshes& pair, std::size_t side, std::span<const NearEdge> near,
-                    std::vector<Crossing>& found) {
-    const ShapeData &source = pair.shape(side), &target = pair.shape(1 - side);
-    const auto begin = static_cast<std::ptrdiff_t>(found.size());
-    for (std::size_t i = 0, end = 0; i < near.size(); i = end) {
-        const std::uint32_t edge = near[i].edge;
-        while (end < near.size() && near[end].edge == edge) ++end;
-        const auto [start, stop] = ends_of(source, edge);
-        const Corner p{start, pair.vertex(side, start)}, q{stop, pair.vertex(side, stop)};
-        for (; i < end; ++i) {
-            const std::uint32_t face = near[i].face;
-            std::array<Corner, 3> c;
-            for (std::size_t k = 0; k < 3; ++k) {
-                c[k].vertex = target.mesh.triangles[face][k];
-                c[k].point = pair.vertex(1 - side, c[k].vertex);
-            }
-            const Vec3 normal = cross(c[1].point - c[0].point, c[2].point - c[0].point);
-            const double from = dot(p.point - c[0].point, normal), to = dot(q.point - c[0].point, normal);
-            if ((from >= 0) == (to >= 0)) continue;
-            std::array<bool, 3> left;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Corner &r = c[k], &s = c[(k + 1) % 3];
-                left[k] = side == 0 ? passes_left(p, q, r, s) : passes_left(r, s, p, q);
-            }
-            if (left[0] != left[1] || left[1] != left[2]) continue;
-            const double at = from / (from - to);
-            found.push_back(
-                {static_cast<std::uint32_t>(side), edge, face, at, from < 0, p.point + at * (q.point - p.point)});
+void PlacedFace::set(const PairMeshes& pair, std::size_t side, std::uint32_t number) {
+    if (face == number) return;
+    face = number;
+    vertices = pair.shape(side).mesh.triangles[number];
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = pair.vertex(side, vertices[k]);
+    normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+bool crosses(const PairMeshes& pair, std::size_t side, std::uint32_t edge, const PlacedFace& face, Crossing& found) {
+    const auto [start, stop] = ends_of(pair.shape(side), edge);
+    const Corner p{start, pair.vertex(side, start)}, q{stop, pair.vertex(side, stop)};
+    const double from = height(face, p.point), to = height(face, q.point);
+    if ((from >= 0) == (to >= 0) || !pierces(side, p, q, face)) return false;
+    found = crossing(side, edge, face.face, p.point, q.point, from, to);
+    return true;
+}
+
+bool find_other(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, const Crossing& known,
+                Crossing& found) {
+    for (std::size_t side = 0; side < 2; ++side) {
+        const PlacedFace &own = faces[side], &other = faces[1 - side];
+        std::array<double, 3> heights;
+        for (std::size_t k = 0; k < 3; ++k) heights[k] = height(other, own.corners[k]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            if ((heights[k] >= 0) == (heights[next] >= 0)) continue;
+            const std::uint32_t edge = edge_of(pair.shape(side), own.face, static_cast<std::uint32_t>(k));
+            if (known.side == side && known.edge == edge) continue;
+            const Corner p{own.vertices[k], own.corners[k]}, q{own.vertices[next], own.corners[next]};
+            if (!pierces(side, p, q, other)) continue;
+            // From the edge's first corner: where an edge is crossed is one number.
+            const bool turned = ends_of(pair.shape(side), edge)[0] != p.vertex;
+            found = turned ? crossing(side, edge, other.face, q.point, p.point, heights[next], heights[k])
+                           : crossing(side, edge, other.face, p.point, q.point, heights[k], heights[next]);
+            return true;
         }
     }
-    std::sort(found.begin() + begin, found.end(), [](const Crossing& p, const Crossing& q) {
-        return std::tie(p.edge, p.at, p.face) < std::tie(q.edge, q.at, q.face);
-    });
+    return false;
 }
 
 } // namespace raycontact

@@ -4,8 +4,7 @@
 #include "edges/near_edges.h"
 #include "edges/pair_meshes.h"
 
-#include <span>
-#include <vector>
+#include <array>
 
 namespace raycontact {
 
@@ -17,12 +16,27 @@ struct Crossing {
     double at;          ///< along the edge, from 0 at its first corner to 1
     bool leaves;        ///< the edge comes out of the other body here
     Vec3 point;         ///< frame of PairMeshes
+
+    bool is_same(const Crossing& c) const { return side == c.side && edge == c.edge && face == c.face; }
 };
 
-/// The crossings of one body's edges with the other's faces, added in the order of edge, place and face. near: sorted,
-/// with every edge that could cross a face. The side on which two edges pass each other has one sign, whichever body's
-/// edge asks: so two triangles that meet have two crossings, and the curves in which surfaces cross close.
-void find_crossings(const PairMeshes& pair, std::size_t side, std::span<const NearEdge> near,
-                    std::vector<Crossing>& found);
+/// A triangle of either body, placed.
+struct PlacedFace {
+    std::uint32_t face = NONE;
+    std::array<std::uint32_t, 3> vertices;
+    std::array<Vec3, 3> corners;
+    Vec3 normal; ///< as long as twice its area
+
+    void set(const PairMeshes& pair, std::size_t side, std::uint32_t face);
+};
+
+/// Whether an edge of one body crosses a face of the other. The side on which two edges pass each other has one sign,
+/// whichever body's edge asks: so two triangles that meet have two crossings, and the curves in which surfaces cross
+/// close.
+bool crosses(const PairMeshes& pair, std::size_t side, std::uint32_t edge, const PlacedFace& face, Crossing& found);
+
+/// The other crossing of a triangle of a and one of b that have `known` (which may lie on either); false if there is
+/// none.
+bool find_other(const PairMeshes& pair, const std::array<PlacedFace, 2>& faces, const Crossing& known, Crossing& found);
 
 } // namespace raycontact

@@ -49,6 +49,13 @@ bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureCon
     return any;
 }
 
+void sort(std::span<NearEdge> near) {
+    const auto before = [](const NearEdge& p, const NearEdge& q) {
+        return std::tie(p.edge, p.face) < std::tie(q.edge, q.face);
+    };
+    if (!std::is_sorted(near.begin(), near.end(), before)) std::sort(near.begin(), near.end(), before);
+}
+
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
               Direction direction) {
     const ShapeData &shape = source.shape->data(), &other = target.shape->data();
@@ -73,86 +80,60 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 
 } // namespace
 
-void EdgeStage::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                    std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local, const Motion* motion,
+void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
                     std::vector<Contact>& contacts) {
-    firsts_.resize(2 * pairs.size() + 1);
-    std::uint32_t at = 0;
-    for (std::uint32_t directed = 0; directed < firsts_.size(); ++directed) {
-        while (at < local.size() && local[at].pair < directed) ++at;
-        firsts_[directed] = at;
-    }
-    const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
+    const auto block_count = static_cast<std::uint32_t>((asked.size() + pairs_in_block - 1) / pairs_in_block);
     block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
-    if (motion != nullptr) lists_.match(pairs);
-    const Question question{direction, bodies, pairs, local, motion};
+    const Question question{update, local, asked};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
     const std::uint32_t work_count = std::min(block_count, most_work);
     if (work_.size() < work_count) work_.resize(work_count);
-    executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
+    update.executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t w = begin; w < end; ++w)
             for (std::uint32_t b = w; b < block_count; b += most_work) find(work_[w], question, b);
     });
-    if (motion != nullptr)
-        for (std::uint32_t b = 0; b < block_count; ++b) lists_.keep(blocks_[b].lists);
-    merge(pairs, contacts);
+    merge(question, contacts);
 }
 
 void EdgeStage::find(Workspace& work, const Question& question, std::size_t number) {
     Block& block = blocks_[number];
-    block.lists.clear();
     block.contacts.clear();
     block.ends.clear();
-    const std::size_t first = number * pairs_in_block, last = std::min(question.pairs.size(), first + pairs_in_block);
-    for (std::size_t i = first; i < last; ++i) {
-        const auto vertices_of = [&](std::size_t directed) {
-            return question.local.subspan(firsts_[directed], firsts_[directed + 1] - firsts_[directed]);
-        };
-        find(work, block, question, i, {vertices_of(2 * i), vertices_of(2 * i + 1)});
+    const std::size_t first = number * pairs_in_block;
+    for (const AskedPair& asked :
+         question.asked.subspan(first, std::min<std::size_t>(pairs_in_block, question.asked.size() - first))) {
+        find(work, block, question, asked);
         block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
     }
 }
 
-void EdgeStage::find(Workspace& work, Block& block, const Question& question, std::size_t i,
-                     const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
-    const SlotPair& pair = question.pairs[i];
-    const PlacedBody &a = question.bodies[pair.first], &b = question.bodies[pair.second];
-    if (!a.shape->has_inside() && !b.shape->has_inside()) return;
-    const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
-    const Motion* motion = question.motion;
-    if (motion != nullptr) {
-        lists_.move(i, pair, *motion);
-        if (!in_contact && lists_.is_apart(i)) return;
-    }
+void EdgeStage::find(Workspace& work, Block& block, const Question& question, const AskedPair& asked) {
+    const SlotPair& pair = question.update.pairs[asked.pair];
+    const PlacedBody &a = question.update.bodies[pair.first], &b = question.update.bodies[pair.second];
+    const std::array vertices{question.local.of(2 * asked.pair), question.local.of(2 * asked.pair + 1)};
+    for (const std::span<NearEdge>& near : asked.near) sort(near);
     const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
-    NearEdges near;
-    if (motion != nullptr) {
-        near = lists_.near(i, pair, question.bodies, placed, *motion, work.search, block.lists);
-    } else {
-        block.lists.clear();
-        near = block.lists.find(work.search, placed);
-    }
+    const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     work.found.clear();
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (!work.edges.find(placed, near, vertices, work.found) && !in_contact
-        && !(motion != nullptr && lists_.is_apart(i))) {
+    if (!work.edges.find(placed, {asked.near[0], asked.near[1]}, vertices, work.found) && !in_contact) {
         const bool apart = !find_inside(placed, work.found);
-        if (apart && motion != nullptr) lists_.found_apart(i);
+        if (asked.apart != nullptr) *asked.apart = apart && asked.near[0].empty() && asked.near[1].empty();
     }
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == VertexBody::a;
-        block.contacts.push_back(place(found, pair, from_a ? a : b, from_a ? b : a, question.direction));
+        block.contacts.push_back(
+            place(found, pair, from_a ? a : b, from_a ? b : a, question.update.settings.direction));
     }
     std::sort(block.contacts.begin() + first, block.contacts.end(),
               [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });
 }
 
 std::uint64_t EdgeStage::bytes() const {
-    std::uint64_t bytes = lists_.bytes() + firsts_.size() * sizeof(std::uint32_t);
-    for (std::size_t b = 0; b < block_count_; ++b)
-        bytes += blocks_[b].contacts.capacity() * sizeof(Contact) + blocks_[b].lists.bytes();
+    std::uint64_t bytes = 0;
+    for (std::size_t b = 0; b < block_count_; ++b) bytes += blocks_[b].contacts.capacity() * sizeof(Contact);
     return bytes;
 }
 
@@ -162,28 +143,31 @@ void EdgeStage::give_back() {
         blocks_.resize(block_count_);
         blocks_.shrink_to_fit();
     }
-    for (Block& block : blocks_) {
-        raycontact::give_back(block.contacts);
-        block.lists.give_back();
-    }
-    raycontact::give_back(firsts_);
+    for (Block& block : blocks_) raycontact::give_back(block.contacts);
     raycontact::give_back(merged_);
 }
 
-void EdgeStage::merge(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) {
     std::size_t added = 0;
-    for (std::size_t i = 0; i < pairs.size(); i += pairs_in_block) added += blocks_[i / pairs_in_block].contacts.size();
+    for (std::size_t b = 0; b < block_count_; ++b) added += blocks_[b].contacts.size();
     merged_.clear();
     if (added == 0) return;
     merged_.reserve(contacts.size() + added);
     const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const Block& block = blocks_[i / pairs_in_block];
-        const std::size_t in = i % pairs_in_block;
-        const auto own = contacts.begin() + firsts_[2 * i], own_end = contacts.begin() + firsts_[2 * i + 2];
+    auto done = contacts.begin();
+    for (std::size_t k = 0; k < question.asked.size(); ++k) {
+        const Block& block = blocks_[k / pairs_in_block];
+        const std::size_t in = k % pairs_in_block, pair = question.asked[k].pair;
         const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
-        std::merge(own, own_end, more, block.contacts.begin() + block.ends[in], std::back_inserter(merged_), before);
+        const auto more_end = block.contacts.begin() + block.ends[in];
+        if (more == more_end) continue;
+        const auto own = contacts.begin() + question.local.first(2 * pair);
+        const auto own_end = contacts.begin() + question.local.first(2 * pair + 2);
+        merged_.insert(merged_.end(), done, own);
+        std::merge(own, own_end, more, more_end, std::back_inserter(merged_), before);
+        done = own_end;
     }
+    merged_.insert(merged_.end(), done, contacts.end());
     contacts.swap(merged_);
 }
 

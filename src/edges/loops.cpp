@@ -7,7 +7,6 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint64_t no_faces = ~std::uint64_t{0};
 // The vector area says which way unless the normals along the loop say otherwise by more than 60 degrees: of flush
 // faces rounding decides where a loop runs, and they add nothing to the sum of normals.
 constexpr double same_way = 0.5;
@@ -17,95 +16,119 @@ Vec3 unit(const Vec3& v) {
     return size > 0 ? (1 / size) * v : Vec3{};
 }
 
+std::size_t hash_of(const Crossing& c) {
+    std::uint64_t h = (std::uint64_t{c.edge} << 32 | c.face) ^ std::uint64_t{c.side} << 63;
+    h *= 0x9e3779b97f4a7c15ull;
+    return static_cast<std::size_t>(h ^ h >> 29);
+}
+
 } // namespace
 
-void Loops::find(const PairMeshes& pair, std::span<const Crossing> crossings) {
+void Loops::clear() {
+    crossings_.clear();
     loops_.clear();
-    order_.clear();
     segments_.clear();
-    link(pair, crossings);
-    seen_.assign(crossings.size(), false);
-    for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-        if (seen_[i]) continue;
-        walk(crossings, i);
-        measure(pair, crossings, loops_.back());
+    for (PlacedFace& face : faces_) face.face = NONE;
+    normal_faces_ = {NONE, NONE};
+    std::fill(table_.begin(), table_.end(), NONE);
+}
+
+bool Loops::is_known(const Crossing& c) const {
+    if (table_.empty()) return false;
+    for (std::size_t i = hash_of(c);; ++i) {
+        const std::uint32_t number = table_[i & (table_.size() - 1)];
+        if (number == NONE) return false;
+        if (crossings_[number].is_same(c)) return true;
     }
 }
 
-void Loops::link(const PairMeshes& pair, std::span<const Crossing> crossings) {
-    links_.resize(crossings.size());
-    by_faces_.clear();
-    for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-        const Crossing& c = crossings[i];
-        const auto [own, across] = faces_of(pair.shape(c.side), c.edge);
-        std::size_t k = 0;
-        for (const std::uint32_t face : {own, across}) {
-            links_[i].next[k] = nowhere;
-            links_[i].faces[k] = face == NONE  ? no_faces
-                                 : c.side == 0 ? std::uint64_t{face} << 32 | c.face
-                                               : std::uint64_t{c.face} << 32 | face;
-            if (face != NONE) by_faces_.emplace_back(links_[i].faces[k], 2 * i + static_cast<std::uint32_t>(k));
-            ++k;
-        }
+void Loops::remember(std::uint32_t number) {
+    if (2 * crossings_.size() > table_.size()) {
+        table_.assign(std::max<std::size_t>(64, 4 * table_.size()), NONE);
+        for (std::uint32_t i = 0; i < number; ++i) remember(i);
     }
-    std::sort(by_faces_.begin(), by_faces_.end());
-    for (std::size_t begin = 0, end = 0; begin < by_faces_.size(); begin = end) {
-        while (end < by_faces_.size() && by_faces_[end].first == by_faces_[begin].first) ++end;
-        if (end - begin != 2) continue; // no manifold, or a border: the curve ends here
-        const std::uint32_t p = by_faces_[begin].second, q = by_faces_[begin + 1].second;
-        links_[p / 2].next[p % 2] = q / 2;
-        links_[q / 2].next[q % 2] = p / 2;
-    }
+    std::size_t i = hash_of(crossings_[number]);
+    while (table_[i & (table_.size() - 1)] != NONE) ++i;
+    table_[i & (table_.size() - 1)] = number;
 }
 
-void Loops::walk(std::span<const Crossing> crossings, std::uint32_t begin) {
-    // The link by which the next crossing was reached is not the one by which the walk goes on.
-    const auto leave = [this](std::uint32_t at, std::uint64_t by) { return links_[at].faces[0] == by ? 1u : 0u; };
-    std::uint32_t at = begin;
-    std::size_t by = 0;
-    bool closed = false;
-    // To an end, if there is one: the curve is listed from there.
-    for (std::size_t steps = 0; steps <= crossings.size(); ++steps) {
-        const std::uint32_t next = links_[at].next[by];
-        if (next == nowhere) break;
-        by = leave(next, links_[at].faces[by]);
-        at = next;
-        if (at == begin && by == 0) {
-            closed = true;
-            break;
+void Loops::follow(const PairMeshes& pair, const Crossing& seed) {
+    if (is_known(seed)) return;
+    const bool closed = walk(pair, seed, true);
+    steps_[0].clear();
+    if (!closed) walk(pair, seed, false);
+    keep(seed, closed);
+}
+
+// A crossing lies between two pairs of triangles, one on either side of its edge. On the next pair it is followed by
+// the other crossing of that pair. Returns whether that leads back to the seed.
+bool Loops::walk(const PairMeshes& pair, const Crossing& seed, bool onward) {
+    std::vector<Step>& steps = steps_[onward ? 1 : 0];
+    steps.clear();
+    Crossing at = seed;
+    const EdgeFaces first = faces_of(pair.shape(at.side), at.edge);
+    std::uint32_t next = onward ? first.own : first.across; // beyond the edge of `at`
+    Crossing mark = seed; // of a fault in the mesh: the walk comes by here again (after Brent)
+    std::size_t until = 1;
+    while (next != NONE) {
+        faces_[at.side].set(pair, at.side, next);
+        faces_[1 - at.side].set(pair, 1 - at.side, at.face);
+        Crossing other;
+        if (!find_other(pair, faces_, at, other)) return false; // no manifold: the curve ends here
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (normal_faces_[side] == faces_[side].face) continue;
+            normal_faces_[side] = faces_[side].face;
+            normals_[side] = pair.normal(side, faces_[side].face);
         }
+        steps.push_back({other, normals_});
+        if (other.is_same(seed)) return true;
+        if (other.is_same(mark)) {
+            steps.clear();
+            return false;
+        }
+        if (steps.size() == until) {
+            mark = other;
+            until *= 2;
+        }
+        const std::uint32_t here = faces_[other.side].face;
+        const EdgeFaces beyond = faces_of(pair.shape(other.side), other.edge);
+        at = other;
+        next = beyond.own == here ? beyond.across : beyond.own;
     }
-    if (!closed) by = 1 - by;
-    const std::uint32_t number = static_cast<std::uint32_t>(loops_.size());
-    Loop loop{
-        static_cast<std::uint32_t>(order_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, closed, {}};
-    for (;;) {
-        seen_[at] = true;
-        order_.push_back(at);
-        ++loop.count;
-        const std::uint32_t next = links_[at].next[by];
-        if (next == nowhere) break;
-        const std::uint64_t faces = links_[at].faces[by];
-        segments_.push_back(
-            {number, at, next, {static_cast<std::uint32_t>(faces >> 32), static_cast<std::uint32_t>(faces)}, {}});
-        if (seen_[next]) break;
-        by = leave(next, faces);
-        at = next;
-    }
+    return false;
+}
+
+void Loops::keep(const Crossing& seed, bool closed) {
+    Loop loop{static_cast<std::uint32_t>(crossings_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, {}};
+    const auto add = [this](const Crossing& c) {
+        crossings_.push_back(c);
+        remember(static_cast<std::uint32_t>(crossings_.size() - 1));
+    };
+    const auto join = [this](const std::array<Vec3, 2>& normals, std::uint32_t from, std::uint32_t to) {
+        segments_.push_back({from, to, normals});
+    };
+    const auto &back = steps_[0], &onward = steps_[1];
+    for (std::size_t i = back.size(); i-- > 0;) add(back[i].next);
+    add(seed);
+    for (std::size_t i = 0; i + (closed ? 1 : 0) < onward.size(); ++i) add(onward[i].next);
+    loop.count = static_cast<std::uint32_t>(crossings_.size()) - loop.first;
+    std::uint32_t at = loop.first;
+    for (std::size_t i = back.size(); i-- > 0; ++at) join(back[i].normals, at, at + 1);
+    for (std::size_t i = 0; i < onward.size(); ++i, ++at)
+        join(onward[i].normals, at, closed && i + 1 == onward.size() ? loop.first : at + 1);
     loop.segment_count = static_cast<std::uint32_t>(segments_.size()) - loop.first_segment;
+    measure(loop);
     loops_.push_back(loop);
 }
 
 // Which way the curve runs: along the cross product of the two outward normals. Single segments between nearly parallel
 // faces may say otherwise, their sum does not.
-void Loops::measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop) {
-    const Vec3 origin = crossings[order_[loop.first]].point;
+void Loops::measure(Loop& loop) const {
+    const Vec3 origin = crossings_[loop.first].point;
     Vec3 area{}, normals{};
     double runs = 0;
-    for (std::size_t i = loop.first_segment; i < segments_.size(); ++i) {
-        LoopSegment& s = segments_[i];
-        s.normals = {pair.normal(0, s.faces[0]), pair.normal(1, s.faces[1])};
-        const Vec3 u = crossings[s.from].point - origin, v = crossings[s.to].point - origin, along = v - u;
+    for (const LoopSegment& s : segments().subspan(loop.first_segment)) {
+        const Vec3 u = crossings_[s.from].point - origin, v = crossings_[s.to].point - origin, along = v - u;
         area = area + 0.5 * cross(u, v);
         normals = normals + length(along) * (s.normals[1] - s.normals[0]);
         runs += dot(along, cross(s.normals[1], s.normals[0]));

@@ -10,50 +10,49 @@ namespace raycontact {
 
 /// A curve in which the surfaces of a pair cross, from crossing to crossing.
 struct Loop {
-    std::uint32_t first, count; ///< in Loops::order()
-    std::uint32_t first_segment, segment_count;
-    bool closed; ///< the last crossing is followed by the first
-    Vec3 area;   ///< vector area, m^2; points the way in which a leaves b
+    std::uint32_t first, count;                 ///< crossings
+    std::uint32_t first_segment, segment_count; ///< one less than crossings if it is not closed
+    Vec3 area;                                  ///< vector area, m^2; points the way in which a leaves b
+    bool is_closed() const { return segment_count == count; }
 };
 
-/// Two crossings that follow each other on a loop: between them two triangles cross.
+/// From a crossing to the next one of its loop: there two triangles cross.
 struct LoopSegment {
-    std::uint32_t loop;
-    std::uint32_t from, to;             ///< crossings
-    std::array<std::uint32_t, 2> faces; ///< of a, of b
-    std::array<Vec3, 2> normals;        ///< of these, outward
+    std::uint32_t from, to;      ///< crossings
+    std::array<Vec3, 2> normals; ///< of the faces of a and b, outward
 };
 
-/// Joins the crossings of a pair to loops. Keeps nothing but memory from one pair to the next.
+/// Follows the loops of a pair from triangle to triangle. Keeps nothing but memory from one pair to the next.
 class Loops {
 public:
-    void find(const PairMeshes& pair, std::span<const Crossing> crossings);
+    void clear();
+    /// Follows the loop through a crossing, unless it is there already.
+    void follow(const PairMeshes& pair, const Crossing& seed);
     std::span<const Loop> loops() const { return loops_; }
-    /// Crossings, loop by loop.
-    std::span<const std::uint32_t> order() const { return order_; }
-    /// Loop by loop, in order.
+    /// Loop by loop, in the order in which they follow each other.
+    std::span<const Crossing> crossings() const { return crossings_; }
     std::span<const LoopSegment> segments() const { return segments_; }
-    std::span<const LoopSegment> segments_of(const Loop& loop) const {
-        return segments().subspan(loop.first_segment, loop.segment_count);
-    }
 
 private:
-    static constexpr std::uint32_t nowhere = 0xffffffffu;
-    /// A crossing lies on one triangle of the one body and two of the other, so on two pairs of triangles.
-    struct Links {
-        std::array<std::uint64_t, 2> faces; ///< of a in the upper half, of b in the lower; none: at a border
-        std::array<std::uint32_t, 2> next{nowhere, nowhere};
+    /// The triangles between a crossing and the next one.
+    struct Step {
+        Crossing next;
+        std::array<Vec3, 2> normals;
     };
-    void link(const PairMeshes& pair, std::span<const Crossing> crossings);
-    void walk(std::span<const Crossing> crossings, std::uint32_t begin);
-    void measure(const PairMeshes& pair, std::span<const Crossing> crossings, Loop& loop);
+    bool walk(const PairMeshes& pair, const Crossing& seed, bool onward);
+    void keep(const Crossing& seed, bool closed);
+    void measure(Loop& loop) const;
+    bool is_known(const Crossing& c) const;
+    void remember(std::uint32_t number);
 
-    std::vector<Links> links_; ///< by crossing
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_faces_;
+    std::vector<Crossing> crossings_;
     std::vector<Loop> loops_;
-    std::vector<std::uint32_t> order_;
     std::vector<LoopSegment> segments_;
-    std::vector<bool> seen_;
+    std::array<std::vector<Step>, 2> steps_;    ///< from the seed: back, onward
+    std::array<PlacedFace, 2> faces_;           ///< of a, of b
+    std::array<std::uint32_t, 2> normal_faces_; ///< whose normals_ are known
+    std::array<Vec3, 2> normals_;
+    std::vector<std::uint32_t> table_; ///< numbers of crossings by their hash, NONE: free
 };
 
 } // namespace raycontact

@@ -21,7 +21,7 @@ const trees::Walks& walks() {
 } // namespace
 
 MeshHit closest_hit(const ShapeData& mesh, const Vec3& origin, const Vec3& direction, double least, double most) {
-    return walks().closest_hit({mesh.nodes.data(), mesh.triangle_blocks.data(), mesh.block_bounds.data()},
+    return walks().closest_hit({mesh.nodes.data(), mesh.triangle_blocks.data()},
                                {{origin.x, origin.y, origin.z},
                                 {direction.x, direction.y, direction.z},
                                 least,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace raycontact {
@@ -26,6 +27,8 @@ constexpr double parallel = 0.98;
 // Two edges whose normal has no larger part than this along the way of their region are passed over.
 constexpr double sideways = 0.1;
 constexpr std::size_t most_faces = 64;
+// An edge is short up to this, in diagonals of the smaller body.
+constexpr double short_edge = 0.1;
 // A ray from a piece begins this part of its half inside.
 constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;
@@ -86,12 +89,8 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
                      std::vector<FeatureContact>& found) {
     const PairMeshes pair(placed);
-    crossings_.clear();
-    for (std::size_t side = 0; side < 2; ++side) {
-        find_crossings(pair, side, near[side], crossings_);
-    }
-    if (crossings_.empty()) return false;
-    loops_.find(pair, crossings_);
+    follow_loops(pair, near, !vertices[0].empty() || !vertices[1].empty());
+    if (crossings().empty()) return false;
     list_vertices(vertices);
     list_pieces(pair, placed);
     join_regions(pair);
@@ -99,12 +98,10 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
     pass_edges(pair);
     const auto before = static_cast<std::ptrdiff_t>(found.size());
     give_edges(found);
+    all_speak_ = false;
     give_deep(pair, found);
-    // Concave and flat edges speak where nothing else does.
-    if (found.size() == std::size_t(before) && in_contact_.empty()) {
-        for (Piece& piece : pieces_) piece.speaks = true;
-        give_deep(pair, found);
-    }
+    all_speak_ = found.size() == std::size_t(before) && in_contact_.empty();
+    if (all_speak_) give_deep(pair, found);
     // Two edges have one contact, the deepest.
     const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
     std::sort(found.begin() + before, found.end(), [&](const FeatureContact& p, const FeatureContact& q) {
@@ -114,6 +111,30 @@ bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& n
                             [&](const auto& p, const auto& q) { return edges(p) == edges(q); }),
                 found.end());
     return true;
+}
+
+// Every loop has been followed once each edge has been asked. Where a vertex is in contact, short edges need not be:
+// loops that they alone cross are left out.
+void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near, bool in_contact) {
+    const double least2 = in_contact ? short_edge * short_edge * pair.size() * pair.size() : 0;
+    loops_.clear();
+    for (std::size_t side = 0; side < 2; ++side) {
+        const ShapeData& source = pair.shape(side);
+        PlacedFace face;
+        std::uint32_t edge = NONE;
+        bool asked = false;
+        for (const NearEdge& candidate : near[side]) {
+            if (candidate.edge != edge) {
+                edge = candidate.edge;
+                const auto [start, stop] = ends_of(source, edge);
+                const Vec3 along = source.point(stop) - source.point(start);
+                asked = dot(along, along) > least2;
+            }
+            if (!asked) continue;
+            face.set(pair, 1 - side, candidate.face);
+            if (Crossing seed; crosses(pair, side, edge, face, seed)) loops_.follow(pair, seed);
+        }
+    }
 }
 
 void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
@@ -129,26 +150,35 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
     pieces_.clear();
     piece_vertices_.clear();
     crossed_.clear();
-    for (std::uint32_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
-        const std::uint32_t side = crossings_[begin].side, edge = crossings_[begin].edge;
-        while (end < crossings_.size() && crossings_[end].side == side && crossings_[end].edge == edge) ++end;
+    by_edge_.resize(crossings().size());
+    std::iota(by_edge_.begin(), by_edge_.end(), 0u);
+    std::sort(by_edge_.begin(), by_edge_.end(), [this](std::uint32_t i, std::uint32_t k) {
+        const Crossing &p = crossings()[i], &q = crossings()[k];
+        return std::tie(p.side, p.edge, p.at, p.face) < std::tie(q.side, q.edge, q.at, q.face);
+    });
+    for (std::size_t begin = 0, end = 0; begin < by_edge_.size(); begin = end) {
+        const auto [side, edge] = std::pair(crossings()[by_edge_[begin]].side, crossings()[by_edge_[begin]].edge);
+        const auto on_edge = [&](std::uint32_t i) {
+            return crossings()[i].side == side && crossings()[i].edge == edge;
+        };
+        while (end < by_edge_.size() && on_edge(by_edge_[end])) ++end;
         const auto [start, stop] = ends_of(pair.shape(side), edge);
         const std::uint64_t of_side = std::uint64_t{side} << 32;
         crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
         if (placed[side].target.header.closed == 0) continue; // an open mesh has no inside
-        const bool speaks = is_sharp(pair.shape(side), edge) && is_convex(pair.shape(side), edge);
         // The piece before crossing k, if it is inside.
-        for (std::uint32_t k = begin; k <= end; ++k) {
-            const bool enters = k > begin, leaves = k < end;
-            if ((enters && crossings_[k - 1].leaves) || (leaves && !crossings_[k].leaves)) continue;
-            Piece piece{side, edge, leaves ? k : k - 1, {}, enters && leaves, speaks};
+        for (std::size_t k = begin; k <= end; ++k) {
+            Piece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}};
+            const auto [enters, leaves] = piece.crossings;
+            if ((enters != NONE && crossings()[enters].leaves) || (leaves != NONE && !crossings()[leaves].leaves))
+                continue;
             for (std::size_t e = 0; e < 2; ++e) {
-                if (e == 0 ? enters : leaves) {
-                    piece.ends[e] = crossings_[e == 0 ? k - 1 : k].point;
+                if (piece.crossings[e] != NONE) {
+                    piece.ends[e] = crossings()[piece.crossings[e]].point;
                 } else {
                     const std::uint32_t vertex = e == 0 ? start : stop;
                     piece.ends[e] = pair.vertex(side, vertex);
-                    piece_vertices_.emplace_back(piece.crossing, of_side | vertex);
+                    piece_vertices_.emplace_back(of_side | vertex, piece.crossings[1 - e]);
                 }
             }
             pieces_.push_back(piece);
@@ -157,24 +187,29 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
     std::sort(crossed_.begin(), crossed_.end());
 }
 
-std::uint32_t PairEdges::node_of(std::uint64_t vertex) const {
-    const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), vertex);
-    if (at == vertices_.end() || *at != vertex) return NONE;
-    return static_cast<std::uint32_t>(crossings_.size() + std::size_t(at - vertices_.begin()));
-}
-
 void PairEdges::join_regions(const PairMeshes& pair) {
-    vertices_.clear();
-    for (const VertexContact& v : in_contact_) vertices_.push_back(v.vertex);
-    for (const auto& [crossing, vertex] : piece_vertices_) vertices_.push_back(vertex);
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    sets_.reset(crossings_.size() + vertices_.size());
+    // The nodes are the crossings, the vertices in contact, and the other vertices at ends of pieces.
+    const auto first = static_cast<std::uint32_t>(crossings().size());
+    const std::uint32_t first_other = first + static_cast<std::uint32_t>(in_contact_.size());
+    sets_.reset(first_other + piece_vertices_.size());
     for (const LoopSegment& s : loops_.segments()) sets_.join(s.from, s.to);
     for (const Piece& piece : pieces_)
-        if (piece.through) sets_.join(piece.crossing - 1, piece.crossing);
-    for (const auto& [crossing, vertex] : piece_vertices_) sets_.join(crossing, node_of(vertex));
-    join_vertices(pair);
+        if (piece.is_through()) sets_.join(piece.crossings[0], piece.crossings[1]);
+    std::sort(piece_vertices_.begin(), piece_vertices_.end());
+    other_vertices_.clear();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < piece_vertices_.size(); ++i) {
+        const auto [vertex, crossing] = piece_vertices_[i];
+        while (at < in_contact_.size() && in_contact_[at].vertex < vertex) ++at;
+        if (at < in_contact_.size() && in_contact_[at].vertex == vertex) {
+            sets_.join(crossing, first + static_cast<std::uint32_t>(at));
+            continue;
+        }
+        if (other_vertices_.empty() || other_vertices_.back() != vertex) other_vertices_.push_back(vertex);
+        sets_.join(crossing, first_other + static_cast<std::uint32_t>(other_vertices_.size() - 1));
+    }
+    node_count_ = first_other + other_vertices_.size();
+    if (in_contact_.size() > 1) join_vertices(pair);
 }
 
 // Vertices in contact with their neighbours, over edges that stay in the other body.
@@ -183,16 +218,14 @@ void PairEdges::join_vertices(const PairMeshes& pair) {
         const std::size_t side = contact.vertex >> 32;
         const auto own = static_cast<std::uint32_t>(contact.vertex);
         const ShapeData& shape = pair.shape(side);
-        const auto is_in_contact = [this](std::uint64_t vertex) {
+        const auto join = [&](std::uint32_t other) {
+            if (other < own) return; // joined there
+            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
             const auto at = std::lower_bound(in_contact_.begin(), in_contact_.end(), vertex,
                                              [](const VertexContact& c, std::uint64_t v) { return c.vertex < v; });
-            return at != in_contact_.end() && at->vertex == vertex;
-        };
-        const auto join = [&](std::uint32_t other) {
-            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
-            const std::array<std::uint64_t, 2> edge{std::min(vertex, contact.vertex), std::max(vertex, contact.vertex)};
-            if (is_in_contact(vertex) && !std::binary_search(crossed_.begin(), crossed_.end(), edge))
-                sets_.join(node_of(vertex), node_of(contact.vertex));
+            if (at == in_contact_.end() || at->vertex != vertex) return;
+            if (!std::binary_search(crossed_.begin(), crossed_.end(), std::array{contact.vertex, vertex}))
+                sets_.join(node_of(*at), node_of(contact));
         };
         // Around the vertex; where a border ends that, the other way round, too.
         const std::uint32_t begin = shape.vertex_triangle[own];
@@ -216,7 +249,7 @@ void PairEdges::list_regions(const PairMeshes& pair) {
     regions_.clear();
     points_.clear();
     faces_.clear();
-    region_of_.assign(crossings_.size() + vertices_.size(), NONE);
+    region_of_.assign(node_count_, NONE);
     for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
         const std::uint32_t root = sets_.of(i); // the lowest, so seen already
         if (root == i) {
@@ -227,23 +260,26 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         }
     }
     for (const Loop& loop : loops_.loops()) {
-        Region& region = regions_[region_of_[loops_.order()[loop.first]]];
+        Region& region = regions_[region_of_[loop.first]];
         region.area = region.area + loop.area;
         region.area_sum += length(loop.area);
     }
-    for (std::uint32_t i = 0; i < crossings_.size(); ++i) points_.emplace_back(region_of_[i], crossings_[i].point);
-    for (std::size_t i = 0; i < vertices_.size(); ++i)
-        points_.emplace_back(region_of_[crossings_.size() + i],
-                             pair.vertex(vertices_[i] >> 32, static_cast<std::uint32_t>(vertices_[i])));
+    for (std::uint32_t i = 0; i < crossings().size(); ++i) points_.emplace_back(region_of_[i], crossings()[i].point);
+    const auto place = [&](std::uint32_t node, std::uint64_t vertex) {
+        points_.emplace_back(region_of_[node], pair.vertex(vertex >> 32, static_cast<std::uint32_t>(vertex)));
+    };
     for (const VertexContact& c : in_contact_) {
-        Region& region = regions_[region_of_[node_of(c.vertex)]];
+        place(node_of(c), c.vertex);
+        Region& region = regions_[region_of_[node_of(c)]];
         region.deepest = std::max(region.deepest, c.depth);
         region.told = region.deepest;
         region.speaks = true;
     }
+    for (std::size_t i = 0; i < other_vertices_.size(); ++i)
+        place(static_cast<std::uint32_t>(node_count_ - other_vertices_.size() + i), other_vertices_[i]);
     for (const LoopSegment& s : loops_.segments()) {
         Region& region = regions_[region_of_[s.from]];
-        const double along = length(crossings_[s.to].point - crossings_[s.from].point);
+        const double along = length(crossings()[s.to].point - crossings()[s.from].point);
         region.loop_length += along;
         if (dot(s.normals[0], s.normals[1]) > parallel) {
             region.flush_length += along;
@@ -253,8 +289,10 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
     }
     const auto by_region = [](const auto& p, const auto& q) { return p.first < q.first; };
-    std::stable_sort(points_.begin(), points_.end(), by_region);
-    std::stable_sort(faces_.begin(), faces_.end(), by_region);
+    if (regions_.size() > 1) {
+        std::stable_sort(points_.begin(), points_.end(), by_region);
+        std::stable_sort(faces_.begin(), faces_.end(), by_region);
+    }
     std::uint32_t point = 0, face = 0;
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {
         Region& region = regions_[r];
@@ -316,23 +354,22 @@ void PairEdges::pass_edges(const PairMeshes& pair) {
         // Edges within a flat face are passed over.
         std::uint32_t first = NONE, last = NONE;
         const auto visit = [&](std::uint32_t c) {
-            const Crossing& now = crossings_[c];
-            if (last != NONE && crossings_[last].side != now.side)
+            const Crossing& now = crossings()[c];
+            if (last != NONE && crossings()[last].side != now.side)
                 pass(pair, loop, now.side == 0 ? c : last, now.side == 0 ? last : c);
             last = c;
         };
-        for (std::uint32_t i = 0; i < loop.count; ++i) {
-            const std::uint32_t c = loops_.order()[loop.first + i];
-            if (!is_sharp(pair.shape(crossings_[c].side), crossings_[c].edge)) continue;
+        for (std::uint32_t c = loop.first; c < loop.first + loop.count; ++c) {
+            if (!is_sharp(pair.shape(crossings()[c].side), crossings()[c].edge)) continue;
             if (first == NONE) first = c;
             visit(c);
         }
-        if (loop.closed && first != NONE && first != last) visit(first);
+        if (loop.is_closed() && first != NONE && first != last) visit(first);
     }
 }
 
 void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b) {
-    const Crossing &x = crossings_[of_a], &y = crossings_[of_b];
+    const Crossing &x = crossings()[of_a], &y = crossings()[of_b];
     const std::uint32_t number = region_of_[of_a];
     Region& region = regions_[number];
     if (region.is_pierced()) return;
@@ -400,6 +437,12 @@ void PairEdges::give_edges(std::vector<FeatureContact>& found) {
     }
 }
 
+// Sharp and convex edges speak; concave ones and those within flat faces only where nothing else does.
+bool PairEdges::speaks(const PairMeshes& pair, const Piece& piece) const {
+    const ShapeData& shape = pair.shape(piece.side);
+    return all_speak_ || (is_sharp(shape, piece.edge) && is_convex(shape, piece.edge));
+}
+
 // How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
 MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
     const std::size_t other = 1 - piece.side;
@@ -454,8 +497,8 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
         if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
     };
     for (const Piece& piece : pieces_) {
-        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
-        if (piece.through) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
+        if (region_of(piece) != number || !speaks(pair, piece)) continue;
+        if (piece.is_through()) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
         if (region.speaks) continue;
         for (const Vec3& end : piece.ends) ask(piece, end);
     }
@@ -475,7 +518,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
             asked_.push_back(n);
             double most = 0;
             for (const Piece& piece : pieces_) {
-                if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+                if (region_of(piece) != number || !speaks(pair, piece)) continue;
                 for (const Vec3& end : piece.ends) most = std::max(most, way_out(pair, piece, end, n).distance);
                 if (most > 1.001 * least) break;
             }
@@ -487,7 +530,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
         }
     if (way == Vec3{}) return;
     for (const Piece& piece : pieces_) {
-        if (!piece.speaks || region_of_[piece.crossing] != number) continue;
+        if (region_of(piece) != number || !speaks(pair, piece)) continue;
         for (const Vec3& end : piece.ends) {
             const MeshHit hit = way_out(pair, piece, end, way);
             add_deep(pair, piece, end, way, hit.distance, hit);

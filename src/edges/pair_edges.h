@@ -29,10 +29,9 @@ private:
     /// A part of an edge inside the other body, from a crossing or the edge's end to the next.
     struct Piece {
         std::uint32_t side, edge;
-        std::uint32_t crossing; ///< one at its ends
+        std::array<std::uint32_t, 2> crossings; ///< at its ends; NONE: it ends at a vertex there
         std::array<Vec3, 2> ends;
-        bool through; ///< a crossing at both ends
-        bool speaks;  ///< its edge is sharp and convex
+        bool is_through() const { return crossings[0] != NONE && crossings[1] != NONE; }
     };
     /// Two edges that pass each other.
     struct Passing {
@@ -50,8 +49,8 @@ private:
         std::uint32_t first_point = 0, end_point = 0;
         std::uint32_t first_face = 0, end_face = 0;
         Vec3 way; ///< in which a leaves b, once asked
-        /// Its loops cancel: a body is pierced through.
         bool is_flush() const { return flush_length > 0.1 * loop_length; }
+        /// Its loops cancel: a body is pierced through.
         bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
     struct Range {
@@ -81,14 +80,24 @@ private:
     void list_deep(const PairMeshes& pair, std::uint32_t region);
     void list_pierced(const PairMeshes& pair, std::uint32_t region);
     void give_deep(const PairMeshes& pair, std::vector<FeatureContact>& found);
-    std::uint32_t node_of(std::uint64_t vertex) const;
+    std::uint32_t node_of(const VertexContact& c) const {
+        return static_cast<std::uint32_t>(crossings().size() + std::size_t(&c - in_contact_.data()));
+    }
+    bool speaks(const PairMeshes& pair, const Piece& piece) const;
+    std::span<const Crossing> crossings() const { return loops_.crossings(); }
+    std::uint32_t region_of(const Piece& piece) const {
+        return region_of_[piece.crossings[0] == NONE ? piece.crossings[1] : piece.crossings[0]];
+    }
+    void follow_loops(const PairMeshes& pair, const NearEdges& near, bool in_contact);
 
-    std::vector<Crossing> crossings_; ///< of a, then of b
     Loops loops_;
+    std::vector<std::uint32_t> by_edge_;    ///< crossings, those of an edge along it
     std::vector<VertexContact> in_contact_; ///< by vertex
-    std::vector<Piece> pieces_;             ///< as their edges are numbered, and along these
-    std::vector<std::uint64_t> vertices_;   ///< in contact, or at an end of a piece; sorted
-    std::vector<std::pair<std::uint32_t, std::uint64_t>> piece_vertices_; ///< crossing, vertex
+    bool all_speak_ = false;
+    std::vector<Piece> pieces_;                 ///< as their edges are numbered, and along these
+    std::vector<std::uint64_t> other_vertices_; ///< at ends of pieces, not in contact
+    std::size_t node_count_ = 0;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> piece_vertices_; ///< vertex, crossing
     std::vector<std::array<std::uint64_t, 2>> crossed_;                   ///< edges that are, by their vertices; sorted
     DisjointSets sets_;                                                   ///< crossings, then vertices_
     std::vector<std::uint32_t> region_of_;                                ///< by crossing and vertex

@@ -56,4 +56,18 @@ inline std::array<std::uint32_t, 2> ends_of(const ShapeData& shape, std::uint32_
     return {corners[edge % 3], corners[(edge % 3 + 1) % 3]};
 }
 
+/// The edge of a face from its k-th corner to the next.
+inline std::uint32_t edge_of(const ShapeData& shape, std::uint32_t face, std::uint32_t k) {
+    const std::uint32_t across = shape.neighbours[face][k];
+    if (across == NONE || across > face) return 3 * face + k;
+    const auto& own = shape.mesh.triangles[face];
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::uint32_t p = shape.mesh.triangles[across][i], q = shape.mesh.triangles[across][(i + 1) % 3];
+        if (shape.neighbours[across][i] == face
+            && ((p == own[(k + 1) % 3] && q == own[k]) || (p == own[k] && q == own[(k + 1) % 3])))
+            return 3 * across + i;
+    }
+    return 3 * face + k;
+}
+
 } // namespace raycontact

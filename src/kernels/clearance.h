@@ -112,9 +112,9 @@ DEVICE float least_of_sixteen(const float* values) {
 }
 
 // A safe distance for all vertices of a block, from only the ball around its box.
-DEVICE float safe_block(READS(DirectedPair) pair, READS(ShapeHeader) source, READS(ClusterBlock) clusters,
+DEVICE float safe_block(READS(DirectedPair) pair, READS(SourceTree) source, READS(ClusterBlock) clusters,
                         uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
-    const uint own = vertex_block - source->vertex_block_first, lane = own % VERTEX_LANES;
+    const uint own = vertex_block - source->block_first, lane = own % VERTEX_LANES;
     READS(ClusterBlock) box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
     READS(float) r = pair->rotation;
     const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the blocks of sixteen vertices that may reach into the target's bounds, by a tree of boxes, sixteen to a node.
+// Finds the blocks of sixteen vertices or edges that may reach into the target's bounds, by a tree of boxes, sixteen to
+// a node.
 
 // The bounds of a pair in both frames: centres and half sizes, grown by the rounding of the transform.
 STRUCT(PairBounds) {
@@ -72,11 +73,12 @@ DEVICE uint overlapping_lanes(const PairBounds* b, READS(ClusterBlock) block) {
 STRUCT(Search) {
     uint p;
     READS(DirectedPair) pair;
-    READS(ShapeHeader) source;
+    READS(SourceTree) source;
     READS(ShapeHeader) target;
     READS(ClusterBlock) clusters;
     READS(uint) clearances;
     float horizon;
+    float reach;      // of the sources' rays, as safe_distance() takes it; not known of vertices
     float least_safe; // of the boxes left out
 };
 
@@ -99,7 +101,7 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
         const float x = ((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0];
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
-        const float free = safe_distance(grid, balls, x, y, z, UNBOUNDED), gap = bounds_gap(b, x, y, z);
+        const float free = safe_distance(grid, balls, x, y, z, search->reach), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
@@ -111,12 +113,26 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
+// Edges are asked where at least one of the bodies has an inside.
+DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
+    return pair->source != NONE
+           && (edges == 0u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
+}
+
 // Without horizons the horizon is negative.
-DEVICE Search search_of(uint p, READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
+DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
                         READS(ClusterBlock) clusters, READS(uint) clearances) {
     READS(DirectedPair) pair = pairs + p;
-    const Search search = {p,        pair,       shapes + pair->source,          shapes + pair->target,
-                           clusters, clearances, horizons ? horizons[p] : -1.0f, UNBOUNDED};
+    READS(ShapeHeader) source = shapes + pair->source;
+    const Search search = {p,
+                           pair,
+                           edges != 0u ? &source->edges : &source->vertices,
+                           shapes + pair->target,
+                           clusters,
+                           clearances,
+                           horizons ? horizons[p] : -1.0f,
+                           edges != 0u ? 0.0f : UNBOUNDED,
+                           UNBOUNDED};
     return search;
 }
 
@@ -125,18 +141,24 @@ DEVICE uint reached_lanes(Search* search, const PairBounds* bounds, const bool b
     return by_horizon ? near_lanes(search, block) : overlapping_lanes(bounds, block);
 }
 
-// For a source of up to this many vertex blocks the counting pass keeps its result in one word, a bit for each block.
-#define BLOCKS_IN_MASK 64u
+// For a source of up to this many blocks the counting pass keeps its result in words, a bit for each block.
+#define BLOCKS_IN_MASK (64u * MASK_WORDS)
 
-// Where the blocks of a pair are written, and the two columns of ray counts, which begin at 0 (count_rays()).
+// Where the blocks of a pair are written, and the two columns of ray counts, which begin at 0 (count_rays()). mask: if
+// not null, the blocks are only marked there.
 STRUCT(FoundBlocks) {
     WRITES(PairBlock) blocks;
     WRITES(uint) ray_counts;
     uint stride;
+    WRITES(ulong) mask;
 };
 
 DEVICE void write_block(const FoundBlocks* found, uint at, const Search* search, uint block) {
-    const PairBlock own = {search->p, search->source->vertex_block_first + block, 0u};
+    if (found->mask) {
+        found->mask[block / 64u] |= (ulong)1u << (block % 64u);
+        return;
+    }
+    const PairBlock own = {search->p, search->source->block_first + block, 0u};
     found->blocks[at] = own;
     found->ray_counts[at] = 0u;
     found->ray_counts[found->stride + at] = 0u;
@@ -176,23 +198,32 @@ DEVICE uint reach_clusters(Search* search, const PairBounds* bounds, const bool 
     return count;
 }
 
-// block_mask: the blocks found, a bit each, if the source has at most BLOCKS_IN_MASK.
-DEVICE uint count_reached(Search* search, const bool by_horizon, WRITES(ulong) block_mask) {
+// mask: the blocks found, a bit each, if the source has at most BLOCKS_IN_MASK.
+DEVICE uint count_reached(Search* search, const bool by_horizon, WRITES(ulong) mask) {
     const PairBounds bounds = bounds_of(search->pair);
-    if (search->source->vertex_block_count > BLOCKS_IN_MASK)
+    // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+    const FoundBlocks marked = {(GLOBAL PairBlock*)0, (GLOBAL uint*)0, 0u, mask};
+    if (search->source->block_count > BLOCKS_IN_MASK)
         // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
         return reach_clusters(search, &bounds, by_horizon, (const FoundBlocks*)0);
+    const uint words = (search->source->block_count + 63u) / 64u;
+    for (uint w = 0u; w < words; ++w) mask[w] = 0u;
+    if (words > 1u) return reach_clusters(search, &bounds, by_horizon, &marked);
     ulong blocks = 0u;
     for (uint i = 0u; i < search->source->cluster_count[0]; ++i)
         blocks |= (ulong)reached_lanes(search, &bounds, by_horizon, 0u, i) << (VERTEX_LANES * i);
-    *block_mask = blocks;
+    if (words > 0u) *mask = blocks;
     return bit_count_of_long(blocks);
 }
 
-DEVICE void write_reached(Search* search, ulong block_mask, const FoundBlocks* found) {
-    if (search->source->vertex_block_count <= BLOCKS_IN_MASK) {
-        for (uint i = 0u; block_mask != 0u; ++i, block_mask &= block_mask - 1u)
-            write_block(found, i, search, lowest_bit_of_long(block_mask));
+DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* found) {
+    if (search->source->block_count <= BLOCKS_IN_MASK) {
+        uint at = 0u;
+        for (uint first = 0u; first < search->source->block_count; first += 64u)
+            for (ulong left = mask[first / 64u]; left != 0u; left &= left - 1u) {
+                write_block(found, at, search, first + lowest_bit_of_long(left));
+                ++at;
+            }
         return;
     }
     const PairBounds bounds = bounds_of(search->pair);
@@ -204,29 +235,32 @@ DEVICE void write_reached(Search* search, ulong block_mask, const FoundBlocks* f
 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
 // blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
-// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative.
-KERNEL void count_clusters(COUNT(count), READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
-                           READS(ClusterBlock) clusters, READS(uint) clearances, WRITES(uint) counts,
-                           WRITES(float) safe_distances, WRITES(ulong) block_masks) {
+// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges: 1: of
+// the edges, which are in contact where they cross the surface.
+KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
+                           READS(ShapeHeader) shapes, READS(ClusterBlock) clusters, READS(uint) clearances,
+                           WRITES(uint) counts, WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
-        if (pairs[p].source == NONE) {
+        if (!is_asked(edges, pairs + p, shapes)) {
             counts[p] = 0u;
             continue;
         }
-        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
-        counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + p)
-                                          : count_reached(&search, true, block_masks + p);
+        Search search = search_of(p, edges, pairs, horizons, shapes, clusters, clearances);
+        counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + MASK_WORDS * p)
+                                          : count_reached(&search, true, block_masks + MASK_WORDS * p);
         if (horizons) safe_distances[p] = search.least_safe;
     }
 }
 
-KERNEL void write_clusters(COUNT(count), READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
-                           READS(ClusterBlock) clusters, READS(uint) clearances, READS(ulong) block_masks,
-                           READS(uint) firsts, WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
+KERNEL void write_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
+                           READS(ShapeHeader) shapes, READS(ClusterBlock) clusters, READS(uint) clearances,
+                           READS(ulong) block_masks, READS(uint) firsts, WRITES(PairBlock) blocks, uint stride,
+                           WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {
-        if (pairs[p].source == NONE) continue;
-        Search search = search_of(p, pairs, horizons, shapes, clusters, clearances);
-        const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride};
-        write_reached(&search, block_masks[p], &found);
+        if (!is_asked(edges, pairs + p, shapes)) continue;
+        Search search = search_of(p, edges, pairs, horizons, shapes, clusters, clearances);
+        // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+        const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride, (GLOBAL ulong*)0};
+        write_reached(&search, block_masks + MASK_WORDS * p, &found);
     }
 }

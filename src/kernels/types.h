@@ -14,6 +14,7 @@
 #define VERTEX_LANES 16
 #define CLUSTER_LEVELS 4
 #define SEGMENT_WATCHES 32u // a bit each
+#define MASK_WORDS 4u       // of 64 blocks each, for each pair
 #define NODE_LEVELS 5
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
@@ -52,6 +53,8 @@ STRUCT(Node) {
 WIRE_SIZE(Node, 512);
 
 // Sixteen vertices that cast rays. direction: the inward normal. exit: distance at which the ray leaves its own mesh.
+// Or sixteen edges. position: the middle. direction: from there to the end. exit: its length. vertex: 3 x the edge's
+// lowest triangle + its first corner.
 STRUCT(VertexBlock) {
     float position[3][VERTEX_LANES];
     float direction[3][VERTEX_LANES];
@@ -67,16 +70,21 @@ STRUCT(ClusterBlock) {
 };
 WIRE_SIZE(ClusterBlock, 384);
 
+// The vertices, or the edges, of a shape as sources: their blocks, and the tree of clusters above these.
+STRUCT(SourceTree) {
+    uint block_first, block_count;
+    uint cluster_first[CLUSTER_LEVELS]; // level 0 bounds blocks, level l + 1 bounds clusters of level l
+    uint cluster_count[CLUSTER_LEVELS];
+    uint cluster_levels;
+};
+WIRE_SIZE(SourceTree, 44);
+
 // Where a shape's arrays begin in the device's buffers, and the rounding it allows for.
 STRUCT(ShapeHeader) {
     uint node_first;
     uint triangle_block_first;
     uint triangle_block_count;
-    uint vertex_block_first;
-    uint vertex_block_count;
-    uint cluster_first[CLUSTER_LEVELS]; // level 0 bounds vertex blocks, level l + 1 bounds clusters of level l
-    uint cluster_count[CLUSTER_LEVELS];
-    uint cluster_levels;
+    SourceTree vertices, edges;
     uint normal_first;
     uint closed;
     uint outward;      // closed, winding number 1 inside, 0 outside: a vertex outside cannot touch
@@ -96,7 +104,7 @@ STRUCT(ShapeHeader) {
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
 };
-WIRE_SIZE(ShapeHeader, 192);
+WIRE_SIZE(ShapeHeader, 236);
 
 #include "kernels/body_place.h"
 
@@ -123,11 +131,11 @@ STRUCT(DirectedPair) {
 };
 WIRE_SIZE(DirectedPair, 80);
 
-// A vertex block that may reach into its pair's target.
+// A block of vertices or edges that may reach into its pair's target.
 STRUCT(PairBlock) {
     uint pair;
     uint vertex_block; // absolute
-    uint lanes;        // a bit for each vertex that casts a ray
+    uint lanes;        // a bit for each vertex or edge that is cast
 };
 WIRE_SIZE(PairBlock, 12);
 
@@ -251,3 +259,19 @@ STRUCT(LocalContact) {
     Packed3 normal; // of the face, target frame
 };
 WIRE_SIZE(LocalContact, 32);
+
+// The faces near an edge that was cast: how many, and the first ones.
+#define EDGE_FACES 3u
+STRUCT(EdgeHits) {
+    uint count;
+    uint face[EDGE_FACES];
+};
+WIRE_SIZE(EdgeHits, 16);
+
+// An edge of the source that may cross a face of the target: 3 x its lowest triangle + its first corner.
+STRUCT(NearEdge) {
+    uint edge;
+    uint face;
+    uint pair;
+};
+WIRE_SIZE(NearEdge, 12);

@@ -15,9 +15,9 @@ KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHe
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
         READS(DirectedPair) pair = pairs + found.pair;
-        const float safe =
-            safe_block(pair, shapes + pair->source, boxes, found.vertex_block, shapes + pair->target, clearances)
-            - margins[found.pair];
+        const float safe = safe_block(pair, &shapes[pair->source].vertices, boxes, found.vertex_block,
+                                      shapes + pair->target, clearances)
+                           - margins[found.pair];
         Watch watch;
         watch.vertex_block = found.vertex_block;
         watch.wake = safe > 0.0f ? safe : AWAKE;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/part.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace raycontact {
@@ -21,6 +22,8 @@ void Part::forget() {
 
 void Part::give_back() {
     pipeline_.give_back(update(bodies_, pairs_));
+    placer_.give_back();
+    edges_.give_back();
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
@@ -36,18 +39,31 @@ void Part::begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> p
     pipeline_.begin(update(bodies, pairs));
 }
 
-std::span<const kernels::LocalContact> Part::end() {
-    return pipeline_.end(update(bodies_, pairs_));
+void Part::end(std::vector<Contact>& contacts) {
+    const Update now = update(bodies_, pairs_);
+    pipeline_.end(now);
+    place(now, pipeline_, contacts);
 }
 
-std::span<const kernels::LocalContact> Part::adopt(std::span<const SlotPair> pairs) {
+void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
+    placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
+    if (settings_->features != Features::edges) return;
+    edges_.run(now, found.contacts(), found.asked(), contacts);
+}
+
+void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
     Adopted& added = *adopted_.emplace_back(std::make_unique<Adopted>());
     added.pairs.assign(pairs.begin(), pairs.end());
     const Update now = update(bodies_, added.pairs);
     added.pipeline.begin(now);
-    const auto contacts = added.pipeline.end(now);
+    std::vector<Contact> more;
+    added.pipeline.end(now);
+    place(now, added.pipeline, more);
     pipeline_.put_in(now, added.pipeline.take_out(now, added.pairs));
-    return contacts;
+    const auto old = static_cast<std::ptrdiff_t>(contacts.size());
+    contacts.insert(contacts.end(), more.begin(), more.end());
+    std::ranges::inplace_merge(contacts, contacts.begin() + old, {},
+                               [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
 }
 
 std::vector<std::byte> Part::take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
@@ -66,6 +82,7 @@ void Part::list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRa
 void Part::count(StepStats& stats) const {
     pipeline_.count(update(bodies_, pairs_), stats);
     for (const auto& added : adopted_) added->pipeline.count(update(bodies_, added->pairs), stats);
+    stats.pair_bytes += edges_.bytes();
 }
 
 DeviceWork Part::take_work() {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contacts/place.h"
 #include "device/counting.h"
+#include "edges/edge_stage.h"
 #include "part/pipeline.h"
 
 #include <memory>
@@ -9,8 +11,8 @@
 
 namespace raycontact {
 
-/// What one device does for the pairs that are its own. It keeps the shapes and a pipeline. It knows bodies by their
-/// slots, and no other part.
+/// What one device does for the pairs that are its own: all from poses to contacts in the world. It keeps the shapes
+/// and a pipeline. It knows bodies by their slots, and no other part.
 class Part {
 public:
     explicit Part(OpenDevice opened);
@@ -18,17 +20,15 @@ public:
     const DeviceInfo& device() const { return device_->info(); }
     Executor& executor() { return *executor_; }
     ShapeStore& shapes() { return shapes_; }
-    /// Of the step that began, if needs_motion().
-    const Motion& motion() const { return motion_; }
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
     /// next begin().
     void begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings);
-    /// The contacts of the step, by pair: LocalContact::pair is the directed index in `pairs`. Valid until begin().
-    std::span<const kernels::LocalContact> end();
-    /// After end(), in the same step: the contacts of pairs that are new to this part, because another one failed. The
-    /// part has them from now on. Valid until begin().
-    std::span<const kernels::LocalContact> adopt(std::span<const SlotPair> pairs);
+    /// The contacts of the step, sorted.
+    void end(std::vector<Contact>& contacts);
+    /// After end(), in the same step: sorts in the contacts of pairs that are new to this part, because another one
+    /// failed. The part has them from now on.
+    void adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
 
     /// The state kept for some pairs of the last step, for another part to go on with as this part would have. bodies
     /// as in the last step. Empty if the contacts do not depend on that state.
@@ -44,19 +44,22 @@ public:
     /// The device's work since the last call.
     DeviceWork take_work();
 
-    /// After all of a step: frees memory that it hardly used. What end() and adopt() returned is gone.
+    /// After all of a step: frees memory that it hardly used.
     void give_back();
     /// Forgets what the methods kept.
     void forget();
 
 private:
     Update update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const;
+    void place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts);
 
     std::unique_ptr<Executor> executor_;
     std::unique_ptr<CountingDevice> device_;
     ShapeStore shapes_;
     Motion motion_;
     Pipeline pipeline_;
+    Placer placer_;
+    EdgeStage edges_;
     /// Pairs adopted in the last step, in a pipeline of their own: the other one has done its step, and would follow
     /// its rays twice.
     struct Adopted {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/pipeline.h"
 
-#include "edges/near_lists.h"
-
 namespace raycontact {
 
 namespace {
@@ -22,13 +20,14 @@ Finds finds(const Update& update) {
 } // namespace
 
 bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
-    return finds(settings, traits) != Finds::standard || keeps_near_lists(settings);
+    return finds(settings, traits) != Finds::standard;
 }
 
 void Pipeline::forget() {
     standard_.clear();
     certified_.clear();
     coherent_.clear();
+    pairs_.clear();
 }
 
 void Pipeline::give_back(const Update& last) {
@@ -45,9 +44,12 @@ void Pipeline::give_back(const Update& last) {
         coherent_.give_back();
         break;
     }
+    if (has_near_) edges_.give_back();
     batch_.give_back(rays);
     gather_.give_back();
     local_.give_back();
+    near_.give_back();
+    raycontact::give_back(asked_);
 }
 
 void Pipeline::begin(const Update& update) {
@@ -63,19 +65,44 @@ void Pipeline::begin(const Update& update) {
         break;
     }
     gather_.run(update, batch_);
+    has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
+    if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
+    if (has_near_) edges_.cast(update, pairs_of(update).placed(), {}, batch_);
 }
 
-std::span<const kernels::LocalContact> Pipeline::end(const Update& update) {
+// All, on the device.
+const DevicePairs& Pipeline::pairs_of(const Update& update) const {
+    return finds(update) == Finds::standard ? standard_.pairs() : pairs_;
+}
+
+void Pipeline::end(const Update& update) {
     for (;;) {
-        const bool all_written = gather_.read(update.device, batch_);
+        const bool all_written = gather_.read(update.device, batch_, has_near_ ? &edges_.found() : nullptr);
         const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
-        if (all_written && all_cast) break;
+        const bool all_near = !has_near_ || edges_.had_room(update.device, batch_);
+        if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather_.run(update, batch_);
+        if (!all_near) edges_.cast(update, pairs_of(update).placed(), {}, batch_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(gather_.contacts(), batch_.directed, update.pairs.size());
-    return local_.contacts();
+    if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    list_asked(update);
+}
+
+void Pipeline::list_asked(const Update& update) {
+    asked_.clear();
+    if (update.settings.features != Features::edges) return;
+    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        if (!has_near_ && certified_.is_apart(i) && local_.first(2 * i) == local_.first(2 * i + 2)) continue;
+        const auto [a, b] = update.pairs[i];
+        if (!update.bodies[a].shape->has_inside() && !update.bodies[b].shape->has_inside()) continue;
+        if (has_near_)
+            asked_.push_back({i, {near_.of(2 * i), near_.of(2 * i + 1)}});
+        else
+            asked_.push_back({i, certified_.near(i), certified_.apart(i)});
+    }
 }
 
 std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {
@@ -96,6 +123,8 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
+    stats.pair_bytes += asked_.capacity() * sizeof(AskedPair);
+    if (has_near_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:
         return standard_.count(batch_, last.pairs.size(), stats);

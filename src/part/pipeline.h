@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contacts/by_pair.h"
 #include "contacts/gather.h"
-#include "contacts/local_contacts.h"
+#include "edges/near_edges.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
+#include "rays/edge_rays.h"
 #include "rays/standard.h"
 
 #include <raycontact/scene.h>
@@ -17,9 +19,13 @@ class Pipeline {
 public:
     /// Starts a step.
     void begin(const Update& update);
-    /// The contacts of the step that begin() started with the same update. LocalContact::pair is the directed index in
-    /// update.pairs. Valid until the next begin().
-    std::span<const kernels::LocalContact> end(const Update& update);
+    /// Ends the step that begin() started with the same update. What follows is valid until the next begin().
+    void end(const Update& update);
+    /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
+    const ByPair<kernels::LocalContact>& contacts() const { return local_; }
+    /// The pairs whose edges may cross faces, or that may be inside one another,
+    /// in order; none without edges.
+    std::span<const AskedPair> asked() const { return asked_; }
 
     /// As Part's.
     std::vector<std::byte> take_out(const Update& last, std::span<const SlotPair> pairs);
@@ -29,21 +35,29 @@ public:
 
     /// Adds what the last step did.
     void count(const Update& last, StepStats& stats) const;
-    /// After all of a step, with its update: frees memory that it hardly used. What end() returned is gone.
+    /// After all of a step, with its update: frees memory that it hardly used. What the step found is gone.
     void give_back(const Update& last);
     /// Forgets what the methods kept.
     void forget();
 
 private:
+    const DevicePairs& pairs_of(const Update& update) const;
+    void list_asked(const Update& update);
+
     StandardRays standard_;
     CertifiedRays certified_;
     CoherentRays coherent_;
+    DevicePairs pairs_; ///< all, where the method places only some
     RayBatch batch_;
+    EdgeRays edges_;
     Gather gather_;
-    LocalContacts local_;
+    ByPair<kernels::LocalContact> local_;
+    ByPair<NearEdge> near_;
+    bool has_near_ = false; ///< edges_ were cast
+    std::vector<AskedPair> asked_;
 };
 
-/// Whether the method, or what is asked of edges, needs the motion of bodies on this device.
+/// Whether the method needs the motion of bodies on this device.
 bool needs_motion(const Settings& settings, const DeviceTraits& traits);
 
 } // namespace raycontact

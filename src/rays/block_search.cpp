@@ -26,27 +26,27 @@ void BlockSearch::count(const Update& update, const Array<kernels::DirectedPair>
     const ShapeStore::Arrays& arrays = update.arrays();
     pair_count_ = pair_count;
     counts_.resize(update.device, 1, pair_count);
-    block_masks_.resize(update.device, pair_count);
+    block_masks_.resize(update.device, MASK_WORDS * pair_count);
     safe_distances_.resize(update.device, horizons.size());
-    launch<KernelId::count_clusters>(update.device, pair_count, pairs, horizons, arrays.headers, arrays.clusters,
-                                     arrays.clearances, counts_.values(), safe_distances_, block_masks_);
+    launch<KernelId::count_clusters>(update.device, pair_count, static_cast<kernels::uint>(sources_), pairs, horizons,
+                                     arrays.headers, arrays.clusters, arrays.clearances, counts_.values(),
+                                     safe_distances_, block_masks_);
     counts_.scan(update.device, pair_count, totals, at, room);
 }
 
 void BlockSearch::write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
                         const Array<float>& horizons) const {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::write_clusters>(update.device, items, pairs, horizons, arrays.headers, arrays.clusters,
-                                     arrays.clearances, block_masks_, counts_.firsts(), blocks_, ray_counts_.stride(),
-                                     ray_counts_.values());
+    launch<KernelId::write_clusters>(update.device, items, static_cast<kernels::uint>(sources_), pairs, horizons,
+                                     arrays.headers, arrays.clusters, arrays.clearances, block_masks_, counts_.firsts(),
+                                     blocks_, ray_counts_.stride(), ray_counts_.values());
 }
 
-void BlockSearch::find(const Update& update, const Array<kernels::DirectedPair>& pairs,
+void BlockSearch::find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
                        const Array<kernels::Totals>& totals, std::size_t at) {
-    const Array<float> no_horizons;
     make_room(update.device, std::max(blocks_.size(), least_room));
-    count(update, pairs, pairs.size(), no_horizons, totals, at, blocks_.size());
-    write(update, pairs, items_of(totals, at, pairs.size()), no_horizons);
+    count(update, pairs, pairs.size(), horizons, totals, at, blocks_.size());
+    write(update, pairs, items_of(totals, at, pairs.size()), horizons);
     found_ = results_of(totals, at, blocks_.size());
 }
 
@@ -70,7 +70,7 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPa
 
 void BlockSearch::give_back(std::size_t used) {
     counts_.give_back(pair_count_);
-    block_masks_.give_back(pair_count_);
+    block_masks_.give_back(MASK_WORDS * pair_count_);
     safe_distances_.give_back();
     ray_counts_.give_back(used);
     blocks_.give_back(used);
@@ -90,6 +90,15 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
     launch<KernelId::count_rays>(update.device, found_, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,
                                  arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks_,
                                  ray_counts_.values());
+    ray_counts_.scan(update.device, found_, totals, at, room);
+}
+
+void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
+                              const Array<float>& margins, const Array<kernels::Totals>& totals, std::size_t at,
+                              std::size_t room) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    launch<KernelId::count_edges>(update.device, found_, pairs, margins, arrays.headers, arrays.vertex_blocks,
+                                  arrays.clearances, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 

@@ -6,14 +6,17 @@
 
 namespace raycontact {
 
-/// Finds the vertex blocks of pairs that may be in contact, and then the vertices of these blocks that cast a ray. Both
-/// are in the order of the pairs.
+/// Finds the vertex blocks of pairs that may be in contact, and then the vertices of these blocks that cast a ray; or
+/// the same of edges. Both are in the order of the pairs.
 class BlockSearch {
 public:
-    /// The blocks of all pairs that reach into the bounds. Does not wait: totals[at] says on the device how many there
-    /// are. If they have too little room, none is written (had_room()).
-    void find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<kernels::Totals>& totals,
-              std::size_t at);
+    enum class Sources : kernels::uint { vertices, edges };
+    explicit BlockSearch(Sources sources = Sources::vertices) : sources_(sources) {}
+
+    /// The blocks of all pairs that reach into the bounds; horizons as below. Does not wait: totals[at] says on the
+    /// device how many there are. If they have too little room, none is written (had_room()).
+    void find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
+              const Array<kernels::Totals>& totals, std::size_t at);
     /// The blocks of the first pair_count pairs that reach into the bounds and, if there are horizons, could be in
     /// contact before they have moved by horizons[p] (metres, rounding included). Uses totals[at]. Waits for the device
     /// once, and makes as much room as the blocks need.
@@ -26,16 +29,22 @@ public:
     /// of the target knows to be outside. totals[at]: rays, of which `room` can be written; vertices inside the bounds.
     void count_rays(const Update& update, const Array<kernels::DirectedPair>& pairs, bool use_grid,
                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
-    /// Writes them, the first to rays[begin]. totals[at]: what count_rays() left there.
+    /// Counts the edges of the blocks that come within margins[p] metres of the bounds and, for all that the grid
+    /// knows, of a face. totals[at]: their number, of which `room` can be written.
+    void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& margins,
+                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+    /// Writes them, the first to rays[begin]. totals[at]: what was left there by the call that counted them.
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;
 
+    /// Instead of a search: there are no pairs in this step.
+    void rest() { pair_count_ = 0; }
     /// After a step that found so many blocks: frees memory that it hardly used.
     void give_back(std::size_t used);
     /// Of the last find.
     std::uint64_t bytes() const {
         return std::uint64_t{blocks_.size()} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
-               + pair_count_ * (2 * sizeof(kernels::uint) + sizeof(kernels::ulong));
+               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong));
     }
 
     /// As many as find_now() found; of find(): the room.
@@ -58,9 +67,10 @@ private:
     void write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
                const Array<float>& horizons) const;
 
+    Sources sources_;
     Columns counts_, ray_counts_;
     Array<float> safe_distances_;
-    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each
+    Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each, MASK_WORDS
     Array<kernels::PairBlock> blocks_;
     Count found_{0}; ///< of blocks_
     std::size_t pair_count_ = 0;

@@ -45,6 +45,7 @@ bool is_idle(const kernels::HeldRange& held_range) {
 void CertifiedRays::clear() {
     table_.clear();
     pool_.clear();
+    edges_.clear();
     watches_ = {};
     held_ = {};
     last_held_ = {};
@@ -236,10 +237,12 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
     table_.match(update.pairs, [this](WatchedPair& state) {
         close(state);
+        edges_.release(state.edges);
         state.as_standard = 0;
     });
     wake_up_.run(update, table_);
     list_slices();
+    edges_.find(update, wake_up_.slices(), table_, batch);
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);
@@ -265,12 +268,13 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
                         + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
                         + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
                         + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult))
-                        + standard_.bytes();
+                        + standard_.bytes() + edges_.bytes() + near_.bytes();
 }
 
 // Not the rays held: the next step needs them.
 void CertifiedRays::give_back() {
     wake_up_.give_back();
+    edges_.give_back();
     raycontact::give_back(stale_);
     raycontact::give_back(directed_);
     const std::size_t segments = segments_.size();

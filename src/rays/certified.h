@@ -3,6 +3,7 @@
 
 #include "pairs/range_pool.h"
 #include "rays/block_search.h"
+#include "rays/edge_lists.h"
 #include "rays/ray_batch.h"
 #include "rays/wake_up.h"
 
@@ -19,6 +20,12 @@ public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
     void clear();
+
+    /// Of the i-th pair of the step: its near edges, and what is known while they
+    /// last (AskedPair).
+    std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i).edges); }
+    bool is_apart(std::size_t i) { return table_.hot(i).apart; }
+    bool* apart(std::size_t i) { return &table_.hot(i).apart; }
 
     /// Adds what the last step did.
     void count(const RayBatch& batch, StepStats& stats) const;
@@ -44,6 +51,7 @@ private:
 
     WatchedPairs table_;
     WakeUp wake_up_;
+    EdgeLists edges_;
     RangePool pool_;
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: pairs left to `standard`, then what is due

@@ -38,7 +38,7 @@ T take_bytes(std::span<const std::byte>& bytes) {
 
 // The lane of the body's first vertex in the shape store of a device.
 kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
-    return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertex_block_first;
+    return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertices.block_first;
 }
 
 } // namespace

@@ -12,8 +12,17 @@ namespace raycontact {
 /// of the step.
 struct RayBatch {
     /// What the scans of a step count: vertex blocks found; rays; contacts, side tests and rays cast in full; what a
-    /// method counts besides.
-    enum Sum : std::size_t { block_sum, ray_sum, contact_sum, method_sum, sum_count };
+    /// method counts besides; edge blocks found; edges cast; faces near these.
+    enum Sum : std::size_t {
+        block_sum,
+        ray_sum,
+        contact_sum,
+        method_sum,
+        edge_block_sum,
+        edge_ray_sum,
+        edge_sum,
+        sum_count
+    };
 
     /// Makes room for so many rays.
     void resize(Device& device, std::size_t size) {

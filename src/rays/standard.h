@@ -21,6 +21,7 @@ public:
     /// Finds and casts the rays again.
     void cast(const Update& update, RayBatch& batch);
     void clear() { pairs_.clear(); }
+    const DevicePairs& pairs() const { return pairs_; }
 
     /// Adds what the last step did.
     void count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const;

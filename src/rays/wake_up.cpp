@@ -25,6 +25,18 @@ double look_ahead(double size, double speed) {
                     std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed
 }
 
+// How far beyond what is needed near edges are sought. Of pairs that have none near they last some six steps, of
+// others, whose edges are asked in every step, some four; a wider search finds so much more that it costs more.
+double edge_margin(const WatchedPair& pair, double size, double speed) {
+    if (!(speed < fastest * size)) return 0; // they would not last
+    return pair.edges.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size)
+                                   : std::clamp(4 * speed, 0.0005 * size, 0.005 * size);
+}
+
+bool asks_edges(const Update& update, const PlacedBody& a, const PlacedBody& b) {
+    return update.settings.features == Features::edges && (a.shape->has_inside() || b.shape->has_inside());
+}
+
 // A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
 double longest_clock(const PlacedBody& target) {
     return 8 * target.shape->data().diagonal;
@@ -52,7 +64,10 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool stale[2] = {}, wakes[2] = {};
-    slack = {1e300, true, false};
+    const bool has_edges = asks_edges(update, *body[0], *body[1]);
+    bool edges_due = false;
+    double edges_last = 1e300, margin = 0;
+    slack = {1e300, true, false, slack.apart};
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
@@ -62,18 +77,29 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         wakes[d] = stale[d] || !(double(static_cast<float>(clock)) < own.wake);
         slack.casts = slack.casts || own.rays.count > 0;
         if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
+        edges_due = edges_due || (has_edges && (fresh || !(clock < own.edge_expiry)));
+        if (has_edges) edges_last = std::min(edges_last, own.edge_expiry - clock);
     }
-    const bool any_wakes = wakes[0] || wakes[1], any_stale = stale[0] || stale[1];
+    if (edges_due) edges_last = 0.998 * (margin = edge_margin(state, size, speed));
+    slack.metres = std::min(slack.metres, edges_last);
+    const bool any_wakes = wakes[0] || wakes[1] || edges_due, any_stale = stale[0] || stale[1];
     if (!any_wakes && !slack.casts) return;
 
     if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
     if (any_wakes) state.reference = now;
+    if (edges_due) {
+        slack.apart = false;
+        for (std::size_t d = 0; d < 2; ++d)
+            state.directions[d].edge_expiry = state.directions[d].clock + moved[d] + edges_last;
+        slice.edges.add() = {i, static_cast<float>(margin)};
+    }
     for (std::uint32_t d = 0; d < 2; ++d) {
         const PlacedBody &source = *body[d], &target = *body[1 - d];
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
         if (any_wakes) own.clock = clock;
         if (stale[d]) {
+            own.edge_expiry -= clock;
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
             slice.stale.add() = slice.due.size();
@@ -106,6 +132,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
             slice.as_standard.add() = i;
+            if (asks_edges(update, update.bodies[pair.first], update.bodies[pair.second])) slice.edges.add() = {i, 0};
             if (as_standard > 0) --as_standard;
         } else {
             wake_pair(update, table, i, speed, slice);
@@ -132,6 +159,7 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
             slice.places = List(room.places);
             slice.stale = List(room.stale);
             slice.as_standard = List(room.as_standard);
+            slice.edges = List(room.edges);
             wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
         }
     });
@@ -139,7 +167,7 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
 
 void WakeUp::give_back() {
     std::size_t due = 0;
-    for (const Slice& slice : slices()) due += slice.due.size();
+    for (const Slice& slice : slices()) due += slice.due.size() + slice.edges.size();
     most_due_ = std::max(most_due_, due);
     if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
     rooms_.reset();

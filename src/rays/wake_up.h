@@ -36,9 +36,10 @@ public:
         List<kernels::DirectedPair> places; ///< of due
         List<std::uint32_t> stale;          ///< indices of due: those that need a new list
         List<std::uint32_t> as_standard;    ///< places of pairs that are left to `standard`
-        std::size_t first = 0;              ///< place of its first due among all
-        std::size_t segment_first = 0;      ///< place of its first segment among all
-        std::uint64_t blocks = 0;           ///< vertex blocks tested
+        List<DueEdges> edges;
+        std::size_t first = 0;         ///< place of its first due among all
+        std::size_t segment_first = 0; ///< place of its first segment among all
+        std::uint64_t blocks = 0;      ///< vertex blocks tested
     };
 
     void run(const Update& update, WatchedPairs& table);
@@ -62,6 +63,7 @@ private:
         Due due[2 * slice_size];
         kernels::DirectedPair places[2 * slice_size];
         std::uint32_t stale[2 * slice_size], as_standard[slice_size];
+        DueEdges edges[slice_size];
     };
     static void wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                            Slice& slice);

@@ -17,14 +17,11 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
 /// Each vertex's share of the surface, m^2: a third of the area of its triangles, summed in double and rounded once.
 std::vector<float> measure_areas(const ShapeData& shape);
 
-/// Fills sharp_edges, flat_faces, face_spans and vertex_triangle. Needs `neighbours`.
+/// Fills sharp_edges, flat_faces, longest_edge and vertex_triangle. Needs `neighbours`.
 void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 
 /// Fills component_vertices. Needs vertex_triangle.
 void find_components(ShapeData& shape);
-
-/// Fills block_bounds. Needs triangle_blocks and sharp edges.
-void find_block_bounds(ShapeData& shape, Executor& executor);
 
 /// Fills hair_moves; needs the vertices' normals.
 void find_hair_moves(ShapeData& shape);
@@ -41,7 +38,7 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Exe
 std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor);
 
 /// Fills vertex_blocks with the vertices that can cast a ray (a normal, an exit distance above 0), sixteen neighbours
-/// a block, and clusters with the boxes of an implicit sixteen-wide tree above them.
+/// a block, then with all edges, and clusters with the boxes of an implicit sixteen-wide tree above either.
 void build_clusters(ShapeData& shape, Executor& executor);
 
 /// Fills outside_cells and the grid of the header: a bit for each cubic cell of the box, set when the whole cell, grown

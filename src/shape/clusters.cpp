@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace raycontact {
 
@@ -15,15 +16,23 @@ using kernels::uint;
 constexpr std::size_t lanes = VERTEX_LANES;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-using Key = std::pair<float, uint>; // a coordinate and its vertex
+using Key = std::pair<float, uint>; // a coordinate and its source
+
+// What a lane of a block holds (kernels::VertexBlock), and by how much its box reaches around its place.
+struct Source {
+    Point3f place, direction, around;
+    float exit;
+    uint name;
+};
+using Sources = std::span<const Source>;
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
 // tree groups neighbours.
 // Returns how many come first.
-std::size_t split_by_place(const ShapeData& shape, std::span<uint> vertices, std::vector<Key>& keys) {
-    Point3f low = shape.points[vertices[0]], high = low;
-    for (const uint v : vertices) {
-        const Point3f& p = shape.points[v];
+std::size_t split_by_place(Sources sources, std::span<uint> own, std::vector<Key>& keys) {
+    Point3f low = sources[own[0]].place, high = low;
+    for (const uint i : own) {
+        const Point3f& p = sources[i].place;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -31,38 +40,38 @@ std::size_t split_by_place(const ShapeData& shape, std::span<uint> vertices, std
     for (float Point3f::*const side : {&Point3f::y, &Point3f::z})
         if (high.*side - low.*side > high.*longest - low.*longest) longest = side;
     std::size_t unit = lanes;
-    while (unit * lanes < vertices.size()) unit *= lanes;
-    const std::size_t units = (vertices.size() + unit - 1) / unit, left = unit * (units / 2);
+    while (unit * lanes < own.size()) unit *= lanes;
+    const std::size_t units = (own.size() + unit - 1) / unit, left = unit * (units / 2);
     keys.clear();
-    for (const uint v : vertices) keys.emplace_back(shape.points[v].*longest, v);
+    for (const uint i : own) keys.emplace_back(sources[i].place.*longest, i);
     std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
-    for (std::size_t i = 0; i < keys.size(); ++i) vertices[i] = keys[i].second;
+    for (std::size_t i = 0; i < keys.size(); ++i) own[i] = keys[i].second;
     return left;
 }
 
-void order_below(const ShapeData& shape, std::span<uint> vertices, std::vector<Key>& keys) {
-    if (vertices.size() <= lanes) {
-        std::ranges::sort(vertices);
+void order_below(Sources sources, std::span<uint> own, std::vector<Key>& keys) {
+    if (own.size() <= lanes) {
+        std::ranges::sort(own);
         return;
     }
-    const std::size_t left = split_by_place(shape, vertices, keys);
-    order_below(shape, vertices.first(left), keys);
-    order_below(shape, vertices.subspan(left), keys);
+    const std::size_t left = split_by_place(sources, own, keys);
+    order_below(sources, own.first(left), keys);
+    order_below(sources, own.subspan(left), keys);
 }
 
-void order_by_place(const ShapeData& shape, std::span<uint> all, Executor& executor) {
+void order_by_place(Sources sources, std::span<uint> all, Executor& executor) {
     constexpr std::size_t large = 1 << 13;
     using Part = std::span<uint>;
     const auto parts = divide(
         executor, all, [](const Part& part) { return part.size() > large; },
         [&](const Part& part) {
             std::vector<Key> keys;
-            const std::size_t left = split_by_place(shape, part, keys);
+            const std::size_t left = split_by_place(sources, part, keys);
             return std::array{part.first(left), part.subspan(left)};
         });
     for_each_part(executor, parts, [&](const Part& part) {
         std::vector<Key> keys;
-        order_below(shape, part, keys);
+        order_below(sources, part, keys);
     });
 }
 
@@ -75,42 +84,71 @@ struct Bounds {
     }
 };
 
-} // namespace
+Point3f rounded(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 
-void build_clusters(ShapeData& shape, Executor& executor) {
-    std::vector<uint> order;
+std::vector<Source> vertices_of(const ShapeData& shape) {
+    std::vector<Source> sources;
     for (uint v = 0; v < shape.points.size(); ++v)
-        if (shape.exit_distances[v] > 0) order.push_back(v);
-    order_by_place(shape, order, executor);
+        if (const float exit = shape.exit_distances[v]; exit > 0) {
+            const Point3f n = rounded(shape.vertex_normals[v]);
+            sources.push_back({shape.points[v], {-n.x, -n.y, -n.z}, {}, std::min(exit, UNBOUNDED), v});
+        }
+    return sources;
+}
 
+std::vector<Source> edges_of(const ShapeData& shape) {
+    std::vector<Source> sources;
+    for (uint t = 0; t < shape.mesh.triangles.size(); ++t)
+        for (uint c = 0; c < 3; ++c) {
+            if (const uint across = shape.neighbours[t][c]; across != NONE && across < t) continue;
+            const Vec3 from = shape.corner(t, c), to = shape.corner(t, (c + 1) % 3), half = 0.5 * (to - from);
+            const Point3f h = rounded(half);
+            sources.push_back({rounded(0.5 * (from + to)),
+                               h,
+                               {std::fabs(h.x), std::fabs(h.y), std::fabs(h.z)},
+                               static_cast<float>(length(half)),
+                               3 * t + c});
+        }
+    return sources;
+}
+
+void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executor& executor) {
+    std::vector<uint> order(sources.size());
+    std::iota(order.begin(), order.end(), 0U);
+    order_by_place(sources, order, executor);
+
+    constexpr Source nothing{{nan, nan, nan}, {}, {}, 0, NONE};
+    tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
     for (std::size_t first = 0; first < order.size(); first += lanes) {
         kernels::VertexBlock& block = shape.vertex_blocks.emplace_back();
         Bounds& bounds = below.emplace_back();
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const bool empty = first + lane >= order.size();
-            const uint v = empty ? NONE : order[first + lane];
-            const Vec3 n = empty ? Vec3{} : shape.vertex_normals[v];
-            const Vec3 p = empty ? Vec3{nan, nan, nan} : shape.point(v);
+            const Source& own = first + lane < order.size() ? sources[order[first + lane]] : nothing;
+            const float place[] = {own.place.x, own.place.y, own.place.z};
+            const float direction[] = {own.direction.x, own.direction.y, own.direction.z};
+            const float around[] = {own.around.x, own.around.y, own.around.z};
             for (std::size_t k = 0; k < 3; ++k) {
-                block.position[k][lane] = static_cast<float>(axis(p, k));
-                block.direction[k][lane] = -static_cast<float>(axis(n, k));
-                bounds.add(k, block.position[k][lane], block.position[k][lane]);
+                block.position[k][lane] = place[k];
+                block.direction[k][lane] = direction[k];
+                bounds.add(k, place[k] - around[k], place[k] + around[k]);
             }
-            block.exit[lane] = empty ? 0.0f : std::min(shape.exit_distances[v], UNBOUNDED);
-            block.vertex[lane] = v;
+            block.exit[lane] = own.exit;
+            block.vertex[lane] = own.name;
         }
     }
-    shape.header.vertex_block_count = static_cast<uint>(shape.vertex_blocks.size());
+    tree.block_count = static_cast<uint>(below.size());
 
     // Proportional to the shape's size, so that rounding in the transform to a target's frame does not matter.
     const float slack = 1.0e-6f * static_cast<float>(shape.diagonal);
     // The top level may hold several blocks; the traversal takes them in turn.
     uint level = 0;
     do {
-        shape.header.cluster_first[level] = static_cast<uint>(shape.clusters.size());
+        tree.cluster_first[level] = static_cast<uint>(shape.clusters.size());
         std::vector<Bounds> here((below.size() + lanes - 1) / lanes);
-        shape.header.cluster_count[level] = static_cast<uint>(here.size());
+        tree.cluster_count[level] = static_cast<uint>(here.size());
         below.resize(lanes * here.size());
         for (std::size_t i = 0; i < below.size(); ++i) {
             const std::size_t lane = i % lanes;
@@ -125,7 +163,14 @@ void build_clusters(ShapeData& shape, Executor& executor) {
         below = std::move(here);
         ++level;
     } while (below.size() > 1 && level < CLUSTER_LEVELS);
-    shape.header.cluster_levels = level;
+    tree.cluster_levels = level;
+}
+
+} // namespace
+
+void build_clusters(ShapeData& shape, Executor& executor) {
+    build(shape, shape.header.vertices, vertices_of(shape), executor);
+    build(shape, shape.header.edges, edges_of(shape), executor);
 }
 
 } // namespace raycontact

@@ -57,16 +57,15 @@ double leaves(const ShapeData& shape, const Vec3& origin, const Vec3& direction,
     static const trees::Walks& walks = *trees::usable_walks().front();
     constexpr double from_here = -1e-300; // at the vertex, too
     return walks
-        .closest_hit({shape.nodes.data(), shape.triangle_blocks.data(), shape.block_bounds.data()},
-                     {{origin.x, origin.y, origin.z},
-                      {direction.x, direction.y, direction.z},
-                      from_here,
-                      never,
-                      shape.header.tolerance,
-                      shape.reach,
-                      true,
-                      around.data(),
-                      static_cast<std::uint32_t>(around.size())})
+        .closest_hit({shape.nodes.data(), shape.triangle_blocks.data()}, {{origin.x, origin.y, origin.z},
+                                                                          {direction.x, direction.y, direction.z},
+                                                                          from_here,
+                                                                          never,
+                                                                          shape.header.tolerance,
+                                                                          shape.reach,
+                                                                          true,
+                                                                          around.data(),
+                                                                          static_cast<std::uint32_t>(around.size())})
         .distance;
 }
 

@@ -90,7 +90,6 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
-    find_block_bounds(shape, executor);
 
     shape.exit_distances = measure_exits(shape, normals, executor);
     float longest_exit = 0;
@@ -151,7 +150,7 @@ double Shape::radius() const {
     return data_->radius;
 }
 double Shape::longest_edge() const {
-    return *std::max_element(data_->face_spans.begin(), data_->face_spans.end());
+    return data_->longest_edge;
 }
 std::span<const Vec3> Shape::vertex_normals() const {
     return data_->vertex_normals;
@@ -174,10 +173,10 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
-           + bytes(d.sharp_edges) + bytes(d.flat_faces) + bytes(d.face_spans) + bytes(d.vertex_triangle)
-           + bytes(d.hair_moves) + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours)
-           + bytes(d.triangle_blocks) + bytes(d.block_bounds) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + (is_prepared() ? accelerators()->bytes() : 0);
+           + bytes(d.sharp_edges) + bytes(d.flat_faces) + bytes(d.vertex_triangle) + bytes(d.hair_moves)
+           + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks)
+           + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
+           + (is_prepared() ? accelerators()->bytes() : 0);
 }
 
 } // namespace raycontact

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shape/block_bounds.h"
+#include "device/host_kernels.h"
 
 #include <raycontact/shape.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace raycontact {
@@ -26,19 +25,18 @@ struct ShapeData {
     /// lowest triangle.
     std::vector<std::uint8_t> sharp_edges;
     std::vector<std::uint32_t>
-        flat_faces;                ///< per triangle, the lowest of its flat face: those joined by edges not sharp
-    std::vector<float> face_spans; ///< per triangle, its longest edge, metres
-    std::vector<Vec3> hair_moves;  ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
+        flat_faces;               ///< per triangle, the lowest of its flat face: those joined by edges not sharp
+    std::vector<Vec3> hair_moves; ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
     std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
     double diagonal = 0;   ///< of the box, metres
     double radius = 0;
+    double longest_edge = 0; ///< metres
     double grain = 0; ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
     double reach = 0; ///< largest distance of a vertex from centre, metres
 
     std::vector<kernels::TriangleBlock> triangle_blocks;
-    std::vector<BlockBounds> block_bounds; ///< of the triangle blocks
     std::vector<kernels::Node> nodes;
     std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;
@@ -49,11 +47,6 @@ struct ShapeData {
     kernels::ShapeHeader header{};
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }
-    /// The longest edge of the faces at an edge, metres.
-    float edge_span(std::uint32_t triangle, std::size_t k) const {
-        const std::uint32_t across = neighbours[triangle][k];
-        return across == NONE ? face_spans[triangle] : std::max(face_spans[triangle], face_spans[across]);
-    }
     Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }
 };
 

@@ -81,13 +81,16 @@ bool ShapeStore::upload(Entry& entry) {
     header.triangle_block_first = append(
         device_, arrays_.triangle_blocks,
         more != nullptr && !more->caps.empty() ? with_caps(data.triangle_blocks, more->caps) : data.triangle_blocks);
-    header.vertex_block_first = append(device_, arrays_.vertex_blocks, data.vertex_blocks);
+    const kernels::uint block_first = append(device_, arrays_.vertex_blocks, data.vertex_blocks);
     header.normal_first = append(device_, arrays_.face_normals, data.face_normals);
     header.face_first = append(device_, arrays_.faces, data.faces);
     header.clearance_first = append(device_, arrays_.clearances, more != nullptr ? more->clearances : data.clearances);
     if (more != nullptr) header.grid_first = append(device_, arrays_.outside_cells, more->outside_cells);
     const kernels::uint cluster_first = append(device_, arrays_.clusters, data.clusters);
-    for (kernels::uint& first : header.cluster_first) first += cluster_first;
+    for (kernels::SourceTree* tree : {&header.vertices, &header.edges}) {
+        tree->block_first += block_first;
+        for (kernels::uint& first : tree->cluster_first) first += cluster_first;
+    }
     headers_.reserve(headers_.size() + 1);
     plain_shapes_.resize(headers_.size() + 1, nullptr);
     arrays_.headers.append(device_, std::span(&header, 1));
@@ -127,10 +130,10 @@ void ShapeStore::upload_accelerators(Entry& entry, const Accelerators& more) {
     kernels::ShapeHeader header = more.header;
     header.node_first = before.node_first;
     header.triangle_block_first = before.triangle_block_first;
-    header.vertex_block_first = before.vertex_block_first;
+    header.vertices = before.vertices;
+    header.edges = before.edges;
     header.normal_first = before.normal_first;
     header.face_first = before.face_first;
-    std::copy(std::begin(before.cluster_first), std::end(before.cluster_first), header.cluster_first);
     header.clearance_first = append(device_, arrays_.clearances, more.clearances);
     header.grid_first = append(device_, arrays_.outside_cells, more.outside_cells);
     const auto write = [&](auto& array, std::size_t first, const auto* values, std::size_t count) {

@@ -3,6 +3,8 @@
 #include "mesh/vector.h"
 #include "shape/build.h"
 
+#include <algorithm>
+
 namespace raycontact {
 
 namespace {
@@ -31,12 +33,11 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
         }
     }
     shape.flat_faces.resize(triangles.size());
-    shape.face_spans.resize(triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         shape.flat_faces[t] = flat.of(t);
         for (std::size_t c = 0; c < 3; ++c)
-            shape.face_spans[t] = std::max(
-                shape.face_spans[t], static_cast<float>(length(shape.corner(t, (c + 1) % 3) - shape.corner(t, c))));
+            shape.longest_edge =
+                std::max(shape.longest_edge, length(shape.corner(t, (c + 1) % 3) - shape.corner(t, c)));
     }
 }
 

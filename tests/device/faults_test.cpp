@@ -82,9 +82,7 @@ private:
     std::vector<Contact> contacts_of(Part& part, const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
         part.begin(crowd.bodies, pairs, settings_);
         std::vector<Contact> contacts;
-        const auto local = part.end();
-        Placer().run(part.executor(), settings_.direction, crowd.bodies, pairs, local, contacts);
-        EdgeStage().run(part.executor(), settings_.direction, crowd.bodies, pairs, local, nullptr, contacts);
+        part.end(contacts);
         return contacts;
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/same_contacts.h"
 #include "mesh/vector.h"
 #include "pairs/directed_pairs.h"
 
@@ -8,13 +9,7 @@
 #include "reference/random.h"
 #include "scenes/models/model.h"
 
-#include <raycontact/contact.h>
-
-#include <array>
-#include <bit>
 #include <cstdint>
-#include <gtest/gtest.h>
-#include <tuple>
 #include <vector>
 
 namespace raycontact::device_test {
@@ -51,32 +46,5 @@ public:
 private:
     reference::Random random_{5};
 };
-
-/// The bits of a contact's numbers; == would take -0 for 0.
-inline std::array<std::uint64_t, 8> bits(const Contact& c) {
-    const auto of = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value)}; };
-    return {of(c.normal[0]),
-            of(c.normal[1]),
-            of(c.normal[2]),
-            of(c.ray_length),
-            of(c.weight),
-            std::bit_cast<std::uint64_t>(c.point.x),
-            std::bit_cast<std::uint64_t>(c.point.y),
-            std::bit_cast<std::uint64_t>(c.point.z)};
-}
-
-/// All contacts, bit for bit.
-inline ::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
-    if (found.size() != expected.size())
-        return ::testing::AssertionFailure() << found.size() << " contacts, not " << expected.size();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const Contact &a = found[i], &b = expected[i];
-        if (std::tie(a.body_a, a.body_b, a.vertex_body, a.vertex, a.triangle)
-                != std::tie(b.body_a, b.body_b, b.vertex_body, b.vertex, b.triangle)
-            || bits(a) != bits(b))
-            return ::testing::AssertionFailure() << "contact " << i << " differs";
-    }
-    return ::testing::AssertionSuccess();
-}
 
 } // namespace raycontact::device_test

@@ -42,7 +42,8 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
             for (std::size_t i = 0; i < bodies.size(); i += 2) bodies[i].pose.translation.x += by;
             place_centres(bodies);
             part.begin(bodies, work.pairs, settings);
-            const auto found = part.end();
+            std::vector<Contact> found;
+            part.end(found);
             outcome.contacts.insert(outcome.contacts.end(), found.begin(), found.end());
             StepStats stats;
             part.count(stats);
@@ -130,7 +131,7 @@ Outcome run_on_cpu(const Work& work, const std::vector<Way>& ways, std::string_v
     return run_work({std::move(executor), std::move(device)}, work, ways);
 }
 
-std::vector<kernels::LocalContact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways) {
+std::vector<Contact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways) {
     Part part(std::move(opened));
     return run_part(part, work, ways).contacts;
 }
@@ -138,10 +139,6 @@ std::vector<kernels::LocalContact> contacts_of(OpenDevice opened, const Work& wo
 std::string tested_device() {
     const char* named = std::getenv("RAYCONTACT_TEST_DEVICE");
     return named ? named : "opencl:0";
-}
-
-bool same_bits(const std::vector<kernels::LocalContact>& a, const std::vector<kernels::LocalContact>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
 }
 
 } // namespace raycontact::device_test

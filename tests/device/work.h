@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/same_contacts.h"
 #include "device/trace.h"
 #include "pairs/directed_pairs.h"
 
@@ -40,7 +41,7 @@ std::vector<Way> cpu_ways();
 /// What a part made of some work.
 struct Outcome {
     Trace trace;
-    std::vector<kernels::LocalContact> contacts; ///< of every way and step, in order
+    std::vector<Contact> contacts; ///< of every way and step, in order
     std::uint64_t rays = 0, side_tests = 0;
 };
 
@@ -51,11 +52,9 @@ Outcome run_work(OpenDevice opened, const Work& work, const std::vector<Way>& wa
 Outcome run_on_cpu(const Work& work, const std::vector<Way>& ways, std::string_view instruction_set = "");
 
 /// The same without a trace: the contacts alone.
-std::vector<kernels::LocalContact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways);
+std::vector<Contact> contacts_of(OpenDevice opened, const Work& work, const std::vector<Way>& ways);
 
 /// The device that the tests of any device try: `opencl:0`, or what RAYCONTACT_TEST_DEVICE names (`cuda:0`).
 std::string tested_device();
-
-bool same_bits(const std::vector<kernels::LocalContact>& a, const std::vector<kernels::LocalContact>& b);
 
 } // namespace raycontact::device_test

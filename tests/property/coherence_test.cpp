@@ -38,6 +38,9 @@ struct BySlot {
 Key key(const Contact& c) {
     return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other()};
 }
+Key key(const LostContact& c) {
+    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
+}
 
 Key key(const LostContact& c) {
     return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};

@@ -82,6 +82,7 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::follow_rays_basic:
         return 4;
     case KernelId::cast_rays_bvh:
+    case KernelId::cast_edges:
     case KernelId::hold_rays:
     case KernelId::follow_rays_bvh:
         return 128;
@@ -91,9 +92,12 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::write_clusters:
     case KernelId::begin_watches:
     case KernelId::count_rays:
+    case KernelId::count_edges:
     case KernelId::count_near_rays:
         return 64;
     case KernelId::place_pairs:
+    case KernelId::find_margins:
+    case KernelId::write_edges:
     case KernelId::write_watch_rays:
     case KernelId::write_near_rays:
     case KernelId::copy_candidates:

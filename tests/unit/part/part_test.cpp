@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs that change their part between two steps have the contacts that they would have had, bit for bit.
+#include "device/same_contacts.h"
 #include "mesh/vector.h"
 #include "part/part.h"
 
 #include "reference/random.h"
 #include "scenes/models/model.h"
 
-#include <array>
-#include <bit>
 #include <cstddef>
 #include <gtest/gtest.h>
 
@@ -60,23 +59,6 @@ private:
     Random random_{4};
 };
 
-struct Found {
-    SlotPair pair;
-    kernels::LocalContact contact; ///< pair: the direction
-};
-
-auto bytes_of(const kernels::LocalContact& contact) {
-    return std::bit_cast<std::array<std::byte, sizeof contact>>(contact);
-}
-
-void add(std::vector<Found>& all, std::span<const kernels::LocalContact> contacts, std::span<const SlotPair> pairs) {
-    for (kernels::LocalContact contact : contacts) {
-        const SlotPair pair = pairs[contact.pair / 2];
-        contact.pair %= 2;
-        all.push_back({pair, contact});
-    }
-}
-
 TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
     for (const Method method : {Method::standard, Method::certified, Method::iterative, Method::predictive}) {
         Settings settings;
@@ -108,18 +90,13 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
             whole->begin(seen_whole, crowd.pairs, settings);
             a->begin(seen_a, of_a, settings);
             b->begin(seen_b, of_b, settings);
-            std::vector<Found> expected, found;
-            add(expected, whole->end(), crowd.pairs);
-            add(found, a->end(), of_a);
-            add(found, b->end(), of_b);
-            std::stable_sort(found.begin(), found.end(),
-                             [](const Found& x, const Found& y) { return x.pair < y.pair; });
-            ASSERT_EQ(found.size(), expected.size()) << to_string(method) << ", step " << step;
-            for (std::size_t i = 0; i < found.size(); ++i) {
-                ASSERT_EQ(found[i].pair, expected[i].pair);
-                ASSERT_EQ(bytes_of(found[i].contact), bytes_of(expected[i].contact))
-                    << to_string(method) << ", step " << step;
-            }
+            std::vector<Contact> expected, found, others;
+            whole->end(expected);
+            a->end(found);
+            b->end(others);
+            found.insert(found.end(), others.begin(), others.end());
+            std::ranges::stable_sort(found, {}, [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+            ASSERT_TRUE(device_test::same(found, expected)) << to_string(method) << ", step " << step;
             contacts += found.size();
         }
         EXPECT_GT(contacts, 1000u);

@@ -20,22 +20,22 @@ TEST(Clusters, EveryRayVertexOnceAndInEveryBoxAboveIt) {
         const auto shape = Shape::make(scenes::scene_model("torus", triangles).mesh);
         const ShapeData& data = shape->data();
         std::vector<int> seen(data.points.size(), 0);
-        for (std::size_t b = 0; b < data.vertex_blocks.size(); ++b) {
+        for (std::size_t b = 0; b < data.header.vertices.block_count; ++b) {
             for (const auto v : data.vertex_blocks[b].vertex) {
                 if (v == NONE) continue;
                 ++seen[v];
                 std::size_t child = b;
-                for (std::uint32_t level = 0; level < data.header.cluster_levels; ++level) {
+                for (std::uint32_t level = 0; level < data.header.vertices.cluster_levels; ++level) {
                     const std::size_t block = child / VERTEX_LANES;
-                    ASSERT_LT(block, data.header.cluster_count[level]);
-                    ASSERT_TRUE(inside(data.clusters[data.header.cluster_first[level] + block],
+                    ASSERT_LT(block, data.header.vertices.cluster_count[level]);
+                    ASSERT_TRUE(inside(data.clusters[data.header.vertices.cluster_first[level] + block],
                                        static_cast<int>(child % VERTEX_LANES), data.points[v]));
                     child = block;
                 }
             }
         }
         for (std::size_t v = 0; v < seen.size(); ++v) ASSERT_EQ(seen[v], data.exit_distances[v] > 0) << v;
-        EXPECT_LE(data.vertex_blocks.size(), data.points.size() / VERTEX_LANES + 1) << "blocks are full";
+        EXPECT_LE(data.header.vertices.block_count, data.points.size() / VERTEX_LANES + 1) << "blocks are full";
     }
 }
 

@@ -66,8 +66,8 @@ TEST(SafeBlock, IsNoSaferThanItsVertices) {
         const double margin = rounding_margin(source, target);
         const reference::Solid solid = reference::make_surface(*target.shape);
         const Pose relative = relative_pose(target.centred, source.centred);
-        for (kernels::uint block = 0; block < from.header.vertex_block_count; ++block) {
-            const float safe = kernels::prototype::safe_block(&pair, &from.header, from.clusters.data(), block,
+        for (kernels::uint block = 0; block < from.header.vertices.block_count; ++block) {
+            const float safe = kernels::prototype::safe_block(&pair, &from.header.vertices, from.clusters.data(), block,
                                                               &to.header, to.clearances.data());
             ++blocks;
             if (!(safe > 0)) continue;

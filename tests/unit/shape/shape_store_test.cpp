@@ -65,7 +65,7 @@ TEST(ShapeStore, ShapeThatDidNotFitLeavesNothingBehind) {
     std::vector<kernels::ShapeHeader> headers(store.arrays().headers.size());
     store.arrays().headers.read(scarce, headers);
     const kernels::ShapeHeader& header = headers[store.index_of(shape.get())];
-    EXPECT_EQ(header.vertex_block_first + header.vertex_block_count, store.arrays().vertex_blocks.size());
+    EXPECT_EQ(header.edges.block_first + header.edges.block_count, store.arrays().vertex_blocks.size());
     EXPECT_EQ(header.node_first + shape->data().nodes.size(), store.arrays().nodes.size());
     store.remove(shape.get());
     EXPECT_TRUE(store.pack());

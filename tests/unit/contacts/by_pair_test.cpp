@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contacts/local_contacts.h"
+#include "contacts/by_pair.h"
+
+#include "device/host_kernels.h"
 
 #include "reference/random.h"
 
@@ -11,9 +13,9 @@ namespace raycontact {
 namespace {
 
 // Directed pairs in slots that are in any order, as after many pairs have come and gone, or in theirs.
-TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
+TEST(ByPair, IsInTheOrderOfThePairsWhateverTheirSlots) {
     reference::Random random(1);
-    LocalContacts all;
+    ByPair<kernels::LocalContact> all;
     for (int round = 0; round < 300; ++round) {
         const std::uint32_t pairs = random.below(40);
         std::vector<std::uint32_t> directed(2 * std::size_t{pairs});
@@ -30,10 +32,13 @@ TEST(LocalContacts, AreInTheOrderOfThePairsWhateverTheirSlots) {
             }
         all.set(found, directed, pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
-        ASSERT_EQ(all.contacts().size(), expected.size());
+        ASSERT_EQ(all.all().size(), expected.size());
+        for (std::uint32_t d = 0; d < 2 * pairs; ++d)
+            EXPECT_EQ(all.of(d).size(),
+                      std::ranges::count(expected, d, &std::pair<std::uint32_t, std::uint32_t>::first));
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            EXPECT_EQ(all.contacts()[i].pair, expected[i].first);
-            EXPECT_EQ(all.contacts()[i].vertex, expected[i].second);
+            EXPECT_EQ(all.all()[i].pair, expected[i].first);
+            EXPECT_EQ(all.all()[i].vertex, expected[i].second);
         }
     }
 }

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the edges of the source that may cross faces of the target, and casts them as segments (docs/edges.md). In
+// float32, with a margin for all that this could hide: the host decides in double what was found.
+
+#define DIAGONAL_TOLERANCES 1048576.0f // ShapeHeader.tolerance is 2^-20 of the box diagonal
+
+// Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
+// vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
+// side by side.
+KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) more, READS(ShapeHeader) shapes,
+                         WRITES(float) margins) {
+    FOR_EACH(p, count) {
+        READS(DirectedPair) there = pairs + p;
+        READS(DirectedPair) back = pairs + (p ^ 1u);
+        if (there->source == NONE) continue;
+        READS(float) r = there->rotation;
+        float shear = 0.0f, apart = 0.0f, off = 0.0f;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j)
+                shear +=
+                    magnitude_of(((r[i] * r[j] + r[3 + i] * r[3 + j]) + r[6 + i] * r[6 + j]) - (i == j ? 1.0f : 0.0f));
+            READS(float) row = back->rotation + 3 * i;
+            READS(float) t = there->translation;
+            apart += magnitude_of(t[i]);
+            off += magnitude_of(((row[0] * t[0] + row[1] * t[1]) + row[2] * t[2]) + back->translation[i]);
+        }
+        const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
+        margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
+    }
+}
+
+// The edges of each block that come into the bounds, but for those that the clearance grid knows to be far from the
+// surface: it does not enter the balls around their halves.
+KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
+                        READS(VertexBlock) vertices, READS(uint) clearances, WRITES(PairBlock) found_blocks,
+                        WRITES(uint) counts) {
+    FOR_EACH_VERTICES(i, first, count) {
+        READS(DirectedPair) pair = pairs + found_blocks[i].pair;
+        READS(VertexBlock) block = vertices + found_blocks[i].vertex_block;
+        const float margin = margins[found_blocks[i].pair];
+        float r[9], t[3], b[6];
+        for (int k = 0; k < 9; ++k) r[k] = pair->rotation[k];
+        for (int k = 0; k < 3; ++k) t[k] = pair->translation[k];
+        for (int k = 0; k < 3; ++k) {
+            b[k] = pair->bounds[k] - margin;
+            b[3 + k] = pair->bounds[3 + k] + margin;
+        }
+        InsideLanes found;
+        float quarter[3][VERTICES_AT_ONCE];
+        FOR_LANES(k, VERTICES_AT_ONCE) {
+            const float vx = block->position[0][first + k], vy = block->position[1][first + k];
+            const float vz = block->position[2][first + k];
+            const float hx = block->direction[0][first + k], hy = block->direction[1][first + k];
+            const float hz = block->direction[2][first + k];
+            const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
+            const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
+            const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
+            const float ex = magnitude_of((r[0] * hx + r[1] * hy) + r[2] * hz);
+            const float ey = magnitude_of((r[3] * hx + r[4] * hy) + r[5] * hz);
+            const float ez = magnitude_of((r[6] * hx + r[7] * hy) + r[8] * hz);
+            const uint inside = (x + ex >= b[0]) & (x - ex <= b[3]) & (y + ey >= b[1]) & (y - ey <= b[4])
+                                & (z + ez >= b[2]) & (z - ez <= b[5]);
+            found.inside[k] = -(int)inside;
+            found.x[k] = x;
+            found.y[k] = y;
+            found.z[k] = z;
+            quarter[0][k] = 0.5f * ((r[0] * hx + r[1] * hy) + r[2] * hz);
+            quarter[1][k] = 0.5f * ((r[3] * hx + r[4] * hy) + r[5] * hz);
+            quarter[2][k] = 0.5f * ((r[6] * hx + r[7] * hy) + r[8] * hz);
+        }
+        if (pack_vertices(found.inside) == 0u) continue;
+        READS(ShapeHeader) target = shapes + pair->target;
+        const Clearance grid = clearance_of(target);
+        READS(uint) balls = clearances + target->clearance_first;
+        FOR_LANES(k, VERTICES_AT_ONCE) {
+            const float qx = quarter[0][k], qy = quarter[1][k], qz = quarter[2][k];
+            const float one = safe_distance(grid, balls, found.x[k] - qx, found.y[k] - qy, found.z[k] - qz, 0.0f);
+            const float two = safe_distance(grid, balls, found.x[k] + qx, found.y[k] + qy, found.z[k] + qz, 0.0f);
+            const uint near = (uint)((one < two ? one : two) <= 0.50025f * block->exit[first + k] + margin);
+            found.inside[k] &= -(int)near;
+        }
+        const uint lanes = pack_vertices(found.inside);
+        ADD_TO(&found_blocks[i].lanes, lanes << first);
+        ADD_TO(counts + i, bit_count(lanes));
+    }
+}
+
+// Edges, one in each lane, target frame. All zero at first, since lanes without an edge are tested, too.
+STRUCT(EdgeGroup) {
+    float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP]; // arm: from the middle to an end
+    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];   // its box
+    float length[RAYS_IN_GROUP];                           // of the arm, metres
+    uint pair[RAYS_IN_GROUP];
+};
+
+// What edges are compared with, target frame: a triangle from its first corner.
+STRUCT(EdgeTarget) {
+    float corner[3], first[3], second[3]; // to the second corner, to the third
+    float normal[3], normal_length;
+    float longest; // about the longest edge
+};
+
+DEVICE EdgeTarget edge_target(READS(TriangleBlock) block, uint lane) {
+    EdgeTarget face;
+    float first2 = 0.0f, second2 = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float a = block->corner[i][lane], b = block->corner[3 + i][lane], c = block->corner[6 + i][lane];
+        face.corner[i] = a;
+        face.first[i] = b - a;
+        face.second[i] = c - a;
+        first2 += face.first[i] * face.first[i];
+        second2 += face.second[i] * face.second[i];
+    }
+    const float* p = face.first;
+    const float* q = face.second;
+    face.normal[0] = p[1] * q[2] - p[2] * q[1];
+    face.normal[1] = p[2] * q[0] - p[0] * q[2];
+    face.normal[2] = p[0] * q[1] - p[1] * q[0];
+    face.normal_length =
+        root_of((face.normal[0] * face.normal[0] + face.normal[1] * face.normal[1]) + face.normal[2] * face.normal[2]);
+    face.longest = root_of(first2) + root_of(second2);
+    return face;
+}
+
+#define EDGE_ROUNDING 1.0e-6f // of a product of lengths: several times what volumes lose
+
+// A bit for each edge whose box comes within `margin` of the triangle's.
+DEVICE uint edges_in_box(const EdgeGroup* group, READS(TriangleBlock) block, uint lane, float margin) {
+    float least[3], most[3];
+    for (int i = 0; i < 3; ++i) {
+        const float a = block->corner[i][lane], b = block->corner[3 + i][lane], c = block->corner[6 + i][lane];
+        const float low = a < b ? a : b, high = a < b ? b : a;
+        least[i] = (low < c ? low : c) - margin;
+        most[i] = (high > c ? high : c) + margin;
+    }
+    const float low_x = least[0], low_y = least[1], low_z = least[2];
+    const float high_x = most[0], high_y = most[1], high_z = most[2];
+    int near[NODE_LANES] = {0};
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const uint x = (group->low[0][r] <= high_x) & (group->high[0][r] >= low_x);
+        const uint y = (group->low[1][r] <= high_y) & (group->high[1][r] >= low_y);
+        const uint z = (group->low[2][r] <= high_z) & (group->high[2][r] >= low_z);
+        near[r] = -(int)(x & y & z);
+    }
+    return RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0] & 1u;
+}
+
+// A bit for each edge that comes within `margin` of the triangle, and for some others with edges_in_box(): its ends are
+// not both farther on one side of the plane, and its line does not pass the triangle farther outside. A volume of two
+// edges is at most the product of their lengths times their distance.
+DEVICE uint edges_near(const EdgeGroup* group, const EdgeTarget* face, float margin) {
+    int near[NODE_LANES] = {0};
+    const float* p = face->first;
+    const float* q = face->second;
+    const float* n = face->normal;
+    const float longest = face->longest;
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const float mx = group->middle[0][r], my = group->middle[1][r], mz = group->middle[2][r];
+        const float hx = group->arm[0][r], hy = group->arm[1][r], hz = group->arm[2][r];
+        const float ax = face->corner[0] - mx, ay = face->corner[1] - my, az = face->corner[2] - mz;
+        const float size = (magnitude_of(ax) + magnitude_of(ay)) + magnitude_of(az);
+        const float length = group->length[r];
+        const float height = magnitude_of((n[0] * ax + n[1] * ay) + n[2] * az);
+        const float along = (n[0] * hx + n[1] * hy) + n[2] * hz;
+        const float plane_margin = margin * face->normal_length + EDGE_ROUNDING * (longest * longest) * (size + length);
+        const uint meets_plane = (uint)(height <= magnitude_of(along) + plane_margin);
+        const float cx = hy * az - hz * ay, cy = hz * ax - hx * az, cz = hx * ay - hy * ax;
+        const float w = (p[0] * cx + p[1] * cy) + p[2] * cz;
+        const float v = -((q[0] * cx + q[1] * cy) + q[2] * cz);
+        const float u = (along - v) - w;
+        const float off = (length * longest) * (margin + EDGE_ROUNDING * (size + longest));
+        const uint outwards = (u >= -off) & (v >= -off) & (w >= -off), inwards = (u <= off) & (v <= off) & (w <= off);
+        near[r] = -(int)(meets_plane & (outwards | inwards));
+    }
+    return RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0] & 1u;
+}
+
+// Triangles of a block whose boxes reach into a box.
+DEVICE uint triangles_in(const float* box, READS(TriangleBlock) block) {
+    const float low_x = box[0], low_y = box[1], low_z = box[2], high_x = box[3], high_y = box[4], high_z = box[5];
+    int within[TRIANGLE_LANES];
+    FOR_LANES(k, TRIANGLE_LANES) {
+        const float ax = block->corner[0][k], ay = block->corner[1][k], az = block->corner[2][k];
+        const float bx = block->corner[3][k], by = block->corner[4][k], bz = block->corner[5][k];
+        const float cx = block->corner[6][k], cy = block->corner[7][k], cz = block->corner[8][k];
+        const uint above = ((ax >= low_x) | (bx >= low_x) | (cx >= low_x))
+                           & ((ay >= low_y) | (by >= low_y) | (cy >= low_y))
+                           & ((az >= low_z) | (bz >= low_z) | (cz >= low_z));
+        const uint below = ((ax <= high_x) | (bx <= high_x) | (cx <= high_x))
+                           & ((ay <= high_y) | (by <= high_y) | (cy <= high_y))
+                           & ((az <= high_z) | (bz <= high_z) | (cz <= high_z));
+        within[k] = -(int)(above & below);
+    }
+    return pack_sixteen(within);
+}
+
+// The arrays that casting edges reads.
+STRUCT(EdgeArrays) {
+    READS(DirectedPair) pairs;
+    READS(float) margins; // by pair
+    READS(ShapeHeader) shapes;
+    READS(VertexBlock) vertices;
+    READS(Node) nodes;
+    READS(TriangleBlock) blocks;
+    READS(Ray) rays;
+};
+
+DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
+    const SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->vertices, ray.vertex_lane);
+    for (int i = 0; i < 3; ++i) {
+        group->middle[i][r] = edge.position[i];
+        group->arm[i][r] = edge.direction[i];
+        group->low[i][r] = edge.position[i] - magnitude_of(edge.direction[i]);
+        group->high[i][r] = edge.position[i] + magnitude_of(edge.direction[i]);
+    }
+    group->length[r] = 1.0005f * edge.reach;
+    group->pair[r] = ray.pair;
+}
+
+DEVICE void clear_edges(EdgeGroup* group) {
+    for (int i = 0; i < 3; ++i) {
+        FOR_LANES(r, RAYS_IN_GROUP) {
+            group->middle[i][r] = group->arm[i][r] = 0.0f;
+            group->low[i][r] = group->high[i][r] = 0.0f;
+        }
+    }
+    FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = 0.0f;
+}
+
+// The box around edges `own` of a group, a bit each, grown.
+DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own, float margin) {
+    for (int i = 0; i < 3; ++i) {
+        float low = UNBOUNDED, high = -UNBOUNDED;
+        for (uint left = own; left != 0u; left &= left - 1u) {
+            const uint r = lowest_bit(left);
+            low = group->low[i][r] < low ? group->low[i][r] : low;
+            high = group->high[i][r] > high ? group->high[i][r] : high;
+        }
+        box[i] = low - margin;
+        box[3 + i] = high + margin;
+    }
+}
+
+// Casts edges of one pair, a bit each in `own`. Their faces are found in the order of the tree, whatever other edges
+// are cast beside. hits: of the group; null: the only edge's faces go to `near`, all of them.
+DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint pair, WRITES(EdgeHits) hits,
+                          WRITES(NearEdge) near) {
+    READS(ShapeHeader) shape = arrays->shapes + arrays->pairs[pair].target;
+    READS(Node) tree = arrays->nodes + shape->node_first;
+    const float margin = arrays->margins[pair];
+    float box[6];
+    box_of_edges(box, group, own, margin);
+    uint written = 0u;
+    Descent way = {0u, 0u, children_in(box, tree)};
+    for (;;) {
+        while (way.children != 0u) {
+            const uint child = next_child(&way, tree);
+            if ((child & LEAF) == 0u) {
+                go_down(&way, child, children_in(box, tree + child));
+                continue;
+            }
+            READS(TriangleBlock) block = arrays->blocks + shape->triangle_block_first + (child & ~LEAF);
+            for (uint lanes = triangles_in(box, block); lanes != 0u; lanes &= lanes - 1u) {
+                const uint lane = lowest_bit(lanes), triangle = block->triangle[lane];
+                const uint in_box = edges_in_box(group, block, lane, margin) & own;
+                if (in_box == 0u) continue;
+                const EdgeTarget face = edge_target(block, lane);
+                for (uint found = edges_near(group, &face, margin) & in_box; found != 0u; found &= found - 1u) {
+                    if (hits) {
+                        WRITES(EdgeHits) edge = hits + lowest_bit(found);
+                        if (edge->count < EDGE_FACES) edge->face[edge->count] = triangle;
+                        ++edge->count;
+                    } else {
+                        near[written].face = triangle;
+                        ++written;
+                    }
+                }
+            }
+        }
+        if (way.at == 0u) return;
+        go_up(&way, tree);
+    }
+}
+
+// counts: faces near each edge.
+KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
+                       READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
+                       WRITES(EdgeHits) hits, WRITES(uint) counts) {
+    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays};
+    FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
+        EdgeGroup group;
+        clear_edges(&group);
+        for (uint r = 0u; r < few; ++r) {
+            const EdgeHits none = {0u, {0u, 0u, 0u}};
+            add_edge(&group, r, &arrays, rays[i + r]);
+            hits[i + r] = none;
+        }
+        for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
+            while (r + same < few && group.pair[r + same] == group.pair[r]) ++same;
+            // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+            cast_together(&arrays, &group, ((1u << same) - 1u) << r, group.pair[r], hits + i, (GLOBAL NearEdge*)0);
+        }
+        for (uint r = 0u; r < few; ++r) counts[i + r] = hits[i + r].count;
+    }
+}
+
+// Edges with more faces than EdgeHits holds are cast again.
+KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
+                        READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
+                        READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
+    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays};
+    FOR_EACH(i, count) {
+        const uint found = hits[i].count;
+        if (found == 0u) continue;
+        const Ray ray = rays[i];
+        const uint edge = vertices[ray.vertex_lane / VERTEX_LANES].vertex[ray.vertex_lane % VERTEX_LANES];
+        if (found > EDGE_FACES) {
+            EdgeGroup group;
+            clear_edges(&group);
+            add_edge(&group, 0u, &arrays, ray);
+            // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+            cast_together(&arrays, &group, 1u, ray.pair, (GLOBAL EdgeHits*)0, near + firsts[i]);
+        }
+        for (uint k = 0u; k < found; ++k) {
+            WRITES(NearEdge) own = near + firsts[i] + k;
+            if (found <= EDGE_FACES) own->face = hits[i].face[k];
+            own->edge = edge;
+            own->pair = ray.pair;
+        }
+    }
+}

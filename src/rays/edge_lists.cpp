@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/edge_lists.h"
+
+#include "give_back.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace raycontact {
+
+namespace {
+
+// For all pairs of a first step the search would take as much memory as all that is kept.
+constexpr std::size_t pairs_at_once = 1 << 13;
+
+} // namespace
+
+void EdgeLists::clear() {
+    pool_.clear();
+    free_all(edges_);
+}
+
+void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices, WatchedPairs& table,
+                     RayBatch& batch) {
+    due_.clear();
+    for (const WakeUp::Slice& slice : slices) due_.insert(due_.end(), slice.edges.begin(), slice.edges.end());
+    if (due_.empty()) {
+        pairs_.resize(update.device, 0);
+        margins_.resize(update.device, 0);
+        directed_.clear();
+        found_.set({}, {}, 0);
+        return rays_.rest();
+    }
+    for (std::size_t first = 0; first < due_.size(); first += pairs_at_once)
+        find(update, std::span(due_).subspan(first, std::min(pairs_at_once, due_.size() - first)), table, batch);
+}
+
+void EdgeLists::find(const Update& update, std::span<const DueEdges> due, WatchedPairs& table, RayBatch& batch) {
+    pairs_.resize(update.device, 2 * due.size());
+    margins_.resize(update.device, 2 * due.size());
+    directed_.resize(2 * due.size());
+    std::iota(directed_.begin(), directed_.end(), 0U);
+    update.executor.run(static_cast<std::uint32_t>(due.size()), 128, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t k = begin; k < end; ++k)
+            for (std::uint32_t side = 0; side < 2; ++side) {
+                const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].pair + side);
+                place_source(source, target, pairs_.in_place()[2 * k + side]);
+                margins_.in_place()[2 * k + side] = due[k].margin;
+            }
+    });
+    do {
+        rays_.cast(update, pairs_, margins_, batch);
+        const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
+        update.device.queue().read(pieces);
+        check_sums(batch.sums);
+    } while (!rays_.had_room(update.device, batch));
+    found_.set(rays_.found().values(), directed_, due.size());
+    for (std::size_t k = 0; k < due.size(); ++k) {
+        KeptEdges& kept = table.state(due[k].pair).edges;
+        release(kept);
+        const std::array counts{static_cast<std::uint32_t>(found_.of(2 * k).size()),
+                                static_cast<std::uint32_t>(found_.of(2 * k + 1).size())};
+        const RangePool::Range range = pool_.allocate(counts[0] + counts[1]);
+        kept = {range.first, range.capacity, counts};
+        if (edges_.size() < pool_.end()) edges_.resize(pool_.end());
+        const auto all = found_.all().subspan(found_.first(2 * k), kept.count());
+        std::copy(all.begin(), all.end(), edges_.begin() + std::ptrdiff_t(kept.first));
+    }
+}
+
+std::uint64_t EdgeLists::bytes() const {
+    return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
+           + due_.size() * sizeof(DueEdges)
+           + pairs_.size() * (sizeof(kernels::DirectedPair) + sizeof(float) + 2 * sizeof(kernels::uint));
+}
+
+void EdgeLists::give_back() {
+    raycontact::give_back(due_);
+    raycontact::give_back(directed_);
+    pairs_.give_back();
+    margins_.give_back();
+    rays_.give_back();
+    found_.give_back();
+}
+
+} // namespace raycontact
