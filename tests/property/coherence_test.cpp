@@ -42,10 +42,6 @@ Key key(const LostContact& c) {
     return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
 }
 
-Key key(const LostContact& c) {
-    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
-}
-
 struct Guest {
     const Subject* subject = nullptr;
     Pose pose;
