@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace raycontact::reference {
@@ -157,8 +158,8 @@ public:
     bool crosses() const { return !crossings_.empty(); }
 
     std::map<Key, Found> contacts() {
-        link();
         find_loops();
+        if (!bodies_[0]->contact.empty() || !bodies_[1]->contact.empty()) leave_out_short();
         cut_pieces();
         find_regions();
         std::map<Key, Found> all;
@@ -209,6 +210,7 @@ private:
     }
 
     void find_loops() {
+        link();
         std::vector<bool> seen(crossings_.size());
         for (const std::size_t links : {0u, 1u, 2u}) // curves that end begin at an end
             for (std::size_t i = 0; i < crossings_.size(); ++i)
@@ -239,6 +241,25 @@ private:
         if (length(normals) > 0 && dot(unit(loop.area), unit(normals)) < 0.5)
             loop.area = length(loop.area) * unit(normals);
         loops_.push_back(loop);
+    }
+
+    // Loops that short edges alone cross.
+    void leave_out_short() {
+        std::vector<Crossing> kept;
+        for (const Loop& loop : loops_) {
+            const auto is_long = [&](std::size_t i) {
+                return length(bodies_[crossings_[i].side]->along(*crossings_[i].edge)) > 1e6 * hair_;
+            };
+            if (!std::any_of(loop.crossings.begin(), loop.crossings.end(), is_long)) continue;
+            for (const std::size_t i : loop.crossings) kept.push_back(crossings_[i]);
+        }
+        std::sort(kept.begin(), kept.end(),
+                  [](auto& x, auto& y) { return std::tie(x.side, x.edge, x.at) < std::tie(y.side, y.edge, y.at); });
+        for (Crossing& c : kept) c.links.clear();
+        crossings_ = kept;
+        links_.clear();
+        loops_.clear();
+        find_loops();
     }
 
     void cut_pieces() {
