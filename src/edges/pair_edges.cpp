@@ -27,8 +27,6 @@ constexpr double parallel = 0.98;
 // Two edges whose normal has no larger part than this along the way of their region are passed over.
 constexpr double sideways = 0.1;
 constexpr std::size_t most_faces = 64;
-// An edge is short up to this, in diagonals of the smaller body.
-constexpr double short_edge = 0.1;
 // A ray from a piece begins this part of its half inside.
 constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;

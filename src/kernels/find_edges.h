@@ -29,15 +29,16 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) m
     }
 }
 
-// The edges of each block that come into the bounds, but for those that the clearance grid knows to be far from the
-// surface: it does not enter the balls around their halves.
-KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
-                        READS(VertexBlock) vertices, READS(uint) clearances, WRITES(PairBlock) found_blocks,
-                        WRITES(uint) counts) {
+// The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
+// be far from the surface: it does not enter the balls around their halves.
+KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
+                        READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(uint) clearances,
+                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
         READS(VertexBlock) block = vertices + found_blocks[i].vertex_block;
         const float margin = margins[found_blocks[i].pair];
+        const float half_least = least ? 0.5f * least[found_blocks[i].pair] : 0.0f;
         float r[9], t[3], b[6];
         for (int k = 0; k < 9; ++k) r[k] = pair->rotation[k];
         for (int k = 0; k < 3; ++k) t[k] = pair->translation[k];
@@ -59,7 +60,7 @@ KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
             const float ey = magnitude_of((r[3] * hx + r[4] * hy) + r[5] * hz);
             const float ez = magnitude_of((r[6] * hx + r[7] * hy) + r[8] * hz);
             const uint inside = (x + ex >= b[0]) & (x - ex <= b[3]) & (y + ey >= b[1]) & (y - ey <= b[4])
-                                & (z + ez >= b[2]) & (z - ez <= b[5]);
+                                & (z + ez >= b[2]) & (z - ez <= b[5]) & (block->exit[first + k] >= half_least);
             found.inside[k] = -(int)inside;
             found.x[k] = x;
             found.y[k] = y;

@@ -94,10 +94,10 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
 }
 
 void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
-                              const Array<float>& margins, const Array<kernels::Totals>& totals, std::size_t at,
-                              std::size_t room) {
+                              const Array<float>& margins, const Array<float>& least,
+                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::count_edges>(update.device, found_, pairs, margins, arrays.headers, arrays.vertex_blocks,
+    launch<KernelId::count_edges>(update.device, found_, pairs, margins, least, arrays.headers, arrays.vertex_blocks,
                                   arrays.clearances, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }

@@ -32,7 +32,7 @@ public:
     /// Counts the edges of the blocks that come within margins[p] metres of the bounds and, for all that the grid
     /// knows, of a face. totals[at]: their number, of which `room` can be written.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& margins,
-                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+                     const Array<float>& least, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Writes them, the first to rays[begin]. totals[at]: what was left there by the call that counted them.
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;

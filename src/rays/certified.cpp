@@ -242,7 +242,6 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     });
     wake_up_.run(update, table_);
     list_slices();
-    edges_.find(update, wake_up_.slices(), table_, batch);
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);

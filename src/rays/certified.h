@@ -19,6 +19,10 @@ class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
+    /// After the contacts of the vertices are known: the near edges.
+    void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
+        edges_.find(update, wake_up_.slices(), table_, contacts, batch);
+    }
     void clear();
 
     /// Of the i-th pair of the step: its near edges, and what is known while they

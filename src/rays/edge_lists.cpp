@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/edge_lists.h"
 
+#include "edges/near_edges.h"
 #include "give_back.h"
+#include "shape/shape_data.h"
 
 #include <algorithm>
 #include <numeric>
@@ -13,6 +15,10 @@ namespace {
 // For all pairs of a first step the search would take as much memory as all that is kept.
 constexpr std::size_t pairs_at_once = 1 << 13;
 
+double longest_edge(const PlacedBody& body) {
+    return body.shape->data().longest_edge;
+}
+
 } // namespace
 
 void EdgeLists::clear() {
@@ -21,12 +27,32 @@ void EdgeLists::clear() {
 }
 
 void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices, WatchedPairs& table,
-                     RayBatch& batch) {
+                     const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
     due_.clear();
-    for (const WakeUp::Slice& slice : slices) due_.insert(due_.end(), slice.edges.begin(), slice.edges.end());
+    for (const WakeUp::Slice& slice : slices)
+        for (const DueEdges& due : slice.edges) {
+            const bool in_contact = contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
+            WatchedPair& state = table.state(due.pair);
+            if (!due.due && (in_contact || state.edges.all)) continue;
+            const auto [a, b] = update.pairs[due.pair];
+            const double least =
+                in_contact ? 0.9999 * short_edge * smaller_size(update.bodies[a], update.bodies[b]) : 0;
+            if (due.margin > 0) {
+                Slack& slack = table.hot(due.pair);
+                slack.apart = false;
+                slack.metres = std::min(slack.metres, edge_share * double(due.margin));
+                for (std::size_t d = 0; d < 2; ++d)
+                    state.directions[d].edge_expiry = due.clocks[d] + edge_share * double(due.margin);
+            }
+            release(state.edges);
+            state.edges.all = !in_contact;
+            const bool none = std::max(longest_edge(update.bodies[a]), longest_edge(update.bodies[b])) < least;
+            if (!none) due_.push_back({due, static_cast<float>(least)});
+        }
     if (due_.empty()) {
         pairs_.resize(update.device, 0);
         margins_.resize(update.device, 0);
+        least_.resize(update.device, 0);
         directed_.clear();
         found_.set({}, {}, 0);
         return rays_.rest();
@@ -35,33 +61,34 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
         find(update, std::span(due_).subspan(first, std::min(pairs_at_once, due_.size() - first)), table, batch);
 }
 
-void EdgeLists::find(const Update& update, std::span<const DueEdges> due, WatchedPairs& table, RayBatch& batch) {
+void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
     pairs_.resize(update.device, 2 * due.size());
     margins_.resize(update.device, 2 * due.size());
+    least_.resize(update.device, 2 * due.size());
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
     update.executor.run(static_cast<std::uint32_t>(due.size()), 128, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t k = begin; k < end; ++k)
             for (std::uint32_t side = 0; side < 2; ++side) {
-                const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].pair + side);
+                const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].due.pair + side);
                 place_source(source, target, pairs_.in_place()[2 * k + side]);
-                margins_.in_place()[2 * k + side] = due[k].margin;
+                margins_.in_place()[2 * k + side] = due[k].due.margin;
+                least_.in_place()[2 * k + side] = due[k].least;
             }
     });
     do {
-        rays_.cast(update, pairs_, margins_, batch);
+        rays_.cast(update, pairs_, margins_, least_, batch);
         const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
         update.device.queue().read(pieces);
         check_sums(batch.sums);
     } while (!rays_.had_room(update.device, batch));
     found_.set(rays_.found().values(), directed_, due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
-        KeptEdges& kept = table.state(due[k].pair).edges;
-        release(kept);
+        KeptEdges& kept = table.state(due[k].due.pair).edges;
         const std::array counts{static_cast<std::uint32_t>(found_.of(2 * k).size()),
                                 static_cast<std::uint32_t>(found_.of(2 * k + 1).size())};
         const RangePool::Range range = pool_.allocate(counts[0] + counts[1]);
-        kept = {range.first, range.capacity, counts};
+        kept = {range.first, range.capacity, counts, kept.all};
         if (edges_.size() < pool_.end()) edges_.resize(pool_.end());
         const auto all = found_.all().subspan(found_.first(2 * k), kept.count());
         std::copy(all.begin(), all.end(), edges_.begin() + std::ptrdiff_t(kept.first));
@@ -70,7 +97,7 @@ void EdgeLists::find(const Update& update, std::span<const DueEdges> due, Watche
 
 std::uint64_t EdgeLists::bytes() const {
     return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
-           + due_.size() * sizeof(DueEdges)
+           + due_.size() * sizeof(Search)
            + pairs_.size() * (sizeof(kernels::DirectedPair) + sizeof(float) + 2 * sizeof(kernels::uint));
 }
 
@@ -79,6 +106,7 @@ void EdgeLists::give_back() {
     raycontact::give_back(directed_);
     pairs_.give_back();
     margins_.give_back();
+    least_.give_back();
     rays_.give_back();
     found_.give_back();
 }

@@ -12,8 +12,10 @@ namespace raycontact {
 /// last until the pair has moved that far (docs/certified.md). Needs memory that host and device share.
 class EdgeLists {
 public:
-    /// Seeks those that are due in this step, by slices; uses the batch's sums of edges.
-    void find(const Update& update, std::span<const WakeUp::Slice> slices, WatchedPairs& table, RayBatch& batch);
+    /// Seeks those that are due in this step, by slices; of pairs in contact only those that are not short, until it is
+    /// in contact no more. Uses the batch's sums of edges.
+    void find(const Update& update, std::span<const WakeUp::Slice> slices, WatchedPairs& table,
+              const ByPair<kernels::LocalContact>& contacts, RayBatch& batch);
     std::array<std::span<kernels::NearEdge>, 2> of(const KeptEdges& kept) {
         const std::span all = std::span(edges_).subspan(kept.first, kept.count());
         return {all.first(kept.counts[0]), all.subspan(kept.counts[0])};
@@ -29,12 +31,16 @@ public:
     void give_back();
 
 private:
-    void find(const Update& update, std::span<const DueEdges> due, WatchedPairs& table, RayBatch& batch);
+    struct Search {
+        DueEdges due;
+        float least; ///< metres: edges that are shorter are left out
+    };
+    void find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch);
 
-    std::vector<DueEdges> due_;
+    std::vector<Search> due_;
     std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
     Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
-    Array<float> margins_;
+    Array<float> margins_, least_;
     EdgeRays rays_;
     ByPair<kernels::NearEdge> found_;
     RangePool pool_;

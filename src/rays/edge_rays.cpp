@@ -16,7 +16,7 @@ constexpr std::size_t least_room = 4096; // edges
 } // namespace
 
 void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& more,
-                    const RayBatch& batch) {
+                    const Array<float>& least, const RayBatch& batch) {
     Device& device = update.device;
     const ShapeStore::Arrays& arrays = update.arrays();
     const Array<kernels::Totals>& totals = batch.totals;
@@ -27,7 +27,7 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     counts_.resize(device, 1, room);
     launch<KernelId::find_margins>(device, pairs.size(), pairs, more, arrays.headers, margins_);
     search_.find(update, pairs, margins_, totals, RayBatch::edge_block_sum);
-    search_.count_edges(update, pairs, margins_, totals, RayBatch::edge_ray_sum, room);
+    search_.count_edges(update, pairs, margins_, least, totals, RayBatch::edge_ray_sum, room);
     search_.write_rays(update, totals, RayBatch::edge_ray_sum, 0, rays_);
     const Count count = results_of(totals, RayBatch::edge_ray_sum, room);
     launch<KernelId::cast_edges>(device, count, pairs, margins_, arrays.headers, arrays.vertex_blocks, arrays.nodes,

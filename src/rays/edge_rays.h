@@ -11,9 +11,10 @@ namespace raycontact {
 /// hide (find_edges.h): some more than cross. Nothing waits.
 class EdgeRays {
 public:
-    /// pairs: both directions of each pair side by side. more: by pair, metres beyond what is needed; may be empty.
+    /// pairs: both directions of each pair side by side. more: by pair, metres beyond what is needed. least: by pair,
+    /// metres; shorter edges are left out. Either may be empty.
     void cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& more,
-              const RayBatch& batch);
+              const Array<float>& least, const RayBatch& batch);
     /// After the read, with its sums: false if anything had too little room: there is enough now, and cast() must run
     /// again.
     bool had_room(Device& device, const RayBatch& batch);

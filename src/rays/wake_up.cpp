@@ -80,19 +80,15 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         edges_due = edges_due || (has_edges && (fresh || !(clock < own.edge_expiry)));
         if (has_edges) edges_last = std::min(edges_last, own.edge_expiry - clock);
     }
-    if (edges_due) edges_last = 0.998 * (margin = edge_margin(state, size, speed));
+    const bool edges_asked = edges_due || (has_edges && !state.edges.all);
+    if (edges_asked) margin = edge_margin(state, size, speed);
+    if (edges_due) edges_last = edge_share * margin;
     slack.metres = std::min(slack.metres, edges_last);
     const bool any_wakes = wakes[0] || wakes[1] || edges_due, any_stale = stale[0] || stale[1];
     if (!any_wakes && !slack.casts) return;
 
     if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
     if (any_wakes) state.reference = now;
-    if (edges_due) {
-        slack.apart = false;
-        for (std::size_t d = 0; d < 2; ++d)
-            state.directions[d].edge_expiry = state.directions[d].clock + moved[d] + edges_last;
-        slice.edges.add() = {i, static_cast<float>(margin)};
-    }
     for (std::uint32_t d = 0; d < 2; ++d) {
         const PlacedBody &source = *body[d], &target = *body[1 - d];
         Watched& own = state.directions[d];
@@ -116,6 +112,10 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         due.longest = longest_clock(target);
         place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.add());
     }
+    if (!edges_asked) return;
+    DueEdges& edges = slice.edges.add() = {i, static_cast<float>(margin), edges_due, {}};
+    for (std::size_t d = 0; d < 2; ++d)
+        edges.clocks[d] = stale[d] ? 0 : state.directions[d].clock + (any_wakes ? 0 : moved[d]);
 }
 
 // The cheap bound comes first; most pairs at rest need no more.
@@ -132,7 +132,8 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
             slice.as_standard.add() = i;
-            if (asks_edges(update, update.bodies[pair.first], update.bodies[pair.second])) slice.edges.add() = {i, 0};
+            if (asks_edges(update, update.bodies[pair.first], update.bodies[pair.second]))
+                slice.edges.add() = {i, 0, true, {}};
             if (as_standard > 0) --as_standard;
         } else {
             wake_pair(update, table, i, speed, slice);

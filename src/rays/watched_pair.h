@@ -30,6 +30,7 @@ struct Watched {
 struct KeptEdges {
     std::uint32_t first = 0, capacity = 0;
     std::array<std::uint32_t, 2> counts{}; ///< of the first body, of the second
+    bool all = false;                      ///< short ones, too (docs/edges.md)
     std::uint32_t count() const { return counts[0] + counts[1]; }
 };
 
@@ -59,10 +60,15 @@ struct Due {
     double longest;           ///< metres that a new list may last
 };
 
-/// A pair whose near edges are sought in this step.
+/// Near edges last while the pair moves this share of the margin by which they were sought.
+inline constexpr double edge_share = 0.998;
+
+/// A pair whose near edges may be sought in this step.
 struct DueEdges {
     std::uint32_t pair; ///< its place
-    float margin;       ///< metres that it may move before they are due again
+    float margin;       ///< metres that it may move before they are due again; 0: they are not kept
+    bool due;           ///< else they are sought only if short ones are missing
+    double clocks[2];   ///< of its directions
 };
 
 } // namespace raycontact
