@@ -16,14 +16,18 @@ namespace raycontact::reference {
 
 namespace {
 
-using Key = std::tuple<VertexBody, Feature, std::uint32_t, std::uint32_t>;
+using Key = std::tuple<Feature, VertexBody, std::uint32_t, std::uint32_t>; // as contact_key()
+
+Key key_of(const ReferenceContact& c) {
+    return {c.feature, c.vertex_body, c.vertex, c.feature == Feature::edges ? c.triangle : 0};
+}
 
 // One answer, of the library or of the reference, in common terms.
 using Answers = std::map<Key, ReferenceContact>;
 
 Answers answers(const std::vector<ReferenceContact>& contacts) {
     Answers list;
-    for (const ReferenceContact& c : contacts) list[{c.vertex_body, c.feature, c.vertex, c.crossing}] = c;
+    for (const ReferenceContact& c : contacts) list[key_of(c)] = c;
     return list;
 }
 
@@ -34,7 +38,6 @@ Answers answers(std::span<const Contact> contacts) {
         ReferenceContact r;
         r.vertex_body = c.vertex_body;
         r.feature = c.feature;
-        r.crossing = c.other();
         r.vertex = c.vertex;
         r.triangle = c.triangle;
         r.point = c.point;
@@ -42,7 +45,7 @@ Answers answers(std::span<const Contact> contacts) {
         r.depth = c.depth;
         r.ray_length = c.ray_length;
         r.weight = c.weight;
-        list[{c.vertex_body, c.feature, c.vertex, c.other()}] = r;
+        list[key_of(r)] = r;
     }
     return list;
 }
@@ -146,9 +149,10 @@ void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pos
         }
         ++sum.wrong;
         if (sum.complaints.size() >= 5) continue;
-        const auto [body, feature, vertex, crossing] = key;
+        const auto [feature, body, vertex, other] = key;
         sum.complaints.push_back(
-            text("%s %u, crossing %#x of ", feature == Feature::edges ? "edge" : "inside", vertex, crossing)
+            (feature == Feature::edges ? text("edges %u and %u of ", vertex, other)
+                                       : text("inside, vertex %u of ", vertex))
             + (body == VertexBody::a ? a.name + " (a) against " + b.name : b.name + " (b) against " + a.name)
             + answer_of("reference", expected, key) + answer_of("library", found, key) + "\n  pose a " + text(pose_a)
             + "\n  pose b " + text(pose_b));

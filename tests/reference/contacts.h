@@ -31,8 +31,7 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
 struct ReferenceContact {
     VertexBody vertex_body = VertexBody::a;
     Feature feature = Feature::vertex;
-    std::uint32_t crossing = 0;             ///< as Contact::crossing
-    std::uint32_t vertex = 0, triangle = 0; ///< indices of the files; of an edge as Contact::vertex
+    std::uint32_t vertex = 0, triangle = 0; ///< indices of the files; of edges as Contact::edge_a() and edge_b()
     Vec3 point, normal;                     ///< world; normal from A to B
     double depth = 0, ray_length = 0, weight = 1;
 };
