@@ -26,6 +26,8 @@ constexpr double same_way = 0.5, snap = 0.8;
 constexpr double parallel = 0.98;
 // Two edges whose normal has no larger part than this along the way of their region are passed over.
 constexpr double sideways = 0.1;
+// What is no deeper than this, in hairs, is rounding.
+constexpr double noise = 0.1;
 constexpr std::size_t most_faces = 64;
 // A ray from a piece begins this part of its half inside.
 constexpr double pull = 1e-3;
@@ -243,6 +245,17 @@ void PairEdges::join_vertices(const PairMeshes& pair) {
     }
 }
 
+// Keeps the order within a region.
+void PairEdges::sort_by_region(std::vector<std::pair<std::uint32_t, Vec3>>& list) {
+    if (regions_.size() < 2) return;
+    firsts_.assign(regions_.size() + 1, 0);
+    for (const auto& [region, point] : list) ++firsts_[region + 1];
+    std::partial_sum(firsts_.begin(), firsts_.end(), firsts_.begin());
+    sorted_.resize(list.size());
+    for (const auto& one : list) sorted_[firsts_[one.first]++] = one;
+    list.swap(sorted_);
+}
+
 void PairEdges::list_regions(const PairMeshes& pair) {
     regions_.clear();
     points_.clear();
@@ -286,11 +299,8 @@ void PairEdges::list_regions(const PairMeshes& pair) {
         faces_.emplace_back(region_of_[s.from], s.normals[1]);
         faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
     }
-    const auto by_region = [](const auto& p, const auto& q) { return p.first < q.first; };
-    if (regions_.size() > 1) {
-        std::stable_sort(points_.begin(), points_.end(), by_region);
-        std::stable_sort(faces_.begin(), faces_.end(), by_region);
-    }
+    sort_by_region(points_);
+    sort_by_region(faces_);
     std::uint32_t point = 0, face = 0;
     for (std::uint32_t r = 0; r < regions_.size(); ++r) {
         Region& region = regions_[r];
@@ -414,7 +424,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     double depth = dot(q - p, n);
     // Nearly parallel edges are pierced far apart, and only what lies across them counts.
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
-    if (!(static_cast<float>(depth) > 0) || depth < least) return;
+    if (!(depth > noise * pair.hair()) || depth < least) return;
     if (is_thinner(region, 0.5 * depth - 5 * pair.hair())) return;
     passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
@@ -453,7 +463,7 @@ MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec
 // Adds the point of a piece, with the edge of the other body nearest to where it comes out.
 void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
                          const MeshHit& hit) {
-    if (!(static_cast<float>(depth) > 0)) return;
+    if (!(depth > noise * pair.hair())) return;
     const bool of_a = piece.side == 0;
     const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
     deep_.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,

@@ -66,6 +66,7 @@ private:
     void list_pieces(const PairMeshes& pair, const std::array<SourceMesh, 2>& placed);
     void join_regions(const PairMeshes& pair);
     void join_vertices(const PairMeshes& pair);
+    void sort_by_region(std::vector<std::pair<std::uint32_t, Vec3>>& list);
     void list_regions(const PairMeshes& pair);
     void pass_edges(const PairMeshes& pair);
     void pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b);
@@ -103,6 +104,8 @@ private:
     std::vector<std::uint32_t> region_of_;                                ///< by crossing and vertex
     std::vector<Region> regions_;
     std::vector<std::pair<std::uint32_t, Vec3>> points_, faces_; ///< by region: points, and normals of faces crossed
+    std::vector<std::pair<std::uint32_t, Vec3>> sorted_;
+    std::vector<std::uint32_t> firsts_; ///< by region
     std::vector<Passing> passing_;
     std::vector<FeatureContact> deep_; ///< of one region
     std::vector<Vec3> asked_;          ///< ways, of one region
