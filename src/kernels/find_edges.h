@@ -86,94 +86,111 @@ KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
     }
 }
 
-// Edges, one in each lane, target frame. All zero at first, since lanes without an edge are tested, too.
+// Edges of a group, one in each lane, target frame.
 STRUCT(EdgeGroup) {
     float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP]; // arm: from the middle to an end
-    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];   // its box
-    float length[RAYS_IN_GROUP];                           // of the arm, metres
+    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];   // its box, grown by the margin
+    float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];    // of the arm; metres
     uint pair[RAYS_IN_GROUP];
 };
 
-// What edges are compared with, target frame: a triangle from its first corner.
-STRUCT(EdgeTarget) {
-    float corner[3], first[3], second[3]; // to the second corner, to the third
-    float normal[3], normal_length;
-    float longest; // about the longest edge
+// Edges and triangles whose boxes meet, one of each in each lane.
+STRUCT(EdgeTests) {
+    float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP];
+    float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];
+    float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
+    uint edge[RAYS_IN_GROUP];       // index of the ray
+    uint triangle[RAYS_IN_GROUP];
+    uint count;
 };
 
-DEVICE EdgeTarget edge_target(READS(TriangleBlock) block, uint lane) {
-    EdgeTarget face;
-    float first2 = 0.0f, second2 = 0.0f;
-    for (int i = 0; i < 3; ++i) {
-        const float a = block->corner[i][lane], b = block->corner[3 + i][lane], c = block->corner[6 + i][lane];
-        face.corner[i] = a;
-        face.first[i] = b - a;
-        face.second[i] = c - a;
-        first2 += face.first[i] * face.first[i];
-        second2 += face.second[i] * face.second[i];
-    }
-    const float* p = face.first;
-    const float* q = face.second;
-    face.normal[0] = p[1] * q[2] - p[2] * q[1];
-    face.normal[1] = p[2] * q[0] - p[0] * q[2];
-    face.normal[2] = p[0] * q[1] - p[1] * q[0];
-    face.normal_length =
-        root_of((face.normal[0] * face.normal[0] + face.normal[1] * face.normal[1]) + face.normal[2] * face.normal[2]);
-    face.longest = root_of(first2) + root_of(second2);
-    return face;
-}
+// What casting edges reads, and where faces found go: the number and the first few of each edge; or, if that is not
+// null, those of a single edge to `near`, all of them.
+STRUCT(EdgeArrays) {
+    READS(DirectedPair) pairs;
+    READS(float) margins; // by pair
+    READS(ShapeHeader) shapes;
+    READS(VertexBlock) vertices;
+    READS(Node) nodes;
+    READS(TriangleBlock) blocks;
+    READS(Ray) rays;
+    WRITES(EdgeHits) hits;
+    WRITES(NearEdge) near;
+};
 
 #define EDGE_ROUNDING 1.0e-6f // of a product of lengths: several times what volumes lose
 
-// A bit for each edge whose box comes within `margin` of the triangle's.
-DEVICE uint edges_in_box(const EdgeGroup* group, READS(TriangleBlock) block, uint lane, float margin) {
-    float least[3], most[3];
-    for (int i = 0; i < 3; ++i) {
-        const float a = block->corner[i][lane], b = block->corner[3 + i][lane], c = block->corner[6 + i][lane];
-        const float low = a < b ? a : b, high = a < b ? b : a;
-        least[i] = (low < c ? low : c) - margin;
-        most[i] = (high > c ? high : c) + margin;
-    }
-    const float low_x = least[0], low_y = least[1], low_z = least[2];
-    const float high_x = most[0], high_y = most[1], high_z = most[2];
-    int near[NODE_LANES] = {0};
-    FOR_LANES(r, RAYS_IN_GROUP) {
-        const uint x = (group->low[0][r] <= high_x) & (group->high[0][r] >= low_x);
-        const uint y = (group->low[1][r] <= high_y) & (group->high[1][r] >= low_y);
-        const uint z = (group->low[2][r] <= high_z) & (group->high[2][r] >= low_z);
-        near[r] = -(int)(x & y & z);
-    }
-    return RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0] & 1u;
-}
-
-// A bit for each edge that comes within `margin` of the triangle, and for some others with edges_in_box(): its ends are
-// not both farther on one side of the plane, and its line does not pass the triangle farther outside. A volume of two
+// A bit for each lane whose edge comes within its margin of the triangle, and for some others close to it: the ends are
+// not both farther on one side of the plane, and the line does not pass the triangle farther outside. A volume of two
 // edges is at most the product of their lengths times their distance.
-DEVICE uint edges_near(const EdgeGroup* group, const EdgeTarget* face, float margin) {
+DEVICE uint edges_near(const EdgeTests* tests) {
     int near[NODE_LANES] = {0};
-    const float* p = face->first;
-    const float* q = face->second;
-    const float* n = face->normal;
-    const float longest = face->longest;
     FOR_LANES(r, RAYS_IN_GROUP) {
-        const float mx = group->middle[0][r], my = group->middle[1][r], mz = group->middle[2][r];
-        const float hx = group->arm[0][r], hy = group->arm[1][r], hz = group->arm[2][r];
-        const float ax = face->corner[0] - mx, ay = face->corner[1] - my, az = face->corner[2] - mz;
+        const float hx = tests->arm[0][r], hy = tests->arm[1][r], hz = tests->arm[2][r];
+        const float length = tests->length[r], margin = tests->margin[r];
+        // To the first corner; from there to the second and to the third.
+        const float ax = tests->corner[0][r] - tests->middle[0][r], ay = tests->corner[1][r] - tests->middle[1][r];
+        const float az = tests->corner[2][r] - tests->middle[2][r];
+        const float px = tests->corner[3][r] - tests->corner[0][r], py = tests->corner[4][r] - tests->corner[1][r];
+        const float pz = tests->corner[5][r] - tests->corner[2][r];
+        const float qx = tests->corner[6][r] - tests->corner[0][r], qy = tests->corner[7][r] - tests->corner[1][r];
+        const float qz = tests->corner[8][r] - tests->corner[2][r];
+        const float longest = root_of((px * px + py * py) + pz * pz) + root_of((qx * qx + qy * qy) + qz * qz);
         const float size = (magnitude_of(ax) + magnitude_of(ay)) + magnitude_of(az);
-        const float length = group->length[r];
-        const float height = magnitude_of((n[0] * ax + n[1] * ay) + n[2] * az);
-        const float along = (n[0] * hx + n[1] * hy) + n[2] * hz;
-        const float plane_margin = margin * face->normal_length + EDGE_ROUNDING * (longest * longest) * (size + length);
+        const float nx = py * qz - pz * qy, ny = pz * qx - px * qz, nz = px * qy - py * qx;
+        const float height = magnitude_of((nx * ax + ny * ay) + nz * az);
+        const float along = (nx * hx + ny * hy) + nz * hz;
+        const float plane_margin =
+            margin * root_of((nx * nx + ny * ny) + nz * nz) + EDGE_ROUNDING * (longest * longest) * (size + length);
         const uint meets_plane = (uint)(height <= magnitude_of(along) + plane_margin);
         const float cx = hy * az - hz * ay, cy = hz * ax - hx * az, cz = hx * ay - hy * ax;
-        const float w = (p[0] * cx + p[1] * cy) + p[2] * cz;
-        const float v = -((q[0] * cx + q[1] * cy) + q[2] * cz);
+        const float w = (px * cx + py * cy) + pz * cz;
+        const float v = -((qx * cx + qy * cy) + qz * cz);
         const float u = (along - v) - w;
         const float off = (length * longest) * (margin + EDGE_ROUNDING * (size + longest));
         const uint outwards = (u >= -off) & (v >= -off) & (w >= -off), inwards = (u <= off) & (v <= off) & (w <= off);
         near[r] = -(int)(meets_plane & (outwards | inwards));
     }
-    return RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0] & 1u;
+    return (RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0]) & ((1u << tests->count) - 1u);
+}
+
+// Tests what was collected. written: faces in arrays->near.
+DEVICE_BATCH uint finish_tests(const EdgeArrays* arrays, EdgeTests* tests, uint written) {
+    for (uint found = edges_near(tests); found != 0u; found &= found - 1u) {
+        const uint r = lowest_bit(found), triangle = tests->triangle[r];
+        if (arrays->near) {
+            arrays->near[written].face = triangle;
+            ++written;
+        } else {
+            WRITES(EdgeHits) edge = arrays->hits + tests->edge[r];
+            if (edge->count < EDGE_FACES) edge->face[edge->count] = triangle;
+            ++edge->count;
+        }
+    }
+    tests->count = 0u;
+    return written;
+}
+
+DEVICE void add_test(EdgeTests* tests, const EdgeGroup* group, uint r, uint edge, READS(TriangleBlock) block,
+                     uint lane) {
+    const uint at = tests->count;
+    for (int i = 0; i < 3; ++i) {
+        tests->middle[i][at] = group->middle[i][r];
+        tests->arm[i][at] = group->arm[i][r];
+    }
+    tests->length[at] = group->length[r];
+    tests->margin[at] = group->margin[r];
+    for (int i = 0; i < 9; ++i) tests->corner[i][at] = block->corner[i][lane];
+    tests->edge[at] = edge;
+    tests->triangle[at] = block->triangle[lane];
+    tests->count = at + 1u;
+}
+
+DEVICE void clear_tests(EdgeTests* tests) {
+    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->middle[i][r] = tests->arm[i][r] = 0.0f;
+    for (int i = 0; i < 9; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->corner[i][r] = 0.0f;
+    FOR_LANES(r, RAYS_IN_GROUP) tests->length[r] = tests->margin[r] = 0.0f;
+    tests->count = 0u;
 }
 
 // Triangles of a block whose boxes reach into a box.
@@ -195,41 +212,37 @@ DEVICE uint triangles_in(const float* box, READS(TriangleBlock) block) {
     return pack_sixteen(within);
 }
 
-// The arrays that casting edges reads.
-STRUCT(EdgeArrays) {
-    READS(DirectedPair) pairs;
-    READS(float) margins; // by pair
-    READS(ShapeHeader) shapes;
-    READS(VertexBlock) vertices;
-    READS(Node) nodes;
-    READS(TriangleBlock) blocks;
-    READS(Ray) rays;
-};
+// A bit for each edge of a group whose box meets that of a node's lane.
+DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
+    const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
+    const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];
+    int near[NODE_LANES] = {0};
+    FOR_LANES(r, RAYS_IN_GROUP) {
+        const uint x = (group->low[0][r] <= high_x) & (group->high[0][r] >= low_x);
+        const uint y = (group->low[1][r] <= high_y) & (group->high[1][r] >= low_y);
+        const uint z = (group->low[2][r] <= high_z) & (group->high[2][r] >= low_z);
+        near[r] = -(int)(x & y & z);
+    }
+    return RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0] & 1u;
+}
 
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
     const SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->vertices, ray.vertex_lane);
+    const float margin = arrays->margins[ray.pair];
     for (int i = 0; i < 3; ++i) {
+        const float reach = magnitude_of(edge.direction[i]) + margin;
         group->middle[i][r] = edge.position[i];
         group->arm[i][r] = edge.direction[i];
-        group->low[i][r] = edge.position[i] - magnitude_of(edge.direction[i]);
-        group->high[i][r] = edge.position[i] + magnitude_of(edge.direction[i]);
+        group->low[i][r] = edge.position[i] - reach;
+        group->high[i][r] = edge.position[i] + reach;
     }
     group->length[r] = 1.0005f * edge.reach;
+    group->margin[r] = margin;
     group->pair[r] = ray.pair;
 }
 
-DEVICE void clear_edges(EdgeGroup* group) {
-    for (int i = 0; i < 3; ++i) {
-        FOR_LANES(r, RAYS_IN_GROUP) {
-            group->middle[i][r] = group->arm[i][r] = 0.0f;
-            group->low[i][r] = group->high[i][r] = 0.0f;
-        }
-    }
-    FOR_LANES(r, RAYS_IN_GROUP) group->length[r] = 0.0f;
-}
-
-// The box around edges `own` of a group, a bit each, grown.
-DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own, float margin) {
+// The box around edges `own` of a group, a bit each.
+DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own) {
     for (int i = 0; i < 3; ++i) {
         float low = UNBOUNDED, high = -UNBOUNDED;
         for (uint left = own; left != 0u; left &= left - 1u) {
@@ -237,70 +250,63 @@ DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own, float mar
             low = group->low[i][r] < low ? group->low[i][r] : low;
             high = group->high[i][r] > high ? group->high[i][r] : high;
         }
-        box[i] = low - margin;
-        box[3 + i] = high + margin;
+        box[i] = low;
+        box[3 + i] = high;
     }
 }
 
-// Casts edges of one pair, a bit each in `own`. Their faces are found in the order of the tree, whatever other edges
-// are cast beside. hits: of the group; null: the only edge's faces go to `near`, all of them.
-DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint pair, WRITES(EdgeHits) hits,
-                          WRITES(NearEdge) near) {
-    READS(ShapeHeader) shape = arrays->shapes + arrays->pairs[pair].target;
+// Casts edges of one pair, a bit each in `own`; first: index of the group's first. Their faces come in the order of the
+// tree, whatever other edges are cast beside. Leaves the last tests to the caller; returns what finish_tests() does.
+DEVICE uint cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint first, EdgeTests* tests) {
+    READS(ShapeHeader) shape = arrays->shapes + arrays->pairs[group->pair[lowest_bit(own)]].target;
     READS(Node) tree = arrays->nodes + shape->node_first;
-    const float margin = arrays->margins[pair];
     float box[6];
-    box_of_edges(box, group, own, margin);
+    box_of_edges(box, group, own);
     uint written = 0u;
     Descent way = {0u, 0u, children_in(box, tree)};
     for (;;) {
         while (way.children != 0u) {
+            const uint leaf_lane = lowest_bit(way.children);
             const uint child = next_child(&way, tree);
             if ((child & LEAF) == 0u) {
                 go_down(&way, child, children_in(box, tree + child));
                 continue;
             }
             READS(TriangleBlock) block = arrays->blocks + shape->triangle_block_first + (child & ~LEAF);
-            for (uint lanes = triangles_in(box, block); lanes != 0u; lanes &= lanes - 1u) {
-                const uint lane = lowest_bit(lanes), triangle = block->triangle[lane];
-                const uint in_box = edges_in_box(group, block, lane, margin) & own;
-                if (in_box == 0u) continue;
-                const EdgeTarget face = edge_target(block, lane);
-                for (uint found = edges_near(group, &face, margin) & in_box; found != 0u; found &= found - 1u) {
-                    if (hits) {
-                        WRITES(EdgeHits) edge = hits + lowest_bit(found);
-                        if (edge->count < EDGE_FACES) edge->face[edge->count] = triangle;
-                        ++edge->count;
-                    } else {
-                        near[written].face = triangle;
-                        ++written;
-                    }
+            for (uint edges = edges_in_lane(group, tree + way.at, leaf_lane) & own; edges != 0u; edges &= edges - 1u) {
+                const uint r = lowest_bit(edges);
+                const float edge_box[6] = {group->low[0][r],  group->low[1][r],  group->low[2][r],
+                                           group->high[0][r], group->high[1][r], group->high[2][r]};
+                for (uint lanes = triangles_in(edge_box, block); lanes != 0u; lanes &= lanes - 1u) {
+                    if (tests->count == RAYS_IN_GROUP) written = finish_tests(arrays, tests, written);
+                    add_test(tests, group, r, first + r, block, lowest_bit(lanes));
                 }
             }
         }
-        if (way.at == 0u) return;
+        if (way.at == 0u) return written;
         go_up(&way, tree);
     }
 }
 
-// counts: faces near each edge.
 KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
                        READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
                        WRITES(EdgeHits) hits, WRITES(uint) counts) {
-    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays};
+    // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
+    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, hits, (GLOBAL NearEdge*)0};
+    EdgeTests tests;
+    clear_tests(&tests);
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
-        clear_edges(&group);
+        for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
         for (uint r = 0u; r < few; ++r) {
-            const EdgeHits none = {0u, {0u, 0u, 0u}};
-            add_edge(&group, r, &arrays, rays[i + r]);
-            hits[i + r] = none;
+            hits[i + r].count = 0u;
+            for (uint k = 0u; k < EDGE_FACES; ++k) hits[i + r].face[k] = NONE;
         }
         for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
             while (r + same < few && group.pair[r + same] == group.pair[r]) ++same;
-            // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-            cast_together(&arrays, &group, ((1u << same) - 1u) << r, group.pair[r], hits + i, (GLOBAL NearEdge*)0);
+            cast_together(&arrays, &group, ((1u << same) - 1u) << r, i, &tests);
         }
+        finish_tests(&arrays, &tests, 0u);
         for (uint r = 0u; r < few; ++r) counts[i + r] = hits[i + r].count;
     }
 }
@@ -309,18 +315,20 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
 KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
                         READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
                         READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
-    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays};
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
         const Ray ray = rays[i];
         const uint edge = vertices[ray.vertex_lane / VERTEX_LANES].vertex[ray.vertex_lane % VERTEX_LANES];
         if (found > EDGE_FACES) {
-            EdgeGroup group;
-            clear_edges(&group);
-            add_edge(&group, 0u, &arrays, ray);
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-            cast_together(&arrays, &group, 1u, ray.pair, (GLOBAL EdgeHits*)0, near + firsts[i]);
+            const EdgeArrays arrays = {
+                pairs, margins, shapes, vertices, nodes, blocks, rays, (GLOBAL EdgeHits*)0, near + firsts[i]};
+            EdgeGroup group;
+            EdgeTests tests;
+            clear_tests(&tests);
+            for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
+            finish_tests(&arrays, &tests, cast_together(&arrays, &group, 1u, i, &tests));
         }
         for (uint k = 0u; k < found; ++k) {
             WRITES(NearEdge) own = near + firsts[i] + k;

@@ -261,12 +261,12 @@ STRUCT(LocalContact) {
 WIRE_SIZE(LocalContact, 32);
 
 // The faces near an edge that was cast: how many, and the first ones.
-#define EDGE_FACES 3u
+#define EDGE_FACES 7u
 STRUCT(EdgeHits) {
     uint count;
     uint face[EDGE_FACES];
 };
-WIRE_SIZE(EdgeHits, 16);
+WIRE_SIZE(EdgeHits, 32);
 
 // An edge of the source that may cross a face of the target: 3 x its lowest triangle + its first corner.
 STRUCT(NearEdge) {

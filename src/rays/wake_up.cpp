@@ -25,12 +25,13 @@ double look_ahead(double size, double speed) {
                     std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed
 }
 
-// How far beyond what is needed near edges are sought. Of pairs that have none near they last some six steps, of
-// others, whose edges are asked in every step, some four; a wider search finds so much more that it costs more.
+// How far beyond what is needed near edges are sought: far where none was near, since a list without edges spares all;
+// else hardly, since each edge more is asked in every step. A list that would not last some steps is not worth its
+// width: then 0, and they are sought in every step.
 double edge_margin(const WatchedPair& pair, double size, double speed) {
-    if (!(speed < fastest * size)) return 0; // they would not last
-    return pair.edges.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size)
-                                   : std::clamp(4 * speed, 0.0005 * size, 0.005 * size);
+    constexpr double worth = 4; // steps
+    const double margin = pair.edges.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : 0.0005 * size;
+    return margin > worth * speed ? margin : 0;
 }
 
 bool asks_edges(const Update& update, const PlacedBody& a, const PlacedBody& b) {
