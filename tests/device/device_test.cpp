@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an OpenCL device promises (device.h), against the CPU device.
+#include "device/same_contacts.h"
 #include "device/work.h"
 
 #include "device/opencl/device.h"
@@ -92,7 +93,7 @@ TEST(probe, a_device_without_exact_double_leaves_that_to_the_host) {
         OpenDevice opened = open_changed(change);
         EXPECT_FALSE(opened.device->traits().has_double);
         EXPECT_TRUE(opened.device->info().exact);
-        EXPECT_TRUE(same_bits(contacts_of(std::move(opened), work, every_way()), expected));
+        EXPECT_TRUE(same(contacts_of(std::move(opened), work, every_way()), expected));
     }
 }
 
