@@ -181,8 +181,8 @@ void report_edges(const Counts& c) {
     EXPECT_EQ(c.sum.wrong, 0u);
     EXPECT_EQ(c.edges.wrong, 0u);
     EXPECT_LT(static_cast<double>(c.edges.pairs_excused), 0.002 * static_cast<double>(c.edges.pairs));
-    EXPECT_LT(static_cast<double>(c.edges.excused), 0.003 * static_cast<double>(c.edges.contacts));
-    EXPECT_LT(static_cast<double>(c.swapped_otherwise), 0.12 * static_cast<double>(c.edges.contacts));
+    EXPECT_LT(static_cast<double>(c.edges.excused), 0.002 * static_cast<double>(c.edges.contacts));
+    EXPECT_LT(static_cast<double>(c.swapped_otherwise), 0.02 * static_cast<double>(c.edges.contacts));
 }
 
 const std::vector<Subject>& coarse_subjects() {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <memory>
 #include <string>
 
 using namespace raycontact;
@@ -406,6 +407,45 @@ TEST(certified, stretched_rays) {
     }
     ++counts.episodes;
     report("stretched rays", counts, 1e4);
+}
+
+// Coarse bodies that creep apart and back: what was found apart is asked again in time.
+TEST(certified, edges_that_come_and_go) {
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Mesh& mesh :
+         {box_mesh({0.5, 0.5, 0.5}), box_mesh({1, 0.1, 0.15}), box_mesh({0.6, 0.6, 0.05}), tetrahedron_mesh(),
+          cone_mesh(), l_prism_mesh(), frame_mesh(), bumpy_octahedron_mesh(2), bumpy_octahedron_mesh(10)})
+        shapes.push_back(prepared_shape(mesh));
+    Random random(3);
+    std::size_t contacts = 0;
+    for (int course = 0; course < 8000; ++course) {
+        Settings settings;
+        settings.features = Features::edges;
+        settings.threads = 1;
+        settings.method = Method::certified;
+        Scene certified(settings);
+        settings.method = Method::standard;
+        Scene standard(settings);
+        const auto &a = shapes[random.below(9)], &b = shapes[random.below(9)];
+        for (Scene* scene : {&certified, &standard}) {
+            scene->add(a);
+            scene->add(b);
+        }
+        Pose pose;
+        for (int step = 0; step < 8; ++step) {
+            if (step == 0 || random.below(4) == 0) {
+                pose = random.rotation();
+                pose.translation = 1.2 * random.in_ball();
+            } else {
+                pose.translation = pose.translation + 0.02 * random.in_ball();
+            }
+            for (Scene* scene : {&certified, &standard}) scene->set_pose(1, pose);
+            const auto expected = standard.step();
+            ASSERT_TRUE(same_bits(certified.step(), expected)) << "course " << course << ", step " << step;
+            contacts += expected.size();
+        }
+    }
+    EXPECT_GT(contacts, 100000u);
 }
 
 } // namespace

@@ -367,7 +367,7 @@ private:
                 if (dot(face, s) > std::max(0.8, dot(found.way, s))) found.way = face;
             found.depth = std::min({dot(gap, found.way), length(cross(gap, e_a)), length(cross(gap, e_b))});
         }
-        if (found.depth <= 0 || found.depth < region.deepest / 2) return {};
+        if (found.depth <= 0.1 * hair_ || found.depth < region.deepest / 2) return {};
         if (region.least_depth() < found.depth / 2 - 5 * hair_) return {};
         return found;
     }
@@ -386,7 +386,7 @@ private:
                     pieces.push_back(p);
             std::vector<std::pair<Key, Found>> deep;
             const auto add = [&](const Piece& piece, const Vec3& point, const Vec3& way, double depth, const Hit& hit) {
-                if (depth <= region.told || hit.triangle == Hit::none) return;
+                if (depth <= std::max(region.told, 0.1 * hair_) || hit.triangle == Hit::none) return;
                 const Vec3 out = point + (piece.side == 0 ? depth : -depth) * way;
                 const Edge* other = bodies_[1 - piece.side]->nearest_edge(hit.triangle, out);
                 deep.push_back(piece.side == 0 ? std::pair(Key{piece.edge, other}, Found{depth, point, way})
