@@ -39,11 +39,9 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
                 in_contact ? 0.9999 * short_edge * smaller_size(update.bodies[a], update.bodies[b]) : 0;
             Slack& slack = table.hot(due.pair);
             slack.apart = false;
-            if (due.margin > 0) {
-                slack.metres = std::min(slack.metres, edge_share * double(due.margin));
-                for (std::size_t d = 0; d < 2; ++d)
-                    state.directions[d].edge_expiry = due.clocks[d] + edge_share * double(due.margin);
-            }
+            slack.metres = std::min(slack.metres, edge_share * double(due.margin));
+            for (std::size_t d = 0; d < 2; ++d)
+                state.directions[d].edge_expiry = due.clocks[d] + edge_share * double(due.margin);
             release(state.edges);
             state.edges.all = !in_contact;
             const bool none = std::max(longest_edge(update.bodies[a]), longest_edge(update.bodies[b])) < least;
