@@ -115,8 +115,9 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     }
     if (!edges_asked) return;
     DueEdges& edges = slice.edges.add() = {i, static_cast<float>(margin), edges_due, {}};
+    // Where the reference stays, the way back to it counts twice: the clock may run back as far.
     for (std::size_t d = 0; d < 2; ++d)
-        edges.clocks[d] = stale[d] ? 0 : state.directions[d].clock + (any_wakes ? 0 : moved[d]);
+        edges.clocks[d] = stale[d] ? 0 : state.directions[d].clock - (any_wakes ? 0 : moved[d]);
 }
 
 // The cheap bound comes first; most pairs at rest need no more.
