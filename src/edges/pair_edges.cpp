@@ -425,7 +425,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     // Nearly parallel edges are pierced far apart, and only what lies across them counts.
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
     if (!(depth > noise * pair.hair()) || depth < least) return;
-    if (is_thinner(region, 0.5 * depth - 5 * pair.hair())) return;
+    if (is_thinner(region, depth / (region.is_flush() ? 1.25 : 2.0) - 5 * pair.hair())) return;
     passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
 
@@ -480,12 +480,13 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
     if (!(region.told < comparable * along.extent())) return;
     // Beside flush faces a loop's area leans: then along the face that looks most that way.
     double best = snap;
+    const double deep = along.extent();
     for (std::uint32_t i = region.first_face; i < region.end_face && region.is_flush(); ++i) {
         const Vec3& n = faces_[i].second;
         const double facing = dot(n, way_of(pair, region));
         if (!(facing > best)) continue;
         const Range by_face = range(region, n);
-        if (!(by_face.extent() <= along.extent())) continue;
+        if (!(by_face.extent() <= deep)) continue;
         best = facing;
         way = n;
         along = by_face;

@@ -368,7 +368,7 @@ private:
             found.depth = std::min({dot(gap, found.way), length(cross(gap, e_a)), length(cross(gap, e_b))});
         }
         if (found.depth <= 0.1 * hair_ || found.depth < region.deepest / 2) return {};
-        if (region.least_depth() < found.depth / 2 - 5 * hair_) return {};
+        if (region.least_depth() < found.depth / (region.flush > region.whole / 10 ? 1.25 : 2) - 5 * hair_) return {};
         return found;
     }
 
