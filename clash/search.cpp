@@ -47,13 +47,16 @@ Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<c
     std::optional<Vec3> shared;
     if (sheets || depth <= noise * size) shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
     if (!shared && (sheets || contacts.empty())) return {};
-    answer.may_coincide = depth <= shallow * size && a.shape->has_inside() && b.shape->has_inside();
+    const bool duplicate = are_duplicates(a, b);
+    // Where all faces coincide, rounding draws the loops, and their depth is any.
+    if (duplicate) answer.depth = 0;
+    answer.may_coincide = answer.depth <= shallow * size && a.shape->has_inside() && b.shape->has_inside();
     if (depth <= noise * size) {
         const Vec3 point = shared ? *shared : clash.point;
         clash = clash_of(pair, {});
         clash.point = point;
     }
-    clash.duplicate = are_duplicates(a, b);
+    clash.duplicate = duplicate;
     return answer;
 }
 

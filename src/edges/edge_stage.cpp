@@ -82,7 +82,8 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 
 void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
                     std::vector<Contact>& contacts) {
-    const auto block_count = static_cast<std::uint32_t>((asked.size() + pairs_in_block - 1) / pairs_in_block);
+    // By the places of the pairs: so a block has in most steps what it had before, and allocates nothing.
+    const auto block_count = static_cast<std::uint32_t>((update.pairs.size() + pairs_in_block - 1) / pairs_in_block);
     block_count_ = block_count;
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     const Question question{update, local, asked};
@@ -100,9 +101,10 @@ void EdgeStage::find(Workspace& work, const Question& question, std::size_t numb
     Block& block = blocks_[number];
     block.contacts.clear();
     block.ends.clear();
-    const std::size_t first = number * pairs_in_block;
-    for (const AskedPair& asked :
-         question.asked.subspan(first, std::min<std::size_t>(pairs_in_block, question.asked.size() - first))) {
+    const auto at = [&](std::size_t pair) {
+        return std::ranges::lower_bound(question.asked, pair, {}, &AskedPair::pair);
+    };
+    for (const AskedPair& asked : std::span(at(number * pairs_in_block), at((number + 1) * pairs_in_block))) {
         find(work, block, question, asked);
         block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
     }
@@ -155,9 +157,11 @@ void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) 
     merged_.reserve(contacts.size() + added);
     const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
     auto done = contacts.begin();
+    std::size_t in = 0; // the pair's place in its block
     for (std::size_t k = 0; k < question.asked.size(); ++k) {
-        const Block& block = blocks_[k / pairs_in_block];
-        const std::size_t in = k % pairs_in_block, pair = question.asked[k].pair;
+        const std::size_t pair = question.asked[k].pair, number = pair / pairs_in_block;
+        const Block& block = blocks_[number];
+        in = k > 0 && question.asked[k - 1].pair / pairs_in_block == number ? in + 1 : 0;
         const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
         const auto more_end = block.contacts.begin() + block.ends[in];
         if (more == more_end) continue;

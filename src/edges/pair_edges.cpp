@@ -410,7 +410,9 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
         // The point of a's edge that is nearest to b's.
         const Vec3 w = p - q;
         const double cosine = dot(ea, eb), t = (cosine * dot(eb, w) - dot(ea, w)) / (sine * sine);
-        point = start + std::clamp(dot(p + t * ea - start, ea), 0.0, length(whole)) * ea;
+        // ... of the part that is inside b.
+        const double size = length(whole), here = x.at * size;
+        point = start + std::clamp(dot(p + t * ea - start, ea), x.leaves ? 0 : here, x.leaves ? here : size) * ea;
     } else {
         // Of flush edges, say: a face's normal.
         double best = snap;

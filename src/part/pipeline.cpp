@@ -124,7 +124,7 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
-    stats.pair_bytes += asked_.capacity() * sizeof(AskedPair);
+    stats.pair_bytes += asked_.size() * sizeof(AskedPair);
     if (has_near_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:

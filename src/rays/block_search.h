@@ -38,12 +38,15 @@ public:
                     const Array<kernels::Ray>& rays) const;
 
     /// Instead of a search: there are no pairs in this step.
-    void rest() { pair_count_ = 0; }
+    void rest() {
+        pair_count_ = 0;
+        found_ = Count(0);
+    }
     /// After a step that found so many blocks: frees memory that it hardly used.
     void give_back(std::size_t used);
     /// Of the last find.
     std::uint64_t bytes() const {
-        return std::uint64_t{blocks_.size()} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
+        return std::uint64_t{found_.most} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
                + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong));
     }
 

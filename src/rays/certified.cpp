@@ -242,6 +242,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     });
     wake_up_.run(update, table_);
     list_slices();
+    if (stale_.empty()) near_.rest();
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);

@@ -128,15 +128,18 @@ TEST(Rest, OnCompoundOfManyTiles) {
     const auto tile = Shape::make(box_mesh(0.5, 0.5, 0.2));
     auto floor = std::make_unique<btCompoundShape>();
     auto& mesh = one.keep(std::make_unique<bullet::MeshShape>(tile));
+    std::vector<btTransform> poses;
     for (int i = 0; i < 20; ++i)
         for (int k = 0; k < 20; ++k) {
             const btTransform pose = at(0.5 * i - 5, 0.5 * k - 5, -0.1);
             floor->addChildShape(pose, &mesh);
-            each.add_mesh(tile, 0, pose);
+            poses.push_back(pose);
         }
-    one.add(std::move(floor), 0, at(0, 0, 0));
+    // The table is body a of each pair in both worlds.
     btRigidBody& in_one = one.add_mesh(table(), 5, at(0, 0, 0.5));
+    one.add(std::move(floor), 0, at(0, 0, 0));
     btRigidBody& in_each = each.add_mesh(table(), 5, at(0, 0, 0.5));
+    for (const btTransform& pose : poses) each.add_mesh(tile, 0, pose);
     std::uint64_t contacts = 0;
     for (int i = 0; i < 50; ++i) {
         btTransform pose = at(0.13 * i - 3, 0.3 - 0.07 * i, 0.38 - 0.002 * i);

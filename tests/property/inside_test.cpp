@@ -41,6 +41,12 @@ std::unique_ptr<Oracle> make_oracle(const Solid& solid) {
     return oracle;
 }
 
+// A point of the world in the frame of b or a, about its centre.
+Vec3 in_frame(const Placement& p, bool of_b, const Vec3& at) {
+    const Pose& pose = of_b ? p.pose_b : p.pose_a;
+    return rotate_back(pose, at - pose.translation) - (of_b ? p.b : p.a)->solid.centre;
+}
+
 TEST(inside, every_contact_by_exact_predicates) {
     std::map<const Solid*, std::unique_ptr<Oracle>> oracles;
     for (const Subject& s : closed_subjects()) {
@@ -59,12 +65,16 @@ TEST(inside, every_contact_by_exact_predicates) {
             const Placement& p = placements[i];
             const bool of_a = c.vertex_body == VertexBody::a;
             const Solid& target = of_a ? p.b->solid : p.a->solid;
-            const Pose& pose = of_a ? p.pose_b : p.pose_a;
-            const Vec3 local = rotate_back(pose, c.point - pose.translation) - target.centre;
-            if ((*oracles.at(&target)->side)(point(local)) == CGAL::ON_BOUNDED_SIDE) {
+            const Vec3 local = in_frame(p, of_a, c.point);
+            const auto is_inside = [&](const Solid& solid, const Vec3& at) {
+                return (*oracles.at(&solid)->side)(point(at)) == CGAL::ON_BOUNDED_SIDE;
+            };
+            if (is_inside(target, local)) {
                 ++inside;
             } else if (distance_to_surface(target, local) < 1e-6 * std::max(1.0, target.diagonal)) {
                 ++near;
+            } else if (c.feature == Feature::edges && is_inside(p.a->solid, in_frame(p, false, point_on_b(c)))) {
+                ++inside; // the edge inside is b's
             } else {
                 ADD_FAILURE() << "pair " << i << ": vertex " << c.vertex << " of body " << (of_a ? "a" : "b")
                               << " is outside " << target.name << " by " << distance_to_surface(target, local)

@@ -360,7 +360,7 @@ private:
             if (dot(n, region.way(hair_)) <= 0.1) return {};
             const Vec3 start = bodies_[0]->vertices[x.edge->from], across = cross(e_b, n);
             const double at = dot(y.point - start, across) / dot(whole, across); // nearest to b's line
-            found.point = start + std::clamp(at, 0.0, 1.0) * whole;
+            found.point = start + std::clamp(at, x.leaves ? 0.0 : x.at, x.leaves ? x.at : 1.0) * whole;
         } else {
             found.way = {};
             for (const Vec3& face : {n_b[0], n_b[1], -n_a[0], -n_a[1]})
