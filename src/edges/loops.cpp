@@ -11,11 +11,6 @@ namespace {
 // faces rounding decides where a loop runs, and they add nothing to the sum of normals.
 constexpr double same_way = 0.5;
 
-Vec3 unit(const Vec3& v) {
-    const double size = length(v);
-    return size > 0 ? (1 / size) * v : Vec3{};
-}
-
 std::size_t hash_of(const Crossing& c) {
     std::uint64_t h = (std::uint64_t{c.edge} << 32 | c.face) ^ std::uint64_t{c.side} << 63;
     h *= 0x9e3779b97f4a7c15ull;
@@ -25,11 +20,12 @@ std::size_t hash_of(const Crossing& c) {
 } // namespace
 
 void Loops::clear() {
+    for (PlacedFace& face : faces_) face.face = NONE;
+    normal_faces_ = {NONE, NONE};
+    if (crossings_.empty()) return;
     crossings_.clear();
     loops_.clear();
     segments_.clear();
-    for (PlacedFace& face : faces_) face.face = NONE;
-    normal_faces_ = {NONE, NONE};
     std::fill(table_.begin(), table_.end(), NONE);
 }
 

@@ -33,11 +33,6 @@ constexpr std::size_t most_faces = 64;
 constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;
 
-Vec3 unit(const Vec3& v) {
-    const double size = length(v);
-    return size > 0 ? (1 / size) * v : Vec3{};
-}
-
 bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
     return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
 }
@@ -56,9 +51,9 @@ bool is_convex(const ShapeData& shape, std::uint32_t edge) {
 // The edge of a face that is nearest to a point of its plane.
 std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32_t face, const Vec3& point) {
     const ShapeData& shape = pair.shape(side);
-    std::size_t best = 0;
+    std::uint32_t best = 0;
     double least = never;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
         const Vec3 from = pair.corner(side, face, k), along = pair.corner(side, face, (k + 1) % 3) - from;
         const double size = length(along);
         const double away = size > 0 ? length(cross(along, point - from)) / size : length(point - from);
@@ -67,13 +62,7 @@ std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32
             best = k;
         }
     }
-    const std::uint32_t across = shape.neighbours[face][best];
-    if (across == NONE || across > face) return 3 * face + static_cast<std::uint32_t>(best);
-    for (std::uint32_t k = 0; k < 3; ++k)
-        if (shape.neighbours[across][k] == face
-            && shape.mesh.triangles[across][(k + 1) % 3] == shape.mesh.triangles[face][best])
-            return 3 * across + k;
-    return 3 * face + static_cast<std::uint32_t>(best);
+    return edge_of(shape, face, best);
 }
 
 // By how much a unit direction leaves the arc between the normals of an edge's faces, radians.

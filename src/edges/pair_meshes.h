@@ -44,6 +44,12 @@ private:
     std::array<const ShapeData*, 2> shapes_;
 };
 
+/// Zero for a zero vector.
+inline Vec3 unit(const Vec3& v) {
+    const double size = length(v);
+    return size > 0 ? (1 / size) * v : Vec3{};
+}
+
 /// An edge of a shape, 3 x its lowest triangle + its first corner there.
 struct EdgeFaces {
     std::uint32_t own, across; ///< across: NONE at a border

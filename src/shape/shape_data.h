@@ -24,10 +24,8 @@ struct ShapeData {
     /// Per triangle a bit for each of its edges (0-1, 1-2, 2-0) that is sharp, or a border, and of which it is the
     /// lowest triangle.
     std::vector<std::uint8_t> sharp_edges;
-    std::vector<std::uint32_t>
-        flat_faces;               ///< per triangle, the lowest of its flat face: those joined by edges not sharp
-    std::vector<Vec3> hair_moves; ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
-    std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
+    std::vector<Vec3> hair_moves;               ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
+    std::vector<std::uint32_t> vertex_triangle; ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
     double diagonal = 0;   ///< of the box, metres

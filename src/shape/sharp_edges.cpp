@@ -9,7 +9,7 @@ namespace raycontact {
 
 namespace {
 
-// Faces whose normals differ by less than some 4e-5 are one flat face: an edge inside it never decides a contact.
+// Faces whose normals differ by less than some 4e-5 are one flat face: an edge inside it never is a contact.
 constexpr double flat_cosine = 1 - 1e-9;
 
 } // namespace
@@ -18,26 +18,17 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
     const auto& triangles = shape.mesh.triangles;
     shape.sharp_edges.assign(triangles.size(), 0);
     shape.vertex_triangle.assign(shape.points.size(), Shape::no_triangle);
-    DisjointSets flat;
-    flat.reset(triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t c = 0; c < 3; ++c) {
             std::uint32_t& first = shape.vertex_triangle[triangles[t][c]];
             if (first == Shape::no_triangle) first = t;
             const std::uint32_t across = shape.neighbours[t][c];
             if (across != Shape::no_triangle && across < t) continue;
-            if (across != Shape::no_triangle && dot(normals[t], normals[across]) > flat_cosine)
-                flat.join(t, across);
-            else
-                shape.sharp_edges[t] = static_cast<std::uint8_t>(shape.sharp_edges[t] | 1u << c);
-        }
-    }
-    shape.flat_faces.resize(triangles.size());
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        shape.flat_faces[t] = flat.of(t);
-        for (std::size_t c = 0; c < 3; ++c)
             shape.longest_edge =
                 std::max(shape.longest_edge, length(shape.corner(t, (c + 1) % 3) - shape.corner(t, c)));
+            if (across == Shape::no_triangle || !(dot(normals[t], normals[across]) > flat_cosine))
+                shape.sharp_edges[t] = static_cast<std::uint8_t>(shape.sharp_edges[t] | 1u << c);
+        }
     }
 }
 

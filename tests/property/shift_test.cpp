@@ -25,10 +25,10 @@ struct Counts {
 void compare_shifted(const Placement& p, std::span<const Contact> here, std::span<const Contact> there,
                      const Vec3& shift, Counts& counts) {
     ++counts.pairs;
-    using Key = std::tuple<VertexBody, std::uint32_t>;
+    using Key = std::tuple<VertexBody, std::uint32_t, Feature, std::uint32_t>;
     std::map<Key, std::pair<const Contact*, const Contact*>> both;
-    for (const Contact& c : here) both[{c.vertex_body, c.vertex}].first = &c;
-    for (const Contact& c : there) both[{c.vertex_body, c.vertex}].second = &c;
+    for (const Contact& c : here) both[{c.vertex_body, c.vertex, c.feature, c.other()}].first = &c;
+    for (const Contact& c : there) both[{c.vertex_body, c.vertex, c.feature, c.other()}].second = &c;
     for (const auto& [key, pair] : both) {
         const auto& [c, d] = pair;
         if (c && d && c->triangle == d->triangle) {
@@ -42,6 +42,10 @@ void compare_shifted(const Placement& p, std::span<const Contact> here, std::spa
                 counts.worst = std::max(counts.worst, off);
                 continue;
             }
+        }
+        if (std::get<2>(key) != Feature::vertex) { // the margins are those of rays
+            ++counts.excused;
+            continue;
         }
         const bool of_a = std::get<0>(key) == VertexBody::a;
         const Solid& source = of_a ? p.a->solid : p.b->solid;
