@@ -146,7 +146,7 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
         return std::tie(p.side, p.edge, p.at, p.face) < std::tie(q.side, q.edge, q.at, q.face);
     });
     for (std::size_t begin = 0, end = 0; begin < by_edge_.size(); begin = end) {
-        const auto [side, edge] = std::pair(crossings()[by_edge_[begin]].side, crossings()[by_edge_[begin]].edge);
+        const std::uint32_t side = crossings()[by_edge_[begin]].side, edge = crossings()[by_edge_[begin]].edge;
         const auto on_edge = [&](std::uint32_t i) {
             return crossings()[i].side == side && crossings()[i].edge == edge;
         };

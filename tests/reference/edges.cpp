@@ -379,10 +379,11 @@ private:
     }
 
     void give_deep(std::map<Key, Found>& all, bool all_speak) {
-        for (const auto& [name, region] : regions_) {
+        for (const auto& entry : regions_) {
+            const Region& region = entry.second;
             std::vector<Piece> pieces;
             for (const Piece& p : pieces_)
-                if (region_[p.crossing] == name && (all_speak || (p.edge->sharp && !p.edge->concave)))
+                if (region_[p.crossing] == entry.first && (all_speak || (p.edge->sharp && !p.edge->concave)))
                     pieces.push_back(p);
             std::vector<std::pair<Key, Found>> deep;
             const auto add = [&](const Piece& piece, const Vec3& point, const Vec3& way, double depth, const Hit& hit) {
