@@ -187,8 +187,7 @@ void PairEdges::join_regions(const PairMeshes& pair) {
     std::sort(piece_vertices_.begin(), piece_vertices_.end());
     other_vertices_.clear();
     std::size_t at = 0;
-    for (std::size_t i = 0; i < piece_vertices_.size(); ++i) {
-        const auto [vertex, crossing] = piece_vertices_[i];
+    for (const auto& [vertex, crossing] : piece_vertices_) {
         while (at < in_contact_.size() && in_contact_[at].vertex < vertex) ++at;
         if (at < in_contact_.size() && in_contact_[at].vertex == vertex) {
             sets_.join(crossing, first + static_cast<std::uint32_t>(at));

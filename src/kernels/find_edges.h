@@ -187,6 +187,7 @@ DEVICE void add_test(EdgeTests* tests, const EdgeGroup* group, uint r, uint edge
 }
 
 DEVICE void clear_tests(EdgeTests* tests) {
+    // NOLINTNEXTLINE(modernize-loop-convert): this text is C as well
     for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->middle[i][r] = tests->arm[i][r] = 0.0f;
     for (int i = 0; i < 9; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->corner[i][r] = 0.0f;
     FOR_LANES(r, RAYS_IN_GROUP) tests->length[r] = tests->margin[r] = 0.0f;
@@ -300,6 +301,7 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
         for (uint r = 0u; r < few; ++r) {
             hits[i + r].count = 0u;
+            // NOLINTNEXTLINE(modernize-loop-convert): this text is C as well
             for (uint k = 0u; k < EDGE_FACES; ++k) hits[i + r].face[k] = NONE;
         }
         for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
@@ -322,8 +324,8 @@ KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
         const uint edge = vertices[ray.vertex_lane / VERTEX_LANES].vertex[ray.vertex_lane % VERTEX_LANES];
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-            const EdgeArrays arrays = {
-                pairs, margins, shapes, vertices, nodes, blocks, rays, (GLOBAL EdgeHits*)0, near + firsts[i]};
+            GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
+            const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, none, near + firsts[i]};
             EdgeGroup group;
             EdgeTests tests;
             clear_tests(&tests);
