@@ -20,7 +20,7 @@ bool passes_left(const Corner& p, const Corner& q, const Corner& r, const Corner
     return (volume >= 0) != turned;
 }
 
-// from, to: heights of the edge's ends over the face's plane, one of them below it.
+// Whether the line of an edge passes a face on one side of its three edges.
 bool pierces(std::size_t side, const Corner& p, const Corner& q, const PlacedFace& face) {
     bool first = false;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -4,8 +4,6 @@
 #include "device/launch.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 
 namespace raycontact {
 
