@@ -105,8 +105,7 @@ public:
     /// InputError for a pair of a body with itself or a body that does not exist.
     std::span<const Contact> step(std::span<const Pair> pairs);
 
-    /// Of the last step; sorted by (body_a, body_b, feature, vertex_body, vertex, triangle). Valid until
-    /// the next step.
+    /// Of the last step; sorted by (body_a, body_b, feature, vertex_body, vertex, triangle). Valid until the next step.
     std::span<const Contact> contacts() const;
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;

@@ -23,8 +23,7 @@ public:
     void end(const Update& update);
     /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }
-    /// The pairs whose edges may cross faces, or that may be inside one another,
-    /// in order; none without edges.
+    /// The pairs whose edges may cross faces, or that may be inside one another, in order; none without edges.
     std::span<const AskedPair> asked() const { return asked_; }
 
     /// As Part's.

@@ -25,8 +25,7 @@ public:
     }
     void clear();
 
-    /// Of the i-th pair of the step: its near edges, and what is known while they
-    /// last (AskedPair).
+    /// Of the i-th pair of the step: its near edges, and what is known while they last (AskedPair).
     std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i).edges); }
     bool is_apart(std::size_t i) { return table_.hot(i).apart; }
     bool* apart(std::size_t i) { return &table_.hot(i).apart; }

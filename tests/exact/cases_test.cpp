@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs by hand, with edges: each with both casters, both orders of the bodies, at the origin and 10 km away, asked
 // once and as the last of 20 steps of a scene that moves there, by `standard` and `certified`.
+#include "exact/assemblies.h"
 #include "exact/random_solids.h"
 #include "exact/words.h"
 #include "property/shapes.h"
@@ -281,37 +282,9 @@ TEST(exact_cases, crossed_rods_are_as_deep_as_they_overlap) {
         }
 }
 
-// A box without a lid: 2 x 2 x 1 outside, walls and floor 0.2 thick, the inner corner at (-0.8, -0.8, 0.2).
-Mesh tray_solid() {
-    Mesh tray;
-    tray.name = "tray";
-    const auto square = [&](double half, double z) {
-        for (const double x : {-half, half})
-            for (const double y : {-half, half}) tray.vertices.push_back({x, y, z});
-    };
-    square(1, 0);
-    square(1, 1);
-    square(0.8, 1);
-    square(0.8, 0.2);
-    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-        tray.triangles.push_back({a, b, c});
-        tray.triangles.push_back({a, c, d});
-    };
-    quad(0, 1, 3, 2);     // below
-    quad(12, 14, 15, 13); // the floor
-    constexpr std::uint32_t around[] = {0, 2, 3, 1};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::uint32_t p = around[i], q = around[(i + 1) % 4];
-        quad(p, q, q + 4, p + 4);           // a side
-        quad(p + 4, q + 4, q + 8, p + 8);   // the rim
-        quad(p + 8, q + 8, q + 12, p + 12); // a wall
-    }
-    return tray;
-}
-
 // Concave edges of the tray lie in the cube along its whole side: no face of the cube is a way out for all of them.
 TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
-    const auto tray = Shape::make(tray_solid()), cube = box(0.3, 0.3, 0.3);
+    const auto tray = Shape::make(tray_mesh()), cube = box(0.3, 0.3, 0.3);
     ASSERT_TRUE(tray->report().closed && tray->report().outward);
     Random random(9);
     for (const double e : {1e-5, 1e-4, 1e-3, 1e-2})
@@ -329,7 +302,7 @@ TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
 // Both ends of a body are pressed into opposite walls: two places, each with its own way out, though one flat rim, long
 // edges and the diagonals of flat faces run from one to the other.
 TEST(exact_cases, a_body_pressed_between_two_walls) {
-    const auto tray = Shape::make(tray_solid());
+    const auto tray = Shape::make(tray_mesh());
     for (const double e : {1e-5, 1e-4, 1e-3, 1e-2})
         for (const double half_width : {0.1, 0.7})
             for (const double top : {0.8, 1.1}) {
