@@ -26,6 +26,8 @@ constexpr double same_way = 0.5, snap = 0.8;
 constexpr double parallel = 0.98;
 // Two edges whose normal has no larger part than this along the way of their region are passed over.
 constexpr double sideways = 0.1;
+// Two edges may be so many times as deep as their region is along a face; beside flush faces.
+constexpr double most_deep = 2, most_flush = 1.25;
 // What is no deeper than this, in hairs, is rounding.
 constexpr double noise = 0.1;
 constexpr std::size_t most_faces = 64;
@@ -415,7 +417,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     // Nearly parallel edges are pierced far apart, and only what lies across them counts.
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
     if (!(depth > noise * pair.hair()) || depth < least) return;
-    if (is_thinner(region, depth / (region.is_flush() ? 1.25 : 2.0) - 5 * pair.hair())) return;
+    if (is_thinner(region, depth / (region.is_flush() ? most_flush : most_deep) - 5 * pair.hair())) return;
     passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
 }
 

@@ -49,8 +49,9 @@ private:
         std::uint32_t first_point = 0, end_point = 0;
         std::uint32_t first_face = 0, end_face = 0;
         Vec3 way; ///< in which a leaves b, once asked
+        /// Rounding draws a part of its loops that counts.
         bool is_flush() const { return flush_length > 0.1 * loop_length; }
-        /// Its loops cancel: a body is pierced through.
+        /// Its loops nearly cancel: a body is pierced through.
         bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
     };
     struct Range {
