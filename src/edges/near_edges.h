@@ -12,7 +12,7 @@ namespace raycontact {
 using kernels::NearEdge;
 
 /// An edge is short up to this, in diagonals of the smaller body (docs/edges.md).
-inline constexpr double short_edge = 0.1;
+inline constexpr double short_edge = 0.2;
 
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.
 using NearEdges = std::array<std::span<const NearEdge>, 2>;

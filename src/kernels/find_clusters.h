@@ -158,7 +158,7 @@ DEVICE void write_block(const FoundBlocks* found, uint at, const Search* search,
         found->mask[block / 64u] |= (ulong)1u << (block % 64u);
         return;
     }
-    const PairBlock own = {search->p, search->source->block_first + block, 0u};
+    const PairBlock own = {search->p, search->source->block_first + block, 0u, NONE};
     found->blocks[at] = own;
     found->ray_counts[at] = 0u;
     found->ray_counts[found->stride + at] = 0u;

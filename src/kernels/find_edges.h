@@ -4,11 +4,20 @@
 
 #define DIAGONAL_TOLERANCES 1048576.0f // ShapeHeader.tolerance is 2^-20 of the box diagonal
 
+#define MOST_CLEAR 1.0e9f                // PairBlock.clear
+
+DEVICE float least_of_vertices(const float* values) {
+    if (VERTICES_AT_ONCE == 16) return least_of_sixteen(values);
+    float least = values[0];
+    for (int k = 1; k < VERTICES_AT_ONCE; ++k) least = values[k] < least ? values[k] : least;
+    return least;
+}
+
 // Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
 // vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
-// side by side.
-KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) more, READS(ShapeHeader) shapes,
-                         WRITES(float) margins) {
+// side by side. horizons: where edges are looked for, `ahead` beyond the margins; more, ahead: null for 0.
+KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) more, READS(float) ahead,
+                         READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons) {
     FOR_EACH(p, count) {
         READS(DirectedPair) there = pairs + p;
         READS(DirectedPair) back = pairs + (p ^ 1u);
@@ -26,12 +35,14 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) m
         }
         const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
         margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
+        horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
     }
 }
 
 // The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
-// be far from the surface: it does not enter the balls around their halves.
-KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
+// be far from the surface: it does not enter the balls around their halves. clears: 1: it tells, too, how far the others
+// stay away.
+KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
                         READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(uint) clearances,
                         WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
@@ -69,16 +80,28 @@ KERNEL void count_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
             quarter[1][k] = 0.5f * ((r[3] * hx + r[4] * hy) + r[5] * hz);
             quarter[2][k] = 0.5f * ((r[6] * hx + r[7] * hy) + r[8] * hz);
         }
-        if (pack_vertices(found.inside) == 0u) continue;
+        if (clears == 0u && pack_vertices(found.inside) == 0u) continue;
         READS(ShapeHeader) target = shapes + pair->target;
         const Clearance grid = clearance_of(target);
         READS(uint) balls = clearances + target->clearance_first;
+        float beyond[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float qx = quarter[0][k], qy = quarter[1][k], qz = quarter[2][k];
             const float one = safe_distance(grid, balls, found.x[k] - qx, found.y[k] - qy, found.z[k] - qz, 0.0f);
             const float two = safe_distance(grid, balls, found.x[k] + qx, found.y[k] + qy, found.z[k] + qz, 0.0f);
-            const uint near = (uint)((one < two ? one : two) <= 0.50025f * block->exit[first + k] + margin);
-            found.inside[k] &= -(int)near;
+            beyond[k] = (one < two ? one : two) - (0.50025f * block->exit[first + k] + margin);
+            found.inside[k] &= -(int)(beyond[k] <= 0.0f);
+        }
+        if (clears != 0u) {
+            // Those that come into the bounds later may be as near as these.
+            FOR_LANES(k, VERTICES_AT_ONCE) {
+                const float gap = bounds_gap(b, found.x[k], found.y[k], found.z[k]) - 1.0005f * block->exit[first + k];
+                const float free = gap > beyond[k] ? gap : beyond[k];
+                const uint asked = (uint)(block->vertex[first + k] != NONE) & (uint)(block->exit[first + k] >= half_least);
+                beyond[k] = asked != 0u ? free : UNBOUNDED;
+            }
+            const float steps = least_of_vertices(beyond) / target->tolerance;
+            MIN_TO(&found_blocks[i].clear, steps > 0.0f ? (uint)(steps < MOST_CLEAR ? steps : MOST_CLEAR) : 0u);
         }
         const uint lanes = pack_vertices(found.inside);
         ADD_TO(&found_blocks[i].lanes, lanes << first);
@@ -92,16 +115,6 @@ STRUCT(EdgeGroup) {
     float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];   // its box, grown by the margin
     float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];    // of the arm; metres
     uint pair[RAYS_IN_GROUP];
-};
-
-// Edges and triangles whose boxes meet, one of each in each lane.
-STRUCT(EdgeTests) {
-    float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP];
-    float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];
-    float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
-    uint edge[RAYS_IN_GROUP];       // index of the ray
-    uint triangle[RAYS_IN_GROUP];
-    uint count;
 };
 
 // What casting edges reads, and where faces found go: the number and the first few of each edge; or, if that is not
@@ -120,83 +133,10 @@ STRUCT(EdgeArrays) {
 
 #define EDGE_ROUNDING 1.0e-6f // of a product of lengths: several times what volumes lose
 
-// A bit for each lane whose edge comes within its margin of the triangle, and for some others close to it: the ends are
-// not both farther on one side of the plane, and the line does not pass the triangle farther outside. A volume of two
-// edges is at most the product of their lengths times their distance.
-DEVICE uint edges_near(const EdgeTests* tests) {
-    int near[NODE_LANES] = {0};
-    FOR_LANES(r, RAYS_IN_GROUP) {
-        const float hx = tests->arm[0][r], hy = tests->arm[1][r], hz = tests->arm[2][r];
-        const float length = tests->length[r], margin = tests->margin[r];
-        // To the first corner; from there to the second and to the third.
-        const float ax = tests->corner[0][r] - tests->middle[0][r], ay = tests->corner[1][r] - tests->middle[1][r];
-        const float az = tests->corner[2][r] - tests->middle[2][r];
-        const float px = tests->corner[3][r] - tests->corner[0][r], py = tests->corner[4][r] - tests->corner[1][r];
-        const float pz = tests->corner[5][r] - tests->corner[2][r];
-        const float qx = tests->corner[6][r] - tests->corner[0][r], qy = tests->corner[7][r] - tests->corner[1][r];
-        const float qz = tests->corner[8][r] - tests->corner[2][r];
-        const float longest = root_of((px * px + py * py) + pz * pz) + root_of((qx * qx + qy * qy) + qz * qz);
-        const float size = (magnitude_of(ax) + magnitude_of(ay)) + magnitude_of(az);
-        const float nx = py * qz - pz * qy, ny = pz * qx - px * qz, nz = px * qy - py * qx;
-        const float height = magnitude_of((nx * ax + ny * ay) + nz * az);
-        const float along = (nx * hx + ny * hy) + nz * hz;
-        const float plane_margin =
-            margin * root_of((nx * nx + ny * ny) + nz * nz) + EDGE_ROUNDING * (longest * longest) * (size + length);
-        const uint meets_plane = (uint)(height <= magnitude_of(along) + plane_margin);
-        const float cx = hy * az - hz * ay, cy = hz * ax - hx * az, cz = hx * ay - hy * ax;
-        const float w = (px * cx + py * cy) + pz * cz;
-        const float v = -((qx * cx + qy * cy) + qz * cz);
-        const float u = (along - v) - w;
-        const float off = (length * longest) * (margin + EDGE_ROUNDING * (size + longest));
-        const uint outwards = (u >= -off) & (v >= -off) & (w >= -off), inwards = (u <= off) & (v <= off) & (w <= off);
-        near[r] = -(int)(meets_plane & (outwards | inwards));
-    }
-    return (RAYS_IN_GROUP > 1 ? pack_sixteen(near) : (uint)near[0]) & ((1u << tests->count) - 1u);
-}
-
-// Tests what was collected. written: faces in arrays->near.
-DEVICE_BATCH uint finish_tests(const EdgeArrays* arrays, EdgeTests* tests, uint written) {
-    for (uint found = edges_near(tests); found != 0u; found &= found - 1u) {
-        const uint r = lowest_bit(found), triangle = tests->triangle[r];
-        if (arrays->near) {
-            arrays->near[written].face = triangle;
-            ++written;
-        } else {
-            WRITES(EdgeHits) edge = arrays->hits + tests->edge[r];
-            if (edge->count < EDGE_FACES) edge->face[edge->count] = triangle;
-            ++edge->count;
-        }
-    }
-    tests->count = 0u;
-    return written;
-}
-
-DEVICE void add_test(EdgeTests* tests, const EdgeGroup* group, uint r, uint edge, READS(TriangleBlock) block,
-                     uint lane) {
-    const uint at = tests->count;
-    for (int i = 0; i < 3; ++i) {
-        tests->middle[i][at] = group->middle[i][r];
-        tests->arm[i][at] = group->arm[i][r];
-    }
-    tests->length[at] = group->length[r];
-    tests->margin[at] = group->margin[r];
-    for (int i = 0; i < 9; ++i) tests->corner[i][at] = block->corner[i][lane];
-    tests->edge[at] = edge;
-    tests->triangle[at] = block->triangle[lane];
-    tests->count = at + 1u;
-}
-
-DEVICE void clear_tests(EdgeTests* tests) {
-    // NOLINTNEXTLINE(modernize-loop-convert): this text is C as well
-    for (int i = 0; i < 3; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->middle[i][r] = tests->arm[i][r] = 0.0f;
-    for (int i = 0; i < 9; ++i) FOR_LANES(r, RAYS_IN_GROUP) tests->corner[i][r] = 0.0f;
-    FOR_LANES(r, RAYS_IN_GROUP) tests->length[r] = tests->margin[r] = 0.0f;
-    tests->count = 0u;
-}
-
-// Triangles of a block whose boxes reach into a box.
-DEVICE uint triangles_in(const float* box, READS(TriangleBlock) block) {
-    const float low_x = box[0], low_y = box[1], low_z = box[2], high_x = box[3], high_y = box[4], high_z = box[5];
+// Triangles of a block whose boxes reach into that of edge r.
+DEVICE uint triangles_in(const EdgeGroup* group, uint r, READS(TriangleBlock) block) {
+    const float low_x = group->low[0][r], low_y = group->low[1][r], low_z = group->low[2][r];
+    const float high_x = group->high[0][r], high_y = group->high[1][r], high_z = group->high[2][r];
     int within[TRIANGLE_LANES];
     FOR_LANES(k, TRIANGLE_LANES) {
         const float ax = block->corner[0][k], ay = block->corner[1][k], az = block->corner[2][k];
@@ -211,6 +151,42 @@ DEVICE uint triangles_in(const float* box, READS(TriangleBlock) block) {
         within[k] = -(int)(above & below);
     }
     return pack_sixteen(within);
+}
+
+// Of some triangles of a block those to which edge r comes within its margin, and some others close to it: its ends are
+// not both farther on one side of the plane, and its line does not pass the triangle farther outside. A volume of two
+// edges is at most the product of their lengths times their distance.
+DEVICE uint triangles_near(const EdgeGroup* group, uint r, READS(TriangleBlock) block, uint some) {
+    const float mx = group->middle[0][r], my = group->middle[1][r], mz = group->middle[2][r];
+    const float hx = group->arm[0][r], hy = group->arm[1][r], hz = group->arm[2][r];
+    const float length = group->length[r], margin = group->margin[r];
+    int near[TRIANGLE_LANES] = {0};
+    // A GPU's thread tests one after the other, and only those asked for.
+    FOR_LANES(k, TRIANGLE_LANES) {
+        if (RAYS_IN_GROUP == 1 && ((some >> k) & 1u) == 0u) continue;
+        // To the first corner; from there to the second and to the third.
+        const float ax = block->corner[0][k] - mx, ay = block->corner[1][k] - my, az = block->corner[2][k] - mz;
+        const float px = block->corner[3][k] - block->corner[0][k], py = block->corner[4][k] - block->corner[1][k];
+        const float pz = block->corner[5][k] - block->corner[2][k];
+        const float qx = block->corner[6][k] - block->corner[0][k], qy = block->corner[7][k] - block->corner[1][k];
+        const float qz = block->corner[8][k] - block->corner[2][k];
+        const float longest = root_of((px * px + py * py) + pz * pz) + root_of((qx * qx + qy * qy) + qz * qz);
+        const float size = (magnitude_of(ax) + magnitude_of(ay)) + magnitude_of(az);
+        const float nx = py * qz - pz * qy, ny = pz * qx - px * qz, nz = px * qy - py * qx;
+        const float height = magnitude_of((nx * ax + ny * ay) + nz * az);
+        const float along = (nx * hx + ny * hy) + nz * hz;
+        const float plane_margin =
+            margin * root_of((nx * nx + ny * ny) + nz * nz) + EDGE_ROUNDING * (longest * longest) * (size + length);
+        const uint meets_plane = (uint)(height <= magnitude_of(along) + plane_margin);
+        const float cx = hy * az - hz * ay, cy = hz * ax - hx * az, cz = hx * ay - hy * ax;
+        const float w = (px * cx + py * cy) + pz * cz;
+        const float v = -((qx * cx + qy * cy) + qz * cz);
+        const float u = (along - v) - w;
+        const float off = (length * longest) * (margin + EDGE_ROUNDING * (size + longest));
+        const uint outwards = (u >= -off) & (v >= -off) & (w >= -off), inwards = (u <= off) & (v <= off) & (w <= off);
+        near[k] = -(int)(meets_plane & (outwards | inwards));
+    }
+    return pack_sixteen(near) & some;
 }
 
 // A bit for each edge of a group whose box meets that of a node's lane.
@@ -257,8 +233,8 @@ DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own) {
 }
 
 // Casts edges of one pair, a bit each in `own`; first: index of the group's first. Their faces come in the order of the
-// tree, whatever other edges are cast beside. Leaves the last tests to the caller; returns what finish_tests() does.
-DEVICE uint cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint first, EdgeTests* tests) {
+// tree, whatever other edges are cast beside.
+DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint first) {
     READS(ShapeHeader) shape = arrays->shapes + arrays->pairs[group->pair[lowest_bit(own)]].target;
     READS(Node) tree = arrays->nodes + shape->node_first;
     float box[6];
@@ -275,16 +251,22 @@ DEVICE uint cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
             }
             READS(TriangleBlock) block = arrays->blocks + shape->triangle_block_first + (child & ~LEAF);
             for (uint edges = edges_in_lane(group, tree + way.at, leaf_lane) & own; edges != 0u; edges &= edges - 1u) {
-                const uint r = lowest_bit(edges);
-                const float edge_box[6] = {group->low[0][r],  group->low[1][r],  group->low[2][r],
-                                           group->high[0][r], group->high[1][r], group->high[2][r]};
-                for (uint lanes = triangles_in(edge_box, block); lanes != 0u; lanes &= lanes - 1u) {
-                    if (tests->count == RAYS_IN_GROUP) written = finish_tests(arrays, tests, written);
-                    add_test(tests, group, r, first + r, block, lowest_bit(lanes));
+                const uint r = lowest_bit(edges), boxed = triangles_in(group, r, block);
+                uint lanes = boxed != 0u ? triangles_near(group, r, block, boxed) : 0u;
+                for (; lanes != 0u; lanes &= lanes - 1u) {
+                    const uint triangle = block->triangle[lowest_bit(lanes)];
+                    if (arrays->near) {
+                        arrays->near[written].face = triangle;
+                        ++written;
+                        continue;
+                    }
+                    WRITES(EdgeHits) edge = arrays->hits + first + r;
+                    if (edge->count < EDGE_FACES) edge->face[edge->count] = triangle;
+                    ++edge->count;
                 }
             }
         }
-        if (way.at == 0u) return written;
+        if (way.at == 0u) return;
         go_up(&way, tree);
     }
 }
@@ -294,8 +276,6 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
                        WRITES(EdgeHits) hits, WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
     const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, hits, (GLOBAL NearEdge*)0};
-    EdgeTests tests;
-    clear_tests(&tests);
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -306,9 +286,8 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
         }
         for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
             while (r + same < few && group.pair[r + same] == group.pair[r]) ++same;
-            cast_together(&arrays, &group, ((1u << same) - 1u) << r, i, &tests);
+            cast_together(&arrays, &group, ((1u << same) - 1u) << r, i);
         }
-        finish_tests(&arrays, &tests, 0u);
         for (uint r = 0u; r < few; ++r) counts[i + r] = hits[i + r].count;
     }
 }
@@ -327,10 +306,8 @@ KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
             const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, none, near + firsts[i]};
             EdgeGroup group;
-            EdgeTests tests;
-            clear_tests(&tests);
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
-            finish_tests(&arrays, &tests, cast_together(&arrays, &group, 1u, i, &tests));
+            cast_together(&arrays, &group, 1u, i);
         }
         for (uint k = 0u; k < found; ++k) {
             WRITES(NearEdge) own = near + firsts[i] + k;

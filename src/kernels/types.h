@@ -136,8 +136,9 @@ STRUCT(PairBlock) {
     uint pair;
     uint vertex_block; // absolute
     uint lanes;        // a bit for each vertex or edge that is cast
+    uint clear;        // of edges that are not: how far they stay so, in tolerances of the target (count_edges)
 };
-WIRE_SIZE(PairBlock, 12);
+WIRE_SIZE(PairBlock, 16);
 
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).

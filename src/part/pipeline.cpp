@@ -67,7 +67,7 @@ void Pipeline::begin(const Update& update) {
     gather_.run(update, batch_);
     has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
     if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
-    if (has_near_) edges_.cast(update, pairs_of(update).placed(), {}, {}, batch_);
+    if (has_near_) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
 }
 
 // All, on the device.
@@ -83,7 +83,7 @@ void Pipeline::end(const Update& update) {
         if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather_.run(update, batch_);
-        if (!all_near) edges_.cast(update, pairs_of(update).placed(), {}, {}, batch_);
+        if (!all_near) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(gather_.contacts(), batch_.directed, update.pairs.size());

@@ -94,12 +94,19 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
 }
 
 void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
-                              const Array<float>& margins, const Array<float>& least,
+                              const Array<float>& margins, const Array<float>& least, bool clears,
                               const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::count_edges>(update.device, found_, pairs, margins, least, arrays.headers, arrays.vertex_blocks,
-                                  arrays.clearances, blocks_, ray_counts_.values());
+    launch<KernelId::count_edges>(update.device, found_, clears ? 1u : 0u, pairs, margins, least, arrays.headers,
+                                  arrays.vertex_blocks, arrays.clearances, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
+}
+
+double BlockSearch::clear(std::size_t p, float margin, float tolerance) {
+    kernels::uint steps = NONE;
+    const auto own = blocks_.in_place().subspan(counts_.firsts().in_place()[p], counts_.values().in_place()[p]);
+    for (const kernels::PairBlock& block : own) steps = std::min(steps, block.clear);
+    return std::min(double(safe_distances_.in_place()[p]) - double(margin), double(steps) * double(tolerance));
 }
 
 void BlockSearch::write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at,

@@ -30,9 +30,13 @@ public:
     void count_rays(const Update& update, const Array<kernels::DirectedPair>& pairs, bool use_grid,
                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Counts the edges of the blocks that come within margins[p] metres of the bounds and, for all that the grid
-    /// knows, of a face. totals[at]: their number, of which `room` can be written.
+    /// knows, of a face. totals[at]: their number, of which `room` can be written. clears: clear() will be asked.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& margins,
-                     const Array<float>& least, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+                     const Array<float>& least, bool clears, const Array<kernels::Totals>& totals, std::size_t at,
+                     std::size_t room);
+    /// Of edges, in memory that host and device share: how far pair p can move beyond margins[p] before one comes
+    /// within it that is not cast, metres.
+    double clear(std::size_t p, float margin, float tolerance);
     /// Writes them, the first to rays[begin]. totals[at]: what was left there by the call that counted them.
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,
                     const Array<kernels::Ray>& rays) const;

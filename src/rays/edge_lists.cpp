@@ -38,18 +38,17 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
             const double least =
                 in_contact ? 0.9999 * short_edge * smaller_size(update.bodies[a], update.bodies[b]) : 0;
             Slack& slack = table.hot(due.pair);
+            const bool none = std::max(longest_edge(update.bodies[a]), longest_edge(update.bodies[b])) < least;
             slack.apart = false;
-            slack.metres = std::min(slack.metres, edge_share * double(due.margin));
-            for (std::size_t d = 0; d < 2; ++d)
-                state.directions[d].edge_expiry = due.clocks[d] + edge_share * double(due.margin);
+            slack.edges = never;
             release(state.edges);
             state.edges.all = !in_contact;
-            const bool none = std::max(longest_edge(update.bodies[a]), longest_edge(update.bodies[b])) < least;
             if (!none) due_.push_back({due, static_cast<float>(least)});
         }
     if (due_.empty()) {
         pairs_.resize(update.device, 0);
         margins_.resize(update.device, 0);
+        ahead_.resize(update.device, 0);
         least_.resize(update.device, 0);
         directed_.clear();
         found_.set({}, {}, 0);
@@ -62,6 +61,7 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
 void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
     pairs_.resize(update.device, 2 * due.size());
     margins_.resize(update.device, 2 * due.size());
+    ahead_.resize(update.device, 2 * due.size());
     least_.resize(update.device, 2 * due.size());
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
@@ -71,17 +71,22 @@ void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedP
                 const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].due.pair + side);
                 place_source(source, target, pairs_.in_place()[2 * k + side]);
                 margins_.in_place()[2 * k + side] = due[k].due.margin;
+                ahead_.in_place()[2 * k + side] = due[k].due.ahead;
                 least_.in_place()[2 * k + side] = due[k].least;
             }
     });
     do {
-        rays_.cast(update, pairs_, margins_, least_, batch);
+        rays_.cast(update, pairs_, {margins_, ahead_, least_}, batch);
         const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
         update.device.queue().read(pieces);
         check_sums(batch.sums);
     } while (!rays_.had_room(update.device, batch));
     found_.set(rays_.found().values(), directed_, due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
+        const auto [a, b] = update.pairs[due[k].due.pair];
+        const double clear = std::min(rays_.clear(2 * k, update.bodies[b].shape->data().header.tolerance),
+                                      rays_.clear(2 * k + 1, update.bodies[a].shape->data().header.tolerance));
+        table.hot(due[k].due.pair).edges = edge_share * (double(due[k].due.margin) + clear);
         KeptEdges& kept = table.state(due[k].due.pair).edges;
         const std::array counts{static_cast<std::uint32_t>(found_.of(2 * k).size()),
                                 static_cast<std::uint32_t>(found_.of(2 * k + 1).size())};
@@ -104,6 +109,7 @@ void EdgeLists::give_back() {
     raycontact::give_back(directed_);
     pairs_.give_back();
     margins_.give_back();
+    ahead_.give_back();
     least_.give_back();
     rays_.give_back();
     found_.give_back();

@@ -13,19 +13,22 @@ constexpr std::size_t least_room = 4096; // edges
 
 } // namespace
 
-void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& more,
-                    const Array<float>& least, const RayBatch& batch) {
+void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Reach& reach,
+                    const RayBatch& batch) {
     Device& device = update.device;
     const ShapeStore::Arrays& arrays = update.arrays();
     const Array<kernels::Totals>& totals = batch.totals;
     const std::size_t room = std::max(rays_.size(), least_room);
     margins_.resize(device, pairs.size());
+    horizons_.resize(device, pairs.size());
     rays_.resize(device, room);
     hits_.resize(device, room);
     counts_.resize(device, 1, room);
-    launch<KernelId::find_margins>(device, pairs.size(), pairs, more, arrays.headers, margins_);
-    search_.find(update, pairs, margins_, totals, RayBatch::edge_block_sum);
-    search_.count_edges(update, pairs, margins_, least, totals, RayBatch::edge_ray_sum, room);
+    launch<KernelId::find_margins>(device, pairs.size(), pairs, reach.more, reach.ahead, arrays.headers, margins_,
+                                   horizons_);
+    search_.find(update, pairs, horizons_, totals, RayBatch::edge_block_sum);
+    search_.count_edges(update, pairs, margins_, reach.least, reach.ahead.size() > 0, totals, RayBatch::edge_ray_sum,
+                        room);
     search_.write_rays(update, totals, RayBatch::edge_ray_sum, 0, rays_);
     const Count count = results_of(totals, RayBatch::edge_ray_sum, room);
     launch<KernelId::cast_edges>(device, count, pairs, margins_, arrays.headers, arrays.vertex_blocks, arrays.nodes,
@@ -53,7 +56,7 @@ void EdgeRays::rest() {
 }
 
 std::uint64_t EdgeRays::bytes() const {
-    return search_.bytes() + margins_.size() * sizeof(float)
+    return search_.bytes() + 2 * margins_.size() * sizeof(float)
            + ray_count_ * (sizeof(kernels::Ray) + sizeof(kernels::EdgeHits) + 2 * sizeof(kernels::uint))
            + found_.values().size_bytes();
 }
@@ -61,6 +64,7 @@ std::uint64_t EdgeRays::bytes() const {
 void EdgeRays::give_back() {
     search_.give_back(block_count_);
     margins_.give_back();
+    horizons_.give_back();
     rays_.give_back(ray_count_);
     hits_.give_back(ray_count_);
     counts_.give_back(ray_count_);

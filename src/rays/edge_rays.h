@@ -11,10 +11,17 @@ namespace raycontact {
 /// hide (find_edges.h): some more than cross. Nothing waits.
 class EdgeRays {
 public:
-    /// pairs: both directions of each pair side by side. more: by pair, metres beyond what is needed. least: by pair,
-    /// metres; shorter edges are left out. Either may be empty.
-    void cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& more,
-              const Array<float>& least, const RayBatch& batch);
+    /// By directed pair, metres; each may be empty.
+    struct Reach {
+        const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
+        const Array<float>& least;       ///< shorter edges are left out
+    };
+    /// pairs: both directions of each pair side by side.
+    void cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Reach& reach,
+              const RayBatch& batch);
+    /// Of a cast with `ahead`, in memory that host and device share: how far directed pair p can move before an edge
+    /// comes nearer than `more` that is not found, metres.
+    double clear(std::size_t p, float tolerance) { return search_.clear(p, margins_.in_place()[p], tolerance); }
     /// After the read, with its sums: false if anything had too little room: there is enough now, and cast() must run
     /// again.
     bool had_room(Device& device, const RayBatch& batch);
@@ -29,7 +36,7 @@ public:
 
 private:
     BlockSearch search_{BlockSearch::Sources::edges};
-    Array<float> margins_; ///< by directed pair
+    Array<float> margins_, horizons_; ///< by directed pair
     Array<kernels::Ray> rays_;
     Array<kernels::EdgeHits> hits_;
     Columns counts_; ///< by ray: faces

@@ -27,15 +27,15 @@ double look_ahead(double size, double speed) {
 
 // How far beyond what is needed near edges are sought: far where none was near, since a list without edges spares all;
 // else hardly, since each edge more is asked in every step. A list that would not last some steps is not worth its
-// width: then 0, and they are sought in every step.
-double edge_margin(const WatchedPair& pair, double size, double speed) {
+// width: then 0.
+double edge_margin(const KeptEdges& kept, double size, double speed) {
     constexpr double worth = 4; // steps
-    const double margin = pair.edges.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : 0.0005 * size;
+    const double margin = kept.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : 0.0005 * size;
     return margin > worth * speed ? margin : 0;
 }
 
-bool asks_edges(const Update& update, const PlacedBody& a, const PlacedBody& b) {
-    return update.settings.features == Features::edges && (a.shape->has_inside() || b.shape->has_inside());
+bool asks_edges(const PlacedBody& a, const PlacedBody& b) {
+    return a.shape->has_inside() || b.shape->has_inside();
 }
 
 // A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
@@ -65,10 +65,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool stale[2] = {}, wakes[2] = {};
-    const bool has_edges = asks_edges(update, *body[0], *body[1]);
-    bool edges_due = false;
-    double edges_last = 1e300, margin = 0;
-    slack = {1e300, true, false, slack.apart};
+    slack = {never, slack.edges, true, false, slack.apart};
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
@@ -78,14 +75,8 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         wakes[d] = stale[d] || !(double(static_cast<float>(clock)) < own.wake);
         slack.casts = slack.casts || own.rays.count > 0;
         if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
-        edges_due = edges_due || (has_edges && (fresh || !(clock < own.edge_expiry)));
-        if (has_edges) edges_last = std::min(edges_last, own.edge_expiry - clock);
     }
-    const bool edges_asked = edges_due || (has_edges && !state.edges.all);
-    if (edges_asked) margin = edge_margin(state, size, speed);
-    if (edges_due) edges_last = edge_share * margin;
-    slack.metres = std::min(slack.metres, edges_last);
-    const bool any_wakes = wakes[0] || wakes[1] || edges_due, any_stale = stale[0] || stale[1];
+    const bool any_wakes = wakes[0] || wakes[1], any_stale = stale[0] || stale[1];
     if (!any_wakes && !slack.casts) return;
 
     if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
@@ -96,7 +87,6 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         const double clock = own.clock + moved[d];
         if (any_wakes) own.clock = clock;
         if (stale[d]) {
-            own.edge_expiry -= clock;
             own.clock = 0;
             own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
             slice.stale.add() = slice.due.size();
@@ -113,33 +103,38 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
         due.longest = longest_clock(target);
         place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.add());
     }
-    if (!edges_asked) return;
-    DueEdges& edges = slice.edges.add() = {i, static_cast<float>(margin), edges_due, {}};
-    // Where the reference stays, the way back to it counts twice: the clock may run back as far.
-    for (std::size_t d = 0; d < 2; ++d)
-        edges.clocks[d] = stale[d] ? 0 : state.directions[d].clock - (any_wakes ? 0 : moved[d]);
 }
 
 // The cheap bound comes first; most pairs at rest need no more.
 void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                         Slice& slice) {
+    const bool edges = update.settings.features == Features::edges;
     const auto wants = [&](std::uint32_t i, Slack& slack) {
-        slack.metres -= update.motion.pair_bound(update.pairs[i]);
-        return !(slack.metres > 0) || slack.casts;
+        const double bound = update.motion.pair_bound(update.pairs[i]);
+        slack.metres -= bound;
+        slack.edges -= bound;
+        return !(slack.metres > 0) || slack.casts || (edges && !(slack.edges > 0));
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
         const double speed = update.motion.pair_speed(pair);
-        std::uint32_t& as_standard = table.state(i).as_standard;
-        const bool is_fast = speed > fastest * smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
-        if (!update.settings.displacement_threshold && (is_fast || as_standard > 0)) {
+        const double size = smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
+        WatchedPair& state = table.state(i);
+        Slack& slack = table.hot(i);
+        if (!update.settings.displacement_threshold && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
-            if (asks_edges(update, update.bodies[pair.first], update.bodies[pair.second]))
-                slice.edges.add() = {i, 0, true, {}};
-            if (as_standard > 0) --as_standard;
-        } else {
+            if (state.as_standard > 0) --state.as_standard;
+        } else if (!(slack.metres > 0) || slack.casts) {
             wake_pair(update, table, i, speed, slice);
         }
+        if (!edges) return;
+        const bool due = !(slack.edges > 0);
+        if (!due && state.edges.all) return;
+        if (asks_edges(update.bodies[pair.first], update.bodies[pair.second]))
+            slice.edges.add() = {i, static_cast<float>(edge_margin(state.edges, size, speed)),
+                                 static_cast<float>(std::clamp(10 * speed, 0.03 * size, 0.2 * size)), due};
+        else
+            slack.edges = never;
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);

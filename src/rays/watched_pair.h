@@ -21,7 +21,6 @@ struct Watched {
     double clock = 0;        ///< at the reference pose
     double wake = 0;         ///< no block need be looked at before the clock reaches this
     double expiry = -1;      ///< a new list of blocks is due when the clock reaches this; below 0: at once
-    double edge_expiry = -1; ///< the same for the pair's near edges
     std::uint32_t first = 0, count = 0, capacity = 0; ///< the list
     WatchedRays rays;
 };
@@ -45,6 +44,7 @@ struct WatchedPair {
 /// What is read for every pair in every step.
 struct Slack {
     double metres = -1; ///< that the pair may move, by the cheap bound, before the exact one is computed
+    double edges = -1;  ///< that it may move before its near edges are sought anew
     bool open = false;  ///< it has lists
     bool casts = false; ///< it has rays, to be decided in every step
     bool apart = false; ///< as AskedPair's, while its near edges last
@@ -62,13 +62,13 @@ struct Due {
 
 /// Near edges last while the pair moves this share of the margin by which they were sought.
 inline constexpr double edge_share = 0.998;
+inline constexpr double never = 1e300; ///< metres
 
 /// A pair whose near edges may be sought in this step.
 struct DueEdges {
     std::uint32_t pair; ///< its place
-    float margin;       ///< metres that it may move before they are due again; 0: they are not kept
+    float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
     bool due;           ///< else they are sought only if short ones are missing
-    double clocks[2];   ///< of its directions
 };
 
 } // namespace raycontact

@@ -46,6 +46,7 @@ struct Range {
 #define FOR_EACH_VERTICES(i, first, n)                                                                                 \
     for (uint i = range.begin, first = 0, i##_end = range.end < (n) ? range.end : (n); i < i##_end; ++i)
 #define ADD_TO(place, number) ((void)(*(place) += (number)))
+#define MIN_TO(place, number) ((void)(*(place) = (number) < *(place) ? (number) : *(place)))
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
     for (uint i = range.begin, few = 0, i##_end = range.end < (n) ? range.end : (n);                                   \
          i < i##_end && (few = i##_end - i < (most) ? i##_end - i : (most)) != 0; i += few)

@@ -20,6 +20,7 @@ typedef unsigned long long ulong;
               first = v % VERTEX_LANES;                                                                                \
          v < v_end; v += gridDim.x * blockDim.x, i = v / VERTEX_LANES, first = v % VERTEX_LANES)
 #define ADD_TO(place, number) ((void)atomicAdd(place, number))
+#define MIN_TO(place, number) ((void)atomicMin(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \

@@ -20,6 +20,7 @@
               first = v % BLOCK_ITEMS * VERTICES_AT_ONCE;                                                              \
          v < v_end; v += (uint)get_global_size(0), i = v / BLOCK_ITEMS, first = v % BLOCK_ITEMS * VERTICES_AT_ONCE)
 #define ADD_TO(place, number) ((void)atomic_add(place, number))
+#define MIN_TO(place, number) ((void)atomic_min(place, number))
 #define RAYS_AT_ONCE 1
 #define RAYS_IN_GROUP 1
 #define FOR_EACH_FEW(i, few, most, n)                                                                                  \
