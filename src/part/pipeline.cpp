@@ -96,13 +96,17 @@ void Pipeline::list_asked(const Update& update) {
     asked_.clear();
     if (update.settings.features != Features::edges) return;
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
-        if (!has_near_ && certified_.is_apart(i) && local_.first(2 * i) == local_.first(2 * i + 2)) continue;
+        const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
+        if (!has_near_ && certified_.is_apart(i) && !in_contact) continue;
         const auto [a, b] = update.pairs[i];
         if (!update.bodies[a].shape->has_inside() && !update.bodies[b].shape->has_inside()) continue;
+        AskedPair asked{i, {}};
         if (has_near_)
-            asked_.push_back({i, {near_.of(2 * i), near_.of(2 * i + 1)}});
+            asked.near = {near_.of(2 * i), near_.of(2 * i + 1)};
         else
-            asked_.push_back({i, certified_.near(i), certified_.apart(i)});
+            asked = {i, certified_.near(i), certified_.apart(i)};
+        // Without edges a pair has nothing more to tell, but that one body is inside the other.
+        if (!in_contact || !asked.near[0].empty() || !asked.near[1].empty()) asked_.push_back(asked);
     }
 }
 

@@ -132,7 +132,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         if (!due && state.edges.all) return;
         if (asks_edges(update.bodies[pair.first], update.bodies[pair.second]))
             slice.edges.add() = {i, static_cast<float>(edge_margin(state.edges, size, speed)),
-                                 static_cast<float>(std::clamp(10 * speed, 0.03 * size, 0.2 * size)), due};
+                                 static_cast<float>(std::clamp(4 * speed, 0.02 * size, 0.1 * size)), due};
         else
             slack.edges = never;
     };

@@ -571,8 +571,8 @@ TEST(assemblies, pushes) {
         "[ counts   ] pushes: of %zu pairs apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; mean way %.3g of the "
         "smaller; %zu without a contact on the way; %.3g contacts a pair at first\n",
         pairs, free[0], free[1], free[2], free[3], free[4], way, stopped, double(contacts_first) / wanted);
-    // A hundredth below what the prototype of the rule reached on these pairs.
-    constexpr std::array<std::size_t, 5> least{515, 909, 1070, 1192, 1271};
+    // The prototype of the rule, which asks short edges, too, reached 521, 919, 1081, 1204 and 1283: 1.5 % below.
+    constexpr std::array<std::size_t, 5> least{513, 905, 1065, 1186, 1264};
     for (std::size_t k = 0; k < pushes.size(); ++k) EXPECT_GE(free[k], least[k]) << pushes[k] << " pushes";
     EXPECT_LE(way, 0.26);
 }

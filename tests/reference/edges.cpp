@@ -248,7 +248,7 @@ private:
         std::vector<Crossing> kept;
         for (const Loop& loop : loops_) {
             const auto is_long = [&](std::size_t i) {
-                return length(bodies_[crossings_[i].side]->along(*crossings_[i].edge)) > 1e6 * hair_;
+                return length(bodies_[crossings_[i].side]->along(*crossings_[i].edge)) > 2e6 * hair_;
             };
             if (!std::any_of(loop.crossings.begin(), loop.crossings.end(), is_long)) continue;
             for (const std::size_t i : loop.crossings) kept.push_back(crossings_[i]);
