@@ -70,7 +70,7 @@ std::string why_no_compiler(int driver_major) {
 
 Devices devices() {
     Devices devices;
-    if (!installed().why_not.empty()) return {{}, installed().why_not};
+    if (!driver().why_not.empty()) return {{}, driver().why_not};
     int version = 0, count = 0;
     try {
         check(driver().cuInit(0), "cuInit");

@@ -4,7 +4,6 @@
 #include "device/gpu/every_kernel.h"
 #include "device/gpu/run_probe.h"
 #include "device/gpu/run_scan.h"
-#include "device/opencl/arguments.h"
 #include "device/opencl/launcher.h"
 #include "device/opencl/list.h"
 #include "device/opencl/program.h"
@@ -44,8 +43,7 @@ public:
         const gpu::Probed probed = gpu::run_probe(
             *this, source.has_double, [&](const char* name, kernels::uint count, std::span<const Argument> arguments) {
                 const Kernel kernel = program_.entry(name);
-                set_arguments(kernel.get(), count, arguments);
-                launcher_.over_items(kernel.get(), name, count);
+                launcher_.over_items(kernel.get(), name, count, count, arguments);
             });
         probed.judge(info_);
         traits_.has_double = probed.exact_double;
@@ -84,16 +82,15 @@ private:
     void launch(KernelId id, Count count, std::span<const Argument> arguments) override {
         cl_kernel kernel = program_.kernel(id);
         if (!kernel) throw std::logic_error("a kernel that this device cannot run");
-        set_arguments(kernel, count, arguments);
         launcher_.over_items(kernel, gpu::name_of(id),
-                             std::size_t{count.most} * (is_over_vertices(id) ? block_items_ : 1));
+                             std::size_t{count.most} * (is_over_vertices(id) ? block_items_ : 1), count, arguments);
     }
     kernels::uint scan(const ScanOf& scan) override {
         return gpu::run_scan(
             scan, scan_sums_, scan_group_,
             [&](std::size_t kernel, std::size_t groups, const Count& count, std::span<const Argument> arguments) {
-                set_arguments(program_.scan_kernel(kernel), count, arguments);
-                launcher_.in_groups(program_.scan_kernel(kernel), gpu::scan_kernels[kernel], scan_group_, groups);
+                launcher_.in_groups(program_.scan_kernel(kernel), gpu::scan_kernels[kernel], scan_group_, groups, count,
+                                    arguments);
             });
     }
     void finish() override {
