@@ -16,7 +16,7 @@ class Arguments {
 public:
     /// The first two are the buffer of the count and its place there, or null and the count.
     Arguments(const Count& count, std::span<const Argument> given) {
-        if (given.size() + 2 > most) throw std::logic_error("more arguments than any kernel has");
+        if (given.size() + 2 > most) throw std::logic_error("more arguments than a kernel may have");
         add(address_of(count.buffer));
         add(count.value);
         for (const Argument& argument : given)
@@ -28,21 +28,7 @@ public:
     void** places() { return places_.data(); }
 
 private:
-    template <typename Function>
-    struct Parameters;
-    template <typename... Types>
-    struct Parameters<void (*)(Types...)> {
-        static constexpr std::size_t number = sizeof...(Types);
-    };
-    static constexpr std::size_t scan_parameters = 9;
-    static constexpr std::size_t most = std::max({
-        scan_parameters,
-#define RAYCONTACT_KERNEL(name) Parameters<Prototype<KernelId::name>::type>::number,
-#define RAYCONTACT_CPU_KERNEL(name)
-#include "kernels/kernels.def"
-#undef RAYCONTACT_KERNEL
-#undef RAYCONTACT_CPU_KERNEL
-    });
+    static constexpr std::size_t most = 32;
 
     template <typename T>
     void add(T value) {
