@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step.h"
 
-#include "device/device_list.h"
+#include "device/device.h"
 #include "give_back.h"
 #include "platform/system.h"
 #include "schedule/moving_pairs.h"

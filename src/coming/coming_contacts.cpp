@@ -2,11 +2,11 @@
 #include "coming/coming_contacts.h"
 
 #include "broadphase/sweep_and_prune.h"
-#include "edges/mesh_rays.h"
 #include "edges/source_mesh.h"
 #include "give_back.h"
-#include "mesh/vector.h"
+#include "mesh/measure.h"
 #include "pairs/displacement.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 
@@ -18,15 +18,10 @@ constexpr std::size_t pairs_in_block = 32;
 // Of the smaller body's size: a pair that moves less in a step passes no wall unseen that is thicker.
 constexpr double least_motion = 0.005;
 
-bool overlap(const Vec3& low, const Vec3& high, const WorldBox& wall) {
-    // Written so that a NaN, of bodies beyond all range, meets nothing.
-    return low.x <= wall.high.x && wall.low.x <= high.x && low.y <= wall.high.y && wall.low.y <= high.y
-           && low.z <= wall.high.z && wall.low.z <= high.z;
-}
-
-WorldBox box_of(const ShapeData& shape, const Pose& pose) {
+Box box_of(const ShapeData& shape, const Pose& pose) {
     const auto &low = shape.header.low, &high = shape.header.high;
-    return world_box(0, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, pose, 0);
+    const WorldBox box = world_box(0, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, pose, 0);
+    return {box.low, box.high};
 }
 
 // One direction of a pair, by the target's centred frame.
@@ -38,19 +33,20 @@ struct Course {
 void find(const Course& course, const SlotPair& pair, VertexBody side, Direction direction,
           std::vector<Contact>& found) {
     const ShapeData &source = course.source.shape->data(), &target = course.target.shape->data();
-    const WorldBox wall = box_of(target, {}), before = box_of(source, course.now), after = box_of(source, course.then);
-    if (!overlap(least(before.low, after.low), most(before.high, after.high), wall)) return;
+    const Box wall = box_of(target, {}), before = box_of(source, course.now), after = box_of(source, course.then);
+    // A NaN, of bodies beyond all range, touches nothing.
+    if (!Box{least(before.low, after.low), most(before.high, after.high)}.touches(wall)) return;
 
     const double hair = 1e-7 * smaller_size(course.source, course.target);
     const auto first = static_cast<std::ptrdiff_t>(found.size());
     for (std::uint32_t v = 0; v < source.points.size(); ++v) {
         const Vec3 from = transform_point(course.now, source.point(v));
         const Vec3 to = transform_point(course.then, source.point(v));
-        if (!overlap(least(from, to), most(from, to), wall)) continue;
+        if (!Box{least(from, to), most(from, to)}.touches(wall)) continue;
         const double way = length(to - from);
         if (!(way > 0)) continue;
         // From a hair behind, so that a vertex on the surface that is about to enter counts.
-        const MeshHit hit = closest_hit(target, from, (1 / way) * (to - from), -hair, way);
+        const MeshHit hit = closest_hit(target, {from, (1 / way) * (to - from), -hair, way});
         if (hit.face == NONE || hit.from_inside) continue;
         const Vec3 out = normal_of(target, hit.face);
         const Vec3 turned = transform_point({course.target.centred.rotation, {}}, out);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
-#include "contacts/vertex_order.h"
 #include "platform/prefetch.h"
 #include "shape/shape_data.h"
+
+#include <algorithm>
 
 namespace raycontact {
 
@@ -90,7 +91,7 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
                 order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
                 side.send_for(local[next]);
             } while (!begins_pair(++next));
-            sort_by_vertex({order_.data() + begin, next - begin});
+            std::sort(order_.begin() + begin, order_.begin() + next);
             for (std::uint32_t i = begin; i < next; ++i) place(contacts[i], side, local[order_[i] & 0xffffffff]);
         }
     });

@@ -5,12 +5,14 @@
 #include "executor/executor.h"
 
 #include <raycontact/device.h>
+#include <raycontact/settings.h>
 
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 namespace raycontact {
 
@@ -109,5 +111,7 @@ struct OpenDevice {
 /// Opens one device of chosen_devices(). Throws InputError for a device that is unknown or that this version cannot
 /// use. threads: of the host, 0 for one per core. inexact: also opens a device whose bits differ from the others'.
 OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
+/// Opens all that chosen_devices() names.
+std::vector<OpenDevice> open_devices(const Settings& settings);
 
 } // namespace raycontact

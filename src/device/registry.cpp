@@ -11,7 +11,9 @@
 
 #include <raycontact/error.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <string>
 
 namespace raycontact {
 
@@ -39,6 +41,39 @@ std::unique_ptr<Device> open_opencl(std::string_view name, bool) {
                        "opencl-c-headers, then configure with RAYCONTACT_OPENCL=ON)");
 }
 #endif
+
+std::vector<std::string> read_list(std::string_view list) {
+    std::vector<DeviceId> given;
+    std::vector<std::string> ids;
+    const auto refuse = [&](const std::string& what) {
+        throw InputError("devices: \"" + std::string(list) + "\" names " + what);
+    };
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        const DeviceId id = DeviceId::read(list.substr(begin, end - begin));
+        for (const DeviceId& other : given) {
+            if (id == other) refuse("a device twice; name each once");
+            if (id.whole() == other.whole() && id.part.has_value() != other.part.has_value())
+                refuse("a part beside its whole (" + id.whole() + "); name one or the other");
+        }
+        given.push_back(id);
+        ids.push_back(id.text());
+        begin = end + 1;
+    }
+    return ids;
+}
+
+// Every GPU this version can use, each card once: list_devices() has CUDA's before OpenCL's.
+std::vector<std::string> every_gpu() {
+    std::vector<std::string> ids, cards;
+    for (const DeviceInfo& device : list_devices()) {
+        if (!device.usable || device.type != "gpu") continue;
+        if (!device.bus.empty() && std::ranges::find(cards, device.bus) != cards.end()) continue;
+        cards.push_back(device.bus);
+        ids.push_back(device.id);
+    }
+    return ids;
+}
 
 } // namespace
 
@@ -72,6 +107,24 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
     }
     auto device = id.kind == "cuda" ? open_cuda(name, inexact) : open_opencl(name, inexact);
     return {std::make_unique<Executor>(threads), std::move(device)};
+}
+
+std::vector<std::string> chosen_devices(const Settings& settings) {
+    const bool all = settings.devices == "all";
+    if (!all && settings.devices != "auto") return read_list(settings.devices);
+    // On the CPU `certified` leaves alone most of what a GPU would have to cast in each step.
+    if (!all && settings.method == Method::certified) return {"cpu"};
+    std::vector<std::string> gpus = every_gpu();
+    if (gpus.empty()) return {"cpu"};
+    if (!all) gpus.resize(1);
+    return gpus;
+}
+
+std::vector<OpenDevice> open_devices(const Settings& settings) {
+    std::vector<OpenDevice> opened;
+    for (const std::string& id : chosen_devices(settings))
+        opened.push_back(open_device(id, settings.threads, settings.inexact));
+    return opened;
 }
 
 } // namespace raycontact

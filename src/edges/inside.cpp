@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/inside.h"
 
-#include "edges/mesh_rays.h"
+#include "shape/mesh_rays.h"
 
 namespace raycontact {
 
@@ -31,7 +31,7 @@ bool is_inside(const SourceMesh& placed, const Vec3& p) {
     const ShapeData& mesh = placed.target;
     if (!in_box(mesh, p) || known_outside(placed.target_accelerators, p)) return false;
     // Any direction serves; this one is related to no axis and no diagonal.
-    const MeshHit hit = closest_hit(mesh, p, {0.5402, 0.3173, 0.7794}, 0, 1e300);
+    const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
     return hit.face != NONE && hit.from_inside;
 }
 

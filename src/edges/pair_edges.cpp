@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/pair_edges.h"
 
-#include "edges/mesh_rays.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -447,8 +445,8 @@ bool PairEdges::speaks(const PairMeshes& pair, const Piece& piece) const {
 MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
     const std::size_t other = 1 - piece.side;
     const Vec3 from = point + pull * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
-    const MeshHit hit = closest_hit(pair.shape(other), pair.point_in(other, from),
-                                    pair.direction_in(other, piece.side == 0 ? way : -1.0 * way), 0, never);
+    const Vec3 along = pair.direction_in(other, piece.side == 0 ? way : -1.0 * way);
+    const MeshHit hit = closest_hit(pair.shape(other), {pair.point_in(other, from), along, 0, never});
     return hit.face != NONE && hit.from_inside ? hit : MeshHit{0, NONE, false};
 }
 

@@ -4,7 +4,7 @@
 #include "edges/feature_contact.h"
 #include "edges/loops.h"
 #include "mesh/disjoint_sets.h"
-#include "shape/tree_walks.h"
+#include "shape/mesh_rays.h"
 
 #include <array>
 #include <span>

@@ -13,6 +13,9 @@ namespace raycontact {
 /// flushed denormal would change a hash.
 class FloatEnvironment {
 public:
+    FloatEnvironment(const FloatEnvironment&) = delete;
+    FloatEnvironment& operator=(const FloatEnvironment&) = delete;
+
 #if defined(__x86_64__) || defined(__i386__) || defined(_M_X64)
     FloatEnvironment() : saved_(_mm_getcsr()) {
         _mm_setcsr(0x1f80u);
@@ -20,6 +23,9 @@ public:
     ~FloatEnvironment() {
         _mm_setcsr(saved_);
     }
+
+private:
+    unsigned saved_;
 #else
     FloatEnvironment() {
         std::fegetenv(&saved_);
@@ -28,14 +34,8 @@ public:
     ~FloatEnvironment() {
         std::fesetenv(&saved_);
     }
-#endif
-    FloatEnvironment(const FloatEnvironment&) = delete;
-    FloatEnvironment& operator=(const FloatEnvironment&) = delete;
 
 private:
-#if defined(__x86_64__) || defined(__i386__) || defined(_M_X64)
-    unsigned saved_;
-#else
     std::fenv_t saved_;
 #endif
 };

@@ -25,40 +25,25 @@ DEVICE Clearance clearance_of(READS(ShapeHeader) shape) {
     return grid;
 }
 
-// The nearest point of the grid's box, and its cell; for NaN the box's lower corner.
-STRUCT(GridPlace) {
-    float x, y, z;
-    int cell_x, cell_y, cell_z;
-    uint at; // of the grid's words
-};
-
-DEVICE GridPlace place_in(const Clearance grid, float x, float y, float z) {
-    GridPlace place;
-    const float up_x = x >= grid.low[0] ? x : grid.low[0], up_y = y >= grid.low[1] ? y : grid.low[1];
-    const float up_z = z >= grid.low[2] ? z : grid.low[2];
-    place.x = up_x <= grid.high[0] ? up_x : grid.high[0];
-    place.y = up_y <= grid.high[1] ? up_y : grid.high[1];
-    place.z = up_z <= grid.high[2] ? up_z : grid.high[2];
-    place.cell_x = (int)((place.x - grid.low[0]) * grid.scale);
-    place.cell_y = (int)((place.y - grid.low[1]) * grid.scale);
-    place.cell_z = (int)((place.z - grid.low[2]) * grid.scale);
-    place.at = ((uint)place.cell_z * grid.size_y + (uint)place.cell_y) * grid.size_x + (uint)place.cell_x;
-    return place;
-}
-
 // A lower bound of how far a point can move before it could be in contact. Outside a closed mesh: its distance from the
 // surface. Elsewhere: that distance less `reach`, since its ray goes no farther. May be negative.
 DEVICE float safe_distance(const Clearance grid, READS(uint) balls, float x, float y, float z, float reach) {
-    const GridPlace p = place_in(grid, x, y, z);
-    const uint word = balls[p.at];
-    const float off_x = x - p.x, off_y = y - p.y, off_z = z - p.z;
+    // The nearest point of the grid's box, and its cell; for NaN the box's lower corner.
+    const float up_x = x >= grid.low[0] ? x : grid.low[0], up_y = y >= grid.low[1] ? y : grid.low[1];
+    const float up_z = z >= grid.low[2] ? z : grid.low[2];
+    const float px = up_x <= grid.high[0] ? up_x : grid.high[0], py = up_y <= grid.high[1] ? up_y : grid.high[1];
+    const float pz = up_z <= grid.high[2] ? up_z : grid.high[2];
+    const int cell_x = (int)((px - grid.low[0]) * grid.scale), cell_y = (int)((py - grid.low[1]) * grid.scale);
+    const int cell_z = (int)((pz - grid.low[2]) * grid.scale);
+    const uint word = balls[((uint)cell_z * grid.size_y + (uint)cell_y) * grid.size_x + (uint)cell_x];
+    const float off_x = x - px, off_y = y - py, off_z = z - pz;
     const float off2 = (off_x * off_x + off_y * off_y) + off_z * off_z;
-    const int bx = p.cell_x + (int)(word & 31u) - CLEARANCE_OFFSET;
-    const int by = p.cell_y + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
-    const int bz = p.cell_z + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
-    const float ax = p.x - (grid.low[0] + ((float)bx + 0.5f) * grid.cell);
-    const float ay = p.y - (grid.low[1] + ((float)by + 0.5f) * grid.cell);
-    const float az = p.z - (grid.low[2] + ((float)bz + 0.5f) * grid.cell);
+    const int bx = cell_x + (int)(word & 31u) - CLEARANCE_OFFSET;
+    const int by = cell_y + (int)((word >> 5) & 31u) - CLEARANCE_OFFSET;
+    const int bz = cell_z + (int)((word >> 10) & 31u) - CLEARANCE_OFFSET;
+    const float ax = px - (grid.low[0] + ((float)bx + 0.5f) * grid.cell);
+    const float ay = py - (grid.low[1] + ((float)by + 0.5f) * grid.cell);
+    const float az = pz - (grid.low[2] + ((float)bz + 0.5f) * grid.cell);
     const float ball = (float)(int)(word >> 16) * grid.unit - root_of((ax * ax + ay * ay) + az * az);
     const float clear = ball > 0.0f ? ball : 0.0f;
     // The box is convex, so Pythagoras gives a lower bound for a point outside it.
@@ -92,15 +77,6 @@ DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(DirectedPai
         const float least = clear > gap ? clear : gap;
         safe[k] = block->vertex[first + k] != NONE ? least : UNBOUNDED;
     }
-}
-
-// Prefetches the words that safe_lanes() will read.
-DEVICE void prefetch_words(const InsideLanes* placed, READS(ShapeHeader) target, READS(uint) clearances) {
-    const Clearance grid = clearance_of(target);
-    uint at[VERTICES_AT_ONCE];
-    FOR_LANES(k, VERTICES_AT_ONCE) at[k] = place_in(grid, placed->x[k], placed->y[k], placed->z[k]).at;
-    // NOLINTNEXTLINE(modernize-loop-convert): this text is C as well
-    for (int k = 0; k < VERTICES_AT_ONCE; ++k) PREFETCH(clearances + target->clearance_first, at[k]);
 }
 
 DEVICE float least_of_sixteen(const float* values) {

@@ -5,7 +5,6 @@
 
 #define AWAKE (-1.0f)              // Watch.wake of a block to be tested in the next step
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
-#define LOOKS_TOGETHER 4
 
 // Begins a new list. Blocks that are clearly outside sleep at once, the others are tested in the step that made the
 // list. places, margins: by pair.
@@ -26,16 +25,13 @@ KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHe
     }
 }
 
-// What testing watches reads and writes.
+// The arrays that testing watches reads and writes.
 STRUCT(Looking) {
     READS(DirectedPair) pairs;
     READS(ShapeHeader) shapes;
     READS(VertexBlock) vertices;
     READS(uint) clearances;
-    READS(Segment) segments;
     WRITES(Watch) watches;
-    WRITES(LookResult) looks;
-    WRITES(uint) rays; // by segment
 };
 
 // The result of a block, number `bit` of its segment.
@@ -53,25 +49,15 @@ DEVICE LookResult add_looks(LookResult sum, const LookResult more) {
     return sum;
 }
 
-DEVICE void add_to_segment(const Looking* in, uint s, const LookResult found) {
-    in->looks[s] = add_looks(in->looks[s], found);
-    in->rays[s] = in->looks[s].rays;
-}
-
-// A block that is due. The words of its cells are seldom in a cache: a grid is large, and other data has filled the
-// caches since the last step. So several blocks are collected: the words of one are fetched while others are tested.
-STRUCT(DueBlock) {
-    uint segment, watch;
-    InsideLanes placed;
-};
-
-DEVICE LookResult look_at_block(const Looking* in, const DueBlock* look) {
-    WRITES(Watch) watch = in->watches + look->watch;
-    const Segment segment = in->segments[look->segment];
+// Looks at a block that is due: number `at` of the watches.
+DEVICE_BATCH LookResult look_at_block(const Looking* in, const Segment segment, uint at) {
+    WRITES(Watch) watch = in->watches + at;
     READS(DirectedPair) pair = in->pairs + segment.pair;
     READS(ShapeHeader) target = in->shapes + pair->target;
+    READS(VertexBlock) block = in->vertices + watch->vertex_block;
+    const InsideLanes placed = inside_lanes(pair, block, 0u);
     float free[VERTEX_LANES];
-    safe_lanes(free, &look->placed, pair, in->vertices + watch->vertex_block, 0u, target, in->clearances);
+    safe_lanes(free, &placed, pair, block, 0u, target, in->clearances);
     int unsafe[VERTEX_LANES];
     float others[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
@@ -87,48 +73,25 @@ DEVICE LookResult look_at_block(const Looking* in, const DueBlock* look) {
     watch->lanes = lanes;
     // AWAKE is never asleep, however the clock was rounded.
     watch->wake = least > 0.0f ? segment.now + least : AWAKE;
-    return look_of(lanes, watch->wake, look->watch - segment.first, 1u);
-}
-
-DEVICE_BATCH void look_together(const Looking* in, DueBlock* waiting, uint count) {
-    for (uint k = 0u; k < count; ++k) {
-        DueBlock* look = waiting + k;
-        READS(DirectedPair) pair = in->pairs + in->segments[look->segment].pair;
-        look->placed = inside_lanes(pair, in->vertices + in->watches[look->watch].vertex_block, 0u);
-        prefetch_words(&look->placed, in->shapes + pair->target, in->clearances);
-    }
-    for (uint k = 0u; k < count; ++k) add_to_segment(in, waiting[k].segment, look_at_block(in, waiting + k));
+    return look_of(lanes, watch->wake, at - segment.first, 1u);
 }
 
 KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
                             READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
                             WRITES(Watch) watches, WRITES(LookResult) looks, WRITES(uint) rays) {
-    const Looking in = {pairs, shapes, vertices, clearances, segments, watches, looks, rays};
-    DueBlock waiting[LOOKS_TOGETHER];
-    uint waits = 0u;
+    const Looking in = {pairs, shapes, vertices, clearances, watches};
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint line = 0u; line < 3u && s + 4u < count; ++line) PREFETCH(watches, segments[s + 4u].first + 5u * line);
         LookResult found = look_of(0u, UNBOUNDED, 0u, 0u);
-        looks[s] = found;
         for (uint i = segment.first; i < segment.first + segment.count; ++i) {
-            if (watches[i].wake > segment.now) {
-                found = add_looks(found, look_of(watches[i].lanes, watches[i].wake, i - segment.first, 0u));
-                continue;
-            }
-            // Prefetches the whole block: its rays will read what this test does not.
-            READS(VertexBlock) block = vertices + watches[i].vertex_block;
-            for (uint line = 0u; line < 8u; ++line) PREFETCH((GLOBAL const float*)block, VERTEX_LANES * line);
-            waiting[waits].segment = s;
-            waiting[waits].watch = i;
-            ++waits;
-            if (waits < LOOKS_TOGETHER) continue;
-            look_together(&in, waiting, waits);
-            waits = 0u;
+            const bool asleep = watches[i].wake > segment.now;
+            found = add_looks(found, asleep ? look_of(watches[i].lanes, watches[i].wake, i - segment.first, 0u)
+                                            : look_at_block(&in, segment, i));
         }
-        add_to_segment(&in, s, found);
+        looks[s] = found;
+        rays[s] = found.rays;
     }
-    look_together(&in, waiting, waits);
 }
 
 // looks: of this step. The rays begin at place `begin`.

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene of a glTF file: where its nodes place meshes, and their triangles.
 #include "mesh/gltf_file.h"
-#include "mesh/gltf_morph.h"
-#include "mesh/gltf_skin.h"
-#include "mesh/placement.h"
+#include "mesh/gltf_moves.h"
 #include "mesh/vector.h"
 
 #include <raycontact/assembly.h>

@@ -22,6 +22,10 @@ struct Box {
     Vec3 low, high;
     Vec3 middle() const { return 0.5 * (low + high); }
     void add(const Box& other) { *this = {least(low, other.low), most(high, other.high)}; }
+    double squared_distance(const Vec3& p) const {
+        const Vec3 off = most(most(low - p, p - high), Vec3{});
+        return dot(off, off);
+    }
     bool touches(const Box& other) const {
         return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y
                && low.z <= other.high.z && other.low.z <= high.z;

@@ -126,7 +126,8 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
 
 } // namespace
 
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, LazyBvh& bvh, Nesting nesting) {
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyBvh& bvh,
+                                  Nesting nesting) {
     const std::size_t count = patches.list.size();
     // About a vertex of its own: seen from afar, the volume of a small patch is lost in the rounding of the sum.
     std::vector<LongSum> volumes(count), roundings(count);
@@ -144,7 +145,7 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
         if (!patches.list[p].closed || !(std::fabs(volume) > roundings[p].value())) continue;
-        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh.made()) : 0; };
+        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh()) : 0; };
         switch (nesting) {
         case Nesting::as_wound:
             turn[p] = volume < 0 && around() == 0 ? 1 : 0;

@@ -13,7 +13,8 @@ namespace raycontact {
 /// Whether each patch must be turned, once its windings agree, so that it is as `nesting` has it: an outer surface
 /// encloses a positive volume, a cavity a negative one. Patches that are open, not orientable or without volume stay as
 /// they are.
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, LazyBvh& bvh, Nesting nesting);
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyBvh& bvh,
+                                  Nesting nesting);
 
 /// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.

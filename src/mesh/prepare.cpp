@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -88,7 +89,7 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
 
 /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
 /// whether any triangle was turned.
-bool mend_windings(PreparedMesh& prepared, const Patches& patches, LazyBvh& bvh, Nesting nesting) {
+bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyBvh& bvh, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -140,10 +141,13 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
 
     Executor executor = executor_for(prepared.triangles.size(), threads);
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
-    std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
+    const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
-    LazyBvh bvh(exact, prepared.triangles, std::move(with_area), executor);
+    std::optional<TriangleBvh> made;
+    const auto bvh = [&]() -> const TriangleBvh& {
+        return made ? *made : made.emplace(exact, prepared.triangles, with_area, executor);
+    };
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
@@ -153,7 +157,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     prepared.report.file_triangles = mesh.triangles.size();
     fill_report(prepared, edges);
     prepared.report.checked = false;
-    if (check == Check::full) check_surface(prepared, patches, exact, bvh.made(), executor);
+    if (check == Check::full) check_surface(prepared, patches, exact, bvh(), executor);
     return prepared;
 }
 
@@ -161,9 +165,9 @@ namespace {
 
 void check_anew(PreparedMesh& mesh, std::span<const HalfEdge> edges, Executor& executor) {
     const std::vector<Vec3> exact = all_snapped(mesh.vertices);
-    std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
+    const std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
     if (with_area.empty()) throw InputError("no triangle has an area");
-    const TriangleBvh bvh(exact, mesh.triangles, std::move(with_area), executor);
+    const TriangleBvh bvh(exact, mesh.triangles, with_area, executor);
     check_surface(mesh, find_patches(mesh.triangles, edges), exact, bvh, executor);
 }
 

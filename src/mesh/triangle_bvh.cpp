@@ -5,135 +5,87 @@
 #include "mesh/triangle_distance.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <utility>
 
 namespace raycontact {
 
-namespace {
-
-constexpr std::uint32_t leaf = TriangleBvh::leaf_size;
-
-/// How many nodes cover n triangles, and n + 1.
-std::pair<std::uint32_t, std::uint32_t> node_counts(std::uint32_t n) {
-    if (n + 1 <= leaf) return {1, 1};
-    const std::pair below = node_counts(n / 2);
-    const auto half = [&](std::uint32_t m) { return m == n / 2 ? below.first : below.second; };
-    const auto both = [&](std::uint32_t m) { return m <= leaf ? 1 : 1 + half(m / 2) + half(m - m / 2); };
-    return {both(n), both(n + 1)};
-}
-
-} // namespace
-
-/// What the triangles are sorted by.
-struct TriangleBvh::Sorting {
-    std::vector<Box> boxes;
-    std::vector<Vec3> sums; ///< of the corners
-    std::vector<std::pair<double, std::uint32_t>> keys;
-};
-
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                         std::vector<std::uint32_t> chosen, Executor& executor)
-    : vertices_(vertices), triangles_(triangles), order_(std::move(chosen)) {
-    build(executor);
-}
-
-void TriangleBvh::build(Executor& executor) {
-    const auto count = static_cast<std::uint32_t>(order_.size());
-    nodes_.resize(node_counts(count).first);
-    boxes_.resize(count);
-    Sorting sorting;
-    sorting.boxes.resize(triangles_.size());
-    sorting.sums.resize(triangles_.size());
-    sorting.keys.resize(count);
-    executor.run(count, 4096, [&](std::uint32_t begin, std::uint32_t end) {
+                         std::span<const std::uint32_t> chosen, Executor& executor)
+    : vertices_(vertices), triangles_(triangles), items_(chosen.size()), boxes_(std::bit_ceil(chosen.size()) + 1) {
+    executor.run(static_cast<std::uint32_t>(chosen.size()), 4096, [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [a, b, c] = triangles_[order_[i]];
+            const auto [a, b, c] = triangles_[chosen[i]];
             const Vec3 &p = vertices_[a], &q = vertices_[b], &r = vertices_[c];
-            sorting.boxes[order_[i]] = {least(least(p, q), r), most(most(p, q), r)};
-            sorting.sums[order_[i]] = p + q + r;
+            items_[i] = {{least(least(p, q), r), most(most(p, q), r)}, p + q + r, chosen[i]};
         }
     });
     constexpr std::uint32_t large = 4096;
     const auto parts = divide(
-        executor, Part{0, 0, count}, [](const Part& part) { return part.last - part.first > large; },
-        [&](const Part& part) { return split(part, sorting); });
-    for_each_part(executor, parts, [&](const Part& part) { build_below(part, sorting); });
+        executor, whole(), [](const Part& part) { return part.size() > large; },
+        [&](const Part& part) {
+            split(part);
+            return std::array{part.left(), part.right()};
+        });
+    for_each_part(executor, parts, [&](const Part& part) { build_below(part); });
 }
 
-/// Fills the part's node, with the places of both children.
-std::array<TriangleBvh::Part, 2> TriangleBvh::split(const Part& part, Sorting& sorting) {
-    const auto [node, first, last] = part;
-    Box box = sorting.boxes[order_[first]];
-    for (std::uint32_t i = first + 1; i < last; ++i) box.add(sorting.boxes[order_[i]]);
-    const std::uint32_t middle = first + (last - first) / 2;
-    const std::uint32_t right = last - first <= leaf_size ? 0 : node + 1 + node_counts(middle - first).first;
-    nodes_[node] = {box, first, last, right};
-    if (right == 0) return {};
-
+/// Finds the part's box, and puts its items on their side of the middle.
+void TriangleBvh::split(const Part& part) {
+    Box& box = boxes_[part.node] = items_[part.first].box;
+    for (std::uint32_t i = part.first + 1; i < part.last; ++i) box.add(items_[i].box);
+    if (part.is_leaf()) return;
     const Vec3 size = box.high - box.low;
-    const std::size_t k = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto keys = sorting.keys.begin();
-    for (std::uint32_t i = first; i < last; ++i) keys[i] = {axis(sorting.sums[order_[i]], k), order_[i]};
-    std::nth_element(keys + first, keys + middle, keys + last);
-    for (std::uint32_t i = first; i < last; ++i) order_[i] = keys[i].second;
-    return {Part{node + 1, first, middle}, Part{right, middle, last}};
+    double Vec3::*const along = size.x >= size.y && size.x >= size.z ? &Vec3::x
+                                : size.y >= size.z                   ? &Vec3::y
+                                                                     : &Vec3::z;
+    const auto items = items_.begin();
+    std::nth_element(items + part.first, items + part.middle(), items + part.last,
+                     [along](const Item& p, const Item& q) {
+                         return p.sum.*along != q.sum.*along ? p.sum.*along < q.sum.*along : p.triangle < q.triangle;
+                     });
 }
 
-void TriangleBvh::build_below(const Part& part, Sorting& sorting) {
-    const auto [left, right] = split(part, sorting);
-    if (nodes_[part.node].right != 0) {
-        build_below(left, sorting);
-        return build_below(right, sorting);
-    }
-    for (std::uint32_t i = part.first; i < part.last; ++i) boxes_[i] = sorting.boxes[order_[i]];
+void TriangleBvh::build_below(const Part& part) {
+    split(part);
+    if (part.is_leaf()) return;
+    build_below(part.left());
+    build_below(part.right());
 }
 
-/// Pairs of nodes that together cover all pairs of triangles whose boxes touch; about as many as wanted.
-std::vector<TriangleBvh::NodePair> TriangleBvh::node_pairs(std::size_t wanted) const {
-    std::vector<NodePair> open{{0, 0}};
+/// Pairs of parts that together cover all pairs of triangles whose boxes touch; about as many as wanted.
+std::vector<TriangleBvh::Pair> TriangleBvh::pairs(std::size_t wanted) const {
+    std::vector<Pair> open{{whole(), whole()}};
     for (bool opened = true; opened && open.size() < wanted;) {
         opened = false;
-        std::vector<NodePair> next;
-        for (const auto& [a, b] : open) {
-            const Node &left = nodes_[a], &right = nodes_[b];
-            if (!left.box.touches(right.box)) continue;
-            if (left.right == 0 || right.right == 0) {
-                next.push_back({a, b});
-                continue;
-            }
-            opened = true;
-            if (a == b) {
-                next.insert(next.end(), {{a + 1, a + 1}, {left.right, left.right}, {a + 1, left.right}});
-            } else if (left.size() >= right.size()) {
-                next.insert(next.end(), {{a + 1, b}, {left.right, b}});
-            } else {
-                next.insert(next.end(), {{a, b + 1}, {a, right.right}});
-            }
+        std::vector<Pair> next;
+        const auto keep = [&](const Pair& pair) {
+            next.push_back(pair);
+            return false;
+        };
+        for (const Pair& pair : open) {
+            if (!box_of(pair[0]).touches(box_of(pair[1]))) continue;
+            const bool may_open = !pair[0].is_leaf() && !pair[1].is_leaf();
+            opened = opened || may_open;
+            may_open ? any_half(pair, keep) : keep(pair);
         }
         open = std::move(next);
     }
     return open;
 }
 
-double TriangleBvh::squared_distance_of(const Box& box, const Vec3& p) {
-    const Vec3 off = most(most(box.low - p, p - box.high), Vec3{});
-    return dot(off, off);
-}
-
-double TriangleBvh::nearest(const Vec3& point, double bound, std::uint32_t below) const {
-    const Node& node = nodes_[below];
-    for (std::uint32_t i = node.first; node.right == 0 && i < node.last; ++i) {
-        if (squared_distance_of(boxes_[i], point) >= bound) continue;
-        const auto [a, b, c] = triangles_[order_[i]];
+double TriangleBvh::nearest(const Part& part, const Vec3& point, double bound) const {
+    for (std::uint32_t i = part.first; part.is_leaf() && i < part.last; ++i) {
+        if (items_[i].box.squared_distance(point) >= bound) continue;
+        const auto [a, b, c] = triangles_[items_[i].triangle];
         bound = std::min(bound, squared_distance(point, vertices_[a], vertices_[b], vertices_[c]));
     }
-    if (node.right == 0) return bound;
-    std::pair near{squared_distance_of(nodes_[below + 1].box, point), below + 1};
-    std::pair far{squared_distance_of(nodes_[node.right].box, point), node.right};
+    if (part.is_leaf()) return bound;
+    std::pair near{box_of(part.left()).squared_distance(point), part.left()};
+    std::pair far{box_of(part.right()).squared_distance(point), part.right()};
     if (far.first < near.first) std::swap(near, far);
-    for (const auto& [distance, child] : {near, far}) {
-        if (distance < bound) bound = nearest(point, bound, child);
+    for (const auto& [distance, half] : {near, far}) {
+        if (distance < bound) bound = nearest(half, point, bound);
     }
     return bound;
 }

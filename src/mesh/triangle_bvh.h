@@ -8,7 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <optional>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,79 +20,93 @@ namespace raycontact {
 class TriangleBvh {
 public:
     /// Over the given triangles only; at least one.
-    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen,
-                Executor& executor);
+    TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                std::span<const std::uint32_t> chosen, Executor& executor);
 
     /// Calls test(i, k), on several threads at once, for two triangles each whose boxes touch, until it returns true;
     /// returns whether it did.
     template <class Test>
     bool any_pair(Executor& executor, Test&& test) const {
-        const std::vector<NodePair> parts = node_pairs(executor.threads() > 1 ? 256 : 1);
+        const std::vector<Pair> parts = pairs(executor.threads() > 1 ? 256 : 1);
         std::atomic<bool> found = false;
         executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
             for (std::uint32_t i = begin; i < end && !found; ++i)
-                if (any_pair_of(parts[i].a, parts[i].b, test)) found = true;
+                if (any_pair_of(parts[i], test)) found = true;
         });
         return found;
     }
 
     /// Calls visit(i) for every triangle whose box the ray may meet. No component of the direction may be 0.
     template <class Visit>
-    void along_ray(const Vec3& origin, const Vec3& direction, Visit&& visit, std::uint32_t below = 0) const {
-        const Node& node = nodes_[below];
-        if (!meets(node.box, origin, direction)) return;
-        if (node.right == 0) {
-            for (std::uint32_t i = node.first; i < node.last; ++i) visit(order_[i]);
-            return;
-        }
-        along_ray(origin, direction, visit, below + 1);
-        along_ray(origin, direction, visit, node.right);
+    void along_ray(const Vec3& origin, const Vec3& direction, Visit&& visit) const {
+        along_ray(whole(), origin, direction, visit);
     }
 
     /// Squared distance of a point from the nearest triangle, or `bound` if none is nearer than that.
-    double nearest(const Vec3& point, double bound, std::uint32_t below = 0) const;
+    double nearest(const Vec3& point, double bound) const { return nearest(whole(), point, bound); }
 
     static constexpr std::uint32_t leaf_size = 4;
 
 private:
-    struct Node {
+    struct Item {
         Box box;
-        std::uint32_t first, last; ///< into order_
-        std::uint32_t right;       ///< 0 for a leaf; the left child follows its parent
-        std::uint32_t size() const { return last - first; }
+        Vec3 sum; ///< of the corners
+        std::uint32_t triangle;
     };
-
-    struct NodePair {
-        std::uint32_t a, b;
-    };
-    /// Some of the order that a node covers.
+    /// Some of the items, which are split at their middle, and the number of its box; the halves have twice that number
+    /// and one more.
     struct Part {
         std::uint32_t node, first, last;
+        std::uint32_t size() const { return last - first; }
+        bool is_leaf() const { return size() <= leaf_size; }
+        std::uint32_t middle() const { return first + size() / 2; }
+        Part left() const { return {2 * node, first, middle()}; }
+        Part right() const { return {2 * node + 1, middle(), last}; }
     };
-    struct Sorting;
-    void build(Executor& executor);
-    std::array<Part, 2> split(const Part& part, Sorting& sorting);
-    void build_below(const Part& part, Sorting& sorting);
-    std::vector<NodePair> node_pairs(std::size_t wanted) const;
-    static double squared_distance_of(const Box& box, const Vec3& point);
+    using Pair = std::array<Part, 2>;
+
+    Part whole() const { return {1, 0, static_cast<std::uint32_t>(items_.size())}; }
+    const Box& box_of(const Part& part) const { return boxes_[part.node]; }
+    void split(const Part& part);
+    void build_below(const Part& part);
+    std::vector<Pair> pairs(std::size_t wanted) const;
+    double nearest(const Part& part, const Vec3& point, double bound) const;
     static bool meets(const Box& box, const Vec3& origin, const Vec3& direction);
 
-    /// Pairs of one triangle below a and another below b.
-    template <class Test>
-    bool any_pair_of(std::uint32_t a, std::uint32_t b, Test& test) const {
-        const Node &left = nodes_[a], &right = nodes_[b];
-        if (!left.box.touches(right.box)) return false;
-        if (a == b && left.right != 0) {
-            return any_pair_of(a + 1, a + 1, test) || any_pair_of(left.right, left.right, test)
-                   || any_pair_of(a + 1, left.right, test);
+    template <class Visit>
+    void along_ray(const Part& part, const Vec3& origin, const Vec3& direction, Visit& visit) const {
+        if (!meets(box_of(part), origin, direction)) return;
+        if (part.is_leaf()) {
+            for (std::uint32_t i = part.first; i < part.last; ++i) visit(items_[i].triangle);
+            return;
         }
-        // Descends into the larger one, so that boxes of similar size are compared.
-        if (left.right != 0 && (right.right == 0 || left.size() >= right.size()))
-            return any_pair_of(a + 1, b, test) || any_pair_of(left.right, b, test);
-        if (right.right != 0) return any_pair_of(a, b + 1, test) || any_pair_of(a, right.right, test);
-        for (std::uint32_t i = left.first; i < left.last; ++i) {
-            for (std::uint32_t k = a == b ? i + 1 : right.first; k < right.last; ++k) {
-                if (boxes_[i].touches(boxes_[k]) && test(order_[i], order_[k])) return true;
+        along_ray(part.left(), origin, direction, visit);
+        along_ray(part.right(), origin, direction, visit);
+    }
+
+    /// Calls visit(pair) for the pairs that make up one, if it is not one of leaves, until that returns true. Opens the
+    /// larger part, so that boxes of similar size are compared.
+    template <class Visit>
+    static bool any_half(const Pair& pair, Visit&& visit) {
+        const auto& [a, b] = pair;
+        if (a.node == b.node)
+            return visit(Pair{a.left(), a.left()}) || visit(Pair{a.right(), a.right()})
+                   || visit(Pair{a.left(), a.right()});
+        if (!a.is_leaf() && (b.is_leaf() || a.size() >= b.size()))
+            return visit(Pair{a.left(), b}) || visit(Pair{a.right(), b});
+        return visit(Pair{a, b.left()}) || visit(Pair{a, b.right()});
+    }
+
+    /// Pairs of one triangle in either part.
+    template <class Test>
+    bool any_pair_of(const Pair& pair, Test& test) const {
+        const auto& [a, b] = pair;
+        if (!box_of(a).touches(box_of(b))) return false;
+        if (!a.is_leaf() || !b.is_leaf())
+            return any_half(pair, [&](const Pair& half) { return any_pair_of(half, test); });
+        for (std::uint32_t i = a.first; i < a.last; ++i) {
+            for (std::uint32_t k = a.node == b.node ? i + 1 : b.first; k < b.last; ++k) {
+                if (items_[i].box.touches(items_[k].box) && test(items_[i].triangle, items_[k].triangle)) return true;
             }
         }
         return false;
@@ -100,29 +114,11 @@ private:
 
     std::span<const Vec3> vertices_;
     std::span<const Triangle> triangles_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Box> boxes_; ///< of the triangles, in that order
-    std::vector<Node> nodes_;
+    std::vector<Item> items_;
+    std::vector<Box> boxes_; ///< of parts, by their numbers
 };
 
-/// Made when it is first asked for: most meshes need none to be mended.
-class LazyBvh {
-public:
-    LazyBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> chosen,
-            Executor& executor)
-        : vertices_(vertices), triangles_(triangles), chosen_(std::move(chosen)), executor_(executor) {}
-
-    const TriangleBvh& made() {
-        if (!bvh_) bvh_.emplace(vertices_, triangles_, std::move(chosen_), executor_);
-        return *bvh_;
-    }
-
-private:
-    std::span<const Vec3> vertices_;
-    std::span<const Triangle> triangles_;
-    std::vector<std::uint32_t> chosen_;
-    Executor& executor_;
-    std::optional<TriangleBvh> bvh_;
-};
+/// One that is made when it is first asked for: most meshes need none to be mended.
+using LazyBvh = std::function<const TriangleBvh&()>;
 
 } // namespace raycontact

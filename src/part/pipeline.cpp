@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/pipeline.h"
 
+#include "device/launch.h"
+
 namespace raycontact {
 
 namespace {
@@ -46,10 +48,30 @@ void Pipeline::give_back(const Update& last) {
     }
     if (has_near_) edges_.give_back();
     batch_.give_back(rays);
-    gather_.give_back();
+    found_.give_back();
     local_.give_back();
     near_.give_back();
     raycontact::give_back(asked_);
+}
+
+// Turns hits into contacts in the targets' frames: counts them and writes them.
+void Pipeline::gather(const Update& update) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    const Array<kernels::LocalContact>& contacts = found_.room(update.device);
+    batch_.outcomes.scan(update.device, batch_.count, batch_.totals, RayBatch::contact_sum, contacts.size());
+    launch<KernelId::write_contacts>(update.device, items_of(batch_.totals, RayBatch::contact_sum, batch_.count.most),
+                                     *batch_.pairs, arrays.headers, arrays.vertex_blocks, arrays.face_normals,
+                                     batch_.rays, batch_.hits, batch_.outcomes.firsts(), contacts);
+}
+
+// Waits for all launches, then reads the sums, the contacts and the near edges. False if the contacts had too little
+// room: there is enough now, and they must be written again.
+bool Pipeline::read(Device& device) {
+    const Piece pieces[] = {batch_.totals.piece(batch_.sums), found_.piece(),
+                            has_near_ ? edges_.found().piece() : Piece{}};
+    device.queue().read(pieces);
+    check_sums(batch_.sums);
+    return found_.take(device, batch_.sums[RayBatch::contact_sum].sums[0]);
 }
 
 void Pipeline::begin(const Update& update) {
@@ -64,7 +86,7 @@ void Pipeline::begin(const Update& update) {
         coherent_.cast(update, batch_);
         break;
     }
-    gather_.run(update, batch_);
+    gather(update);
     has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
     if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
     if (has_near_) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
@@ -77,16 +99,16 @@ const DevicePairs& Pipeline::pairs_of(const Update& update) const {
 
 void Pipeline::end(const Update& update) {
     for (;;) {
-        const bool all_written = gather_.read(update.device, batch_, has_near_ ? &edges_.found() : nullptr);
+        const bool all_written = read(update.device);
         const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
         const bool all_near = !has_near_ || edges_.had_room(update.device, batch_);
         if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
-        gather_.run(update, batch_);
+        gather(update);
         if (!all_near) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
-    local_.set(gather_.contacts(), batch_.directed, update.pairs.size());
+    local_.set(found_.values(), batch_.directed, update.pairs.size());
     if (update.settings.features == Features::edges && !has_near_) certified_.find_edges(update, local_, batch_);
     if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
     list_asked(update);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contacts/by_pair.h"
-#include "contacts/gather.h"
+#include "contacts/results.h"
 #include "edges/near_edges.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
@@ -40,6 +40,8 @@ public:
     void forget();
 
 private:
+    void gather(const Update& update);
+    bool read(Device& device);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
 
@@ -49,7 +51,7 @@ private:
     DevicePairs pairs_; ///< all, where the method places only some
     RayBatch batch_;
     EdgeRays edges_;
-    Gather gather_;
+    Results<kernels::LocalContact> found_; ///< in the order of their rays
     ByPair<kernels::LocalContact> local_;
     ByPair<NearEdge> near_;
     bool has_near_ = false; ///< edges_ were cast

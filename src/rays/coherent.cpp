@@ -5,10 +5,10 @@
 #include "give_back.h"
 #include "pairs/displacement.h"
 #include "pairs/rounding.h"
-#include "rays/look_threshold.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -39,6 +39,35 @@ T take_bytes(std::span<const std::byte>& bytes) {
 // The lane of the body's first vertex in the shape store of a device.
 kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
     return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertices.block_first;
+}
+
+// Cost of a full look that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
+// ratio.
+constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
+// Share of the smaller body's diagonal: a pair that moves farther than this in a step is not worth following.
+constexpr double farthest = 0.015;
+
+// How far a pair may move before its next full look, metres, if no setting says so. A longer distance saves full looks
+// but follows more rays, since it must predict farther ahead. The counted costs of both decide, by one factor at each
+// look: counts, not times, so that equal input gives equal results. speed: metres a step. last: the distance of the
+// last look, below 0 if there was none. look_cost: what that look cost, in rays; follows: rays followed since.
+double next_threshold(const PlacedBody& a, const PlacedBody& b, double speed, double last, double look_cost,
+                      double follows, bool predictive) {
+    const double least = 0.001 * smaller_size(a, b), most = farthest * smaller_size(a, b);
+    // Too fast to be followed: a full look in every step. (With `predictive` such pairs do not come here.)
+    if (speed > most) return 0.2 * least;
+    double threshold = 4 * speed;
+    if (last >= least) {
+        const double looks = cost_of_look[predictive ? 1 : 0] + look_cost;
+        threshold = last * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
+    }
+    return std::clamp(threshold, least, most);
+}
+
+// Whether the pair's vertices reach other triangles within a few steps: then prediction costs more than it saves.
+bool is_too_fast_to_predict(const PlacedBody& a, const PlacedBody& b, double speed) {
+    const double grain = std::min(a.shape->data().grain, b.shape->data().grain);
+    return speed > std::min(farthest * smaller_size(a, b), 0.125 * grain);
 }
 
 } // namespace

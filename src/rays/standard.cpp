@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/standard.h"
 
+#include "device/launch.h"
+
 #include <algorithm>
 
 namespace raycontact {
@@ -10,6 +12,19 @@ namespace {
 constexpr std::size_t least_room = 4096; // rays
 
 } // namespace
+
+void cast_in_full(const Update& update, RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    const auto run = [&]<KernelId kernel>() {
+        launch<kernel>(update.device, batch.count, batch.outcomes.stride(), *batch.pairs, arrays.headers,
+                       arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.face_normals, batch.rays,
+                       batch.hits, batch.outcomes.values());
+    };
+    if (update.settings.caster == Caster::basic)
+        run.operator()<KernelId::cast_rays_basic>();
+    else
+        run.operator()<KernelId::cast_rays_bvh>();
+}
 
 void StandardRays::begin(const Update& update, RayBatch& batch) {
     pairs_.place(update);

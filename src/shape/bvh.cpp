@@ -95,12 +95,8 @@ public:
     std::vector<Branch> branches;
     std::vector<kernels::TriangleBlock> blocks;
 
-    void build(const ShapeData& shape, std::span<Item> items, bool balanced) {
+    void build(const ShapeData& shape, std::span<Item> items) {
         shape_ = &shape;
-        if (balanced) {
-            split_balanced(items);
-            return;
-        }
         items_ = items;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             // Sorted by copies of their keys: to look at each item would take twice as long.
@@ -122,19 +118,6 @@ private:
             return a.centre != b.centre ? a.centre < b.centre : a.triangle < b.triangle;
         }
     };
-
-    std::size_t split_balanced(std::span<Item> items) {
-        const std::size_t id = add_branch(items);
-        if (items.size() <= block_size) {
-            branches[id].block = write_block(items);
-            return id;
-        }
-        const std::size_t middle = split_longest(items);
-        const std::size_t left = split_balanced(items.first(middle)), right = split_balanced(items.subspan(middle));
-        branches[id].left = left;
-        branches[id].right = right;
-        return id;
-    }
 
     // Of the items between two places of each order: the same ones in all three.
     std::size_t split_swept(std::size_t first, std::size_t last) {
@@ -256,11 +239,11 @@ private:
 
     // Large parts are split first; then each part grows its own subtree.
     void split(std::vector<Item>& items) {
-        constexpr std::size_t sweep_at_most = 1 << 14;
+        const std::size_t sweep_at_most = balanced_ ? block_size : 1 << 14;
         branches_.emplace_back();
         const auto items_of = [&](const Part& p) { return std::span(items).subspan(p.first, p.last - p.first); };
         auto parts = divide(
-            executor_, Part{0, 0, items.size(), {}}, [](const Part& p) { return p.last - p.first > sweep_at_most; },
+            executor_, Part{0, 0, items.size(), {}}, [&](const Part& p) { return p.last - p.first > sweep_at_most; },
             [&](Part& p) {
                 for (const Item& item : items_of(p)) p.box.add(item.box);
                 const std::size_t middle = p.first + split_longest(items_of(p));
@@ -277,7 +260,7 @@ private:
         std::ranges::sort(parts, {}, &Part::first);
         std::vector<Subtree> subtrees(parts.size());
         for_each_part(executor_, parts, [&](const Part& p) {
-            subtrees[static_cast<std::size_t>(&p - parts.data())].build(shape_, items_of(p), balanced_);
+            subtrees[static_cast<std::size_t>(&p - parts.data())].build(shape_, items_of(p));
         });
         for (std::size_t i = 0; i < parts.size(); ++i) graft(subtrees[i], parts[i].branch);
         for (std::size_t id = 0; id < shape_.triangle_blocks.size(); ++id)

@@ -2,6 +2,7 @@
 #include "mesh/triangle_distance.h"
 #include "mesh/vector.h"
 #include "shape/build.h"
+#include "shape/descent.h"
 
 #include <algorithm>
 #include <array>
@@ -68,7 +69,21 @@ private:
     /// Distance of the nearest triangle whose normal is farther from `normal` than the angle, at most `bound`.
     double nearest_unlike(const Vec3& from, const Vec3& normal, double least_cosine, double bound) const {
         double bound2 = bound * bound;
-        search(0, from, normal, least_cosine, bound2);
+        const auto farthest = [&] { return bound2; };
+        const auto away = [&](const kernels::Node& node, Lanes<double>& lanes) {
+            const auto& cones = cones_[static_cast<std::size_t>(&node - shape_.nodes.data())];
+            for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+                const bool alike = cones[lane].lies_within(normal, least_cosine);
+                lanes[lane] = alike ? bound2 : box_of(node, lane).squared_distance(from);
+            }
+        };
+        nearest_first<double>(shape_, farthest, away, [&](const kernels::TriangleBlock& block) {
+            for (const uint t : block.triangle) {
+                if (t == NONE || dot(normals_[t], normal) > least_cosine) continue;
+                const Vec3 a = shape_.corner(t, 0), b = shape_.corner(t, 1), c = shape_.corner(t, 2);
+                bound2 = std::min(bound2, squared_distance(from, a, b, c));
+            }
+        });
         return std::sqrt(bound2);
     }
 
@@ -98,37 +113,6 @@ private:
         for (const uint t : triangles) cone.cosine = std::min(cone.cosine, dot(cone.axis, normals_[t]));
         cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
         return cone;
-    }
-
-    static double squared_distance_of(const kernels::Node& node, int lane, const Vec3& p) {
-        const Vec3 off{std::max({node.bounds[0][lane] - p.x, p.x - node.bounds[3][lane], 0.0}),
-                       std::max({node.bounds[1][lane] - p.y, p.y - node.bounds[4][lane], 0.0}),
-                       std::max({node.bounds[2][lane] - p.z, p.z - node.bounds[5][lane], 0.0})};
-        return dot(off, off);
-    }
-
-    void search(uint n, const Vec3& from, const Vec3& normal, double least_cosine, double& bound2) const {
-        const kernels::Node& node = shape_.nodes[n];
-        std::array<std::pair<double, int>, NODE_LANES> open;
-        std::size_t count = 0;
-        for (int lane = 0; lane < NODE_LANES; ++lane) {
-            if (node.child[lane] == NONE) continue;
-            const double distance2 = squared_distance_of(node, lane, from);
-            if (distance2 < bound2 && !cones_[n][lane].lies_within(normal, least_cosine))
-                open[count++] = {distance2, lane};
-        }
-        std::sort(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count));
-        for (std::size_t i = 0; i < count && open[i].first < bound2; ++i) {
-            const uint child = node.child[open[i].second];
-            if ((child & LEAF) == 0) {
-                search(child, from, normal, least_cosine, bound2);
-                continue;
-            }
-            for (const uint t : shape_.triangle_blocks[child & ~LEAF].triangle)
-                if (t != NONE && !(dot(normals_[t], normal) > least_cosine))
-                    bound2 = std::min(
-                        bound2, squared_distance(from, shape_.corner(t, 0), shape_.corner(t, 1), shape_.corner(t, 2)));
-        }
     }
 
     const ShapeData& shape_;

@@ -76,7 +76,7 @@ public:
                              * Vec3{double(p.x) - low_[0], double(p.y) - low_[1], double(p.z) - low_[2]});
         std::vector<std::uint32_t> every(shape.mesh.triangles.size());
         std::iota(every.begin(), every.end(), 0u);
-        const TriangleBvh tree(points, shape.mesh.triangles, std::move(every), executor);
+        const TriangleBvh tree(points, shape.mesh.triangles, every, executor);
         distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
         for (int stride = 256; stride >= 1; stride /= 2) {
             // Less than for the stride before by over a diagonal, so that a measured distance bounds each search.

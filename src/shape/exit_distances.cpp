@@ -2,7 +2,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/vector.h"
 #include "shape/build.h"
-#include "shape/tree_walks.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@ namespace raycontact {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double from_here = -1e-300; // at the vertex, too
 
 // Whether the direction leads from the vertex into the mesh. The closest feature of the faces' infinite wedges decides
 // by its pseudo-normal (Baerentzen and Aanaes 2005): a face, an edge, or the vertex itself.
@@ -52,23 +53,6 @@ bool points_inside(const ShapeData& shape, std::span<const Vec3> normals, std::u
     return dot(direction, decides) < 0;
 }
 
-double leaves(const ShapeData& shape, const Vec3& origin, const Vec3& direction,
-              std::span<const std::uint32_t> around) {
-    static const trees::Walks& walks = *trees::usable_walks().front();
-    constexpr double from_here = -1e-300; // at the vertex, too
-    return walks
-        .closest_hit({shape.nodes.data(), shape.triangle_blocks.data()}, {{origin.x, origin.y, origin.z},
-                                                                          {direction.x, direction.y, direction.z},
-                                                                          from_here,
-                                                                          never,
-                                                                          shape.header.tolerance,
-                                                                          shape.reach,
-                                                                          true,
-                                                                          around.data(),
-                                                                          static_cast<std::uint32_t>(around.size())})
-        .distance;
-}
-
 } // namespace
 
 std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor) {
@@ -83,7 +67,8 @@ std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> n
             const Vec3 direction{-static_cast<float>(n.x), -static_cast<float>(n.y), -static_cast<float>(n.z)};
             const auto around = triangles.of(v);
             if (points_inside(shape, normals, v, direction, around))
-                distances[v] = static_cast<float>(leaves(shape, shape.point(v), direction, around));
+                distances[v] = static_cast<float>(
+                    closest_hit(shape, {shape.point(v), direction, from_here, never, true, around}).distance);
         }
     });
     return distances;

@@ -1,11 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/cuda/arguments.h"
+#include "device/cuda/handle.h"
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
 #include <vector>
 
 namespace raycontact::cuda {
+
+/// The parameters of a launch as the driver takes them: where each value lies.
+class Arguments {
+public:
+    /// The first two are the buffer of the count and its place there, or null and the count.
+    Arguments(const Count& count, std::span<const Argument> given) {
+        if (given.size() + 2 > most) throw std::logic_error("more arguments than a kernel may have");
+        add(address_of(count.buffer));
+        add(count.value);
+        for (const Argument& argument : given)
+            argument.is_scalar ? add(argument.scalar) : add(address_of(argument.buffer));
+    }
+    Arguments(const Arguments&) = delete;
+    Arguments& operator=(const Arguments&) = delete;
+
+    void** places() { return places_.data(); }
+
+private:
+    static constexpr std::size_t most = 32;
+
+    template <typename T>
+    void add(T value) {
+        std::memcpy(&values_[size_], &value, sizeof value);
+        places_[size_] = &values_[size_];
+        ++size_;
+    }
+
+    std::array<Address, most> values_{};
+    std::array<void*, most> places_{};
+    std::size_t size_ = 0;
+};
 
 /// Starts kernels in order, and adds up how long they ran. The context is current in every call.
 class Launcher {

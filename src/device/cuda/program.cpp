@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/cuda/program.h"
 
-#include "device/gpu/every_kernel.h"
+#include "device/gpu/launches.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/cuda/handle.h"
-#include "device/gpu/run_scan.h"
+#include "device/gpu/launches.h"
 
 #include <array>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/cuda/buffer.h"
-#include "device/device.h"
+#include "device/cuda/handle.h"
 
 #include <array>
 #include <functional>

@@ -22,6 +22,25 @@ cl_ulong time_of(cl_event event, cl_profiling_info what) {
     return time;
 }
 
+void set_argument(cl_kernel kernel, cl_uint at, cl_mem memory) {
+    check(clSetKernelArg(kernel, at, sizeof(cl_mem), &memory), "clSetKernelArg");
+}
+void set_argument(cl_kernel kernel, cl_uint at, kernels::uint number) {
+    check(clSetKernelArg(kernel, at, sizeof number, &number), "clSetKernelArg");
+}
+// The first two are the buffer of the count and its place there, or null and the count.
+void set_arguments(cl_kernel kernel, const Count& count, std::span<const Argument> arguments) {
+    set_argument(kernel, 0, memory_of(count.buffer));
+    set_argument(kernel, 1, count.value);
+    cl_uint at = 2;
+    for (const Argument& argument : arguments) {
+        if (argument.is_scalar)
+            set_argument(kernel, at++, argument.scalar);
+        else
+            set_argument(kernel, at++, memory_of(argument.buffer));
+    }
+}
+
 } // namespace
 
 Launcher::Launcher(cl_context context, cl_device_id device) : most_groups_(groups_for(device)) {
@@ -30,12 +49,15 @@ Launcher::Launcher(cl_context context, cl_device_id device) : most_groups_(group
     check(status, "clCreateCommandQueue");
 }
 
-void Launcher::over_items(cl_kernel kernel, const char* name, std::size_t most) {
+void Launcher::over_items(cl_kernel kernel, const char* name, std::size_t most, const Count& count,
+                          std::span<const Argument> arguments) {
     in_groups(kernel, name, items_in_group,
-              std::clamp<std::size_t>((most + items_in_group - 1) / items_in_group, 1, most_groups_));
+              std::clamp<std::size_t>((most + items_in_group - 1) / items_in_group, 1, most_groups_), count, arguments);
 }
 
-void Launcher::in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups) {
+void Launcher::in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups,
+                         const Count& count, std::span<const Argument> arguments) {
+    set_arguments(kernel, count, arguments);
     const std::size_t all = group_size * groups;
     cl_event event = nullptr;
     check(clEnqueueNDRangeKernel(queue_.get(), kernel, 1, nullptr, &all, &group_size, 0, nullptr, &event), name);

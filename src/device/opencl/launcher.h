@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/host_kernels.h"
 #include "device/opencl/handle.h"
 
 #include <vector>
@@ -15,8 +14,10 @@ public:
 
     cl_command_queue queue() const { return queue_.get(); }
     /// Starts as many threads as the device can use, and no more than there may be items.
-    void over_items(cl_kernel kernel, const char* name, std::size_t most);
-    void in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups);
+    void over_items(cl_kernel kernel, const char* name, std::size_t most, const Count& count,
+                    std::span<const Argument> arguments);
+    void in_groups(cl_kernel kernel, const char* name, std::size_t group_size, std::size_t groups, const Count& count,
+                   std::span<const Argument> arguments);
 
     /// Call it once everything that was started has finished.
     void add_up();

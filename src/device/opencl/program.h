@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/gpu/run_scan.h"
+#include "device/gpu/launches.h"
 #include "device/opencl/handle.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 // Every call of driver and compiler fails once, or fails and with it all that follow, as on a device that is lost.
 #include "device/cuda/fake_machine.h"
 
-#include "device/gpu/every_kernel.h"
+#include "device/gpu/launches.h"
 #include "device/launch.h"
 #include "device/scan.h"
 

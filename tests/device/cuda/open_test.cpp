@@ -4,7 +4,7 @@
 
 #include "device/cuda/device.h"
 #include "device/cuda/image.h"
-#include "device/gpu/run_scan.h"
+#include "device/gpu/launches.h"
 
 #include <raycontact/error.h>
 

@@ -2,7 +2,7 @@
 // Writes, reads, launches and scans: what reaches the driver, and when somebody waits.
 #include "device/cuda/fake_machine.h"
 
-#include "device/gpu/every_kernel.h"
+#include "device/gpu/launches.h"
 #include "device/launch.h"
 #include "device/scan.h"
 

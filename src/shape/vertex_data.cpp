@@ -1,8 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "mesh/vector.h"
 #include "shape/angle.h"
 #include "shape/build.h"
 
 namespace raycontact {
+
+namespace {
+
+// Each component in [-1, 1), by splitmix64.
+Vec3 shaken(std::uint64_t vertex) {
+    std::uint64_t state = vertex;
+    const auto next = [&state] {
+        std::uint64_t z = (state += 0x9e3779b97f4a7c15ull);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+        return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+    };
+    const double x = next(), y = next();
+    return {x, y, next()};
+}
+
+} // namespace
 
 std::vector<Vec3> face_normals(const ShapeData& shape) {
     std::vector<Vec3> normals;
@@ -33,6 +51,25 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
         n = size > 1e-9 ? (1 / size) * n : Vec3{};
     }
     return sums;
+}
+
+std::vector<float> measure_areas(const ShapeData& shape) {
+    std::vector<double> sums(shape.points.size());
+    for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
+        const Vec3 a = shape.corner(t, 0);
+        const double area = 0.5 * length(cross(shape.corner(t, 1) - a, shape.corner(t, 2) - a));
+        for (const std::uint32_t v : shape.mesh.triangles[t]) sums[v] += area / 3;
+    }
+    std::vector<float> areas;
+    areas.reserve(sums.size());
+    for (const double sum : sums) areas.push_back(static_cast<float>(sum));
+    return areas;
+}
+
+void find_hair_moves(ShapeData& shape) {
+    shape.hair_moves.resize(shape.points.size());
+    for (std::uint32_t v = 0; v < shape.points.size(); ++v)
+        shape.hair_moves[v] = 0.01 * shaken(v) - shape.vertex_normals[v];
 }
 
 } // namespace raycontact

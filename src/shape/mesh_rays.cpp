@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/mesh_rays.h"
+
+#include "shape/descent.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace raycontact {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+// A bit for each triangle that the ray's line passes within the rounding of floats: all that meet() can accept, and
+// some more. error: with S, the farthest corner's distance from the mesh's centre and the origin's added, a volume in
+// float is wrong by less than 2e-6 S^2; twice that serves. outside: 1, or 0 where those met from outside do not count.
+std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const std::array<float, 3>& origin,
+                                const std::array<float, 3>& direction, float error, std::uint32_t outside) {
+    const auto [ox, oy, oz] = origin;
+    const auto [dx, dy, dz] = direction;
+    std::array<std::uint32_t, TRIANGLE_LANES> on;
+    for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) {
+        const float px = block.corner[0][k] - ox, py = block.corner[1][k] - oy, pz = block.corner[2][k] - oz;
+        const float qx = block.corner[3][k] - ox, qy = block.corner[4][k] - oy, qz = block.corner[5][k] - oz;
+        const float rx = block.corner[6][k] - ox, ry = block.corner[7][k] - oy, rz = block.corner[8][k] - oz;
+        const float u = (qy * rz - qz * ry) * dx + (qz * rx - qx * rz) * dy + (qx * ry - qy * rx) * dz;
+        const float v = (ry * pz - rz * py) * dx + (rz * px - rx * pz) * dy + (rx * py - ry * px) * dz;
+        const float w = (py * qz - pz * qy) * dx + (pz * qx - px * qz) * dy + (px * qy - py * qx) * dz;
+        const std::uint32_t from_inside =
+            std::uint32_t{u >= -error} & std::uint32_t{v >= -error} & std::uint32_t{w >= -error};
+        const std::uint32_t from_outside =
+            std::uint32_t{u <= error} & std::uint32_t{v <= error} & std::uint32_t{w <= error};
+        on[k] = 0U - (from_inside | (from_outside & outside));
+    }
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) bits |= on[k] & (1U << k);
+    return bits;
+}
+
+// Where the ray meets a triangle; otherwise `never`. Edges belong to it.
+double meet(const kernels::TriangleBlock& block, std::size_t lane, const MeshRay& ray, bool& from_inside) {
+    const auto corner = [&](std::size_t k) {
+        return Vec3{block.corner[k][lane], block.corner[k + 1][lane], block.corner[k + 2][lane]} - ray.origin;
+    };
+    const Vec3 p = corner(0), q = corner(3), r = corner(6), &d = ray.direction;
+    const double u = dot(cross(q, r), d), v = dot(cross(r, p), d), w = dot(cross(p, q), d);
+    from_inside = u >= 0 && v >= 0 && w >= 0;
+    if (!from_inside && !(u <= 0 && v <= 0 && w <= 0)) return never;
+    const double volume = u + v + w;
+    if (volume == 0) return never;
+    const double at = (u * dot(p, d) + v * dot(q, d) + w * dot(r, d)) / volume;
+    return at > ray.least && at <= ray.most ? at : never;
+}
+
+} // namespace
+
+// Boxes and lines are asked in float: boxes are grown by far more than its rounding.
+MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
+    std::array<float, 3> origin, direction, inverse;
+    double apart = mesh.reach;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double d = axis(ray.direction, k);
+        origin[k] = static_cast<float>(axis(ray.origin, k));
+        direction[k] = static_cast<float>(d);
+        inverse[k] = static_cast<float>(1 / (std::fabs(d) > 1e-20 ? d : 1e-20));
+        apart += std::fabs(axis(ray.origin, k));
+    }
+    const float error = static_cast<float>(4e-6 * apart * apart);
+    const std::uint32_t outside = ray.from_inside ? 0 : 1;
+    MeshHit hit;
+    const auto farthest = [&] {
+        const double limit = std::min(ray.most, hit.distance) + double(mesh.header.tolerance);
+        return static_cast<float>(std::min(1.000001 * limit, 3e38));
+    };
+    const auto enter = [&](const kernels::Node& node, Lanes<float>& first) {
+        constexpr float infinite = std::numeric_limits<float>::infinity();
+        Lanes<float> last;
+        first.fill(0);
+        last.fill(infinite);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float at = origin[k], by = inverse[k];
+            for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+                const float t0 = (node.bounds[k][lane] - at) * by, t1 = (node.bounds[3 + k][lane] - at) * by;
+                first[lane] = std::max(first[lane], std::min(t0, t1));
+                last[lane] = std::min(last[lane], std::max(t0, t1));
+            }
+        }
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane)
+            first[lane] = first[lane] <= last[lane] ? first[lane] : infinite;
+    };
+    nearest_first<float>(mesh, farthest, enter, [&](const kernels::TriangleBlock& block) {
+        for (std::uint32_t on = triangles_on_line(block, origin, direction, error, outside); on != 0; on &= on - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(on));
+            const std::uint32_t face = block.triangle[lane];
+            bool from_inside;
+            const double at = meet(block, lane, ray, from_inside);
+            if (at == never || at > hit.distance || (at == hit.distance && face >= hit.face)) continue;
+            if ((ray.from_inside && !from_inside) || std::ranges::find(ray.skipped, face) != ray.skipped.end())
+                continue;
+            hit = {at, face, from_inside};
+        }
+    });
+    return hit;
+}
+
+Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = cross(b - a, c - a);
+    const double size2 = dot(n, n);
+    if (size2 > 0 && dot(n, cross(b - a, p - a)) >= 0 && dot(n, cross(c - b, p - b)) >= 0
+        && dot(n, cross(a - c, p - c)) >= 0)
+        return p - (dot(n, p - a) / size2) * n;
+    Vec3 best = a;
+    double least = never;
+    const std::array corners{a, b, c};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 from = corners[k], along = corners[(k + 1) % 3] - from;
+        const double length2 = dot(along, along);
+        const double part = length2 > 0 ? std::clamp(dot(p - from, along) / length2, 0.0, 1.0) : 0;
+        const Vec3 point = from + part * along, off = p - point;
+        if (dot(off, off) < least) {
+            least = dot(off, off);
+            best = point;
+        }
+    }
+    return best;
+}
+
+NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough) {
+    NearestFace found;
+    double least2 = never;
+    const auto farthest = [&] { return found.distance <= enough ? 0.0 : least2; };
+    const auto away = [&](const kernels::Node& node, Lanes<double>& lanes) {
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box_of(node, lane).squared_distance(point);
+    };
+    nearest_first<double>(mesh, farthest, away, [&](const kernels::TriangleBlock& block) {
+        for (const std::uint32_t face : block.triangle) {
+            if (face == NONE) continue;
+            const Vec3 nearest = nearest_point(point, mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2));
+            const Vec3 off = point - nearest;
+            const double distance2 = dot(off, off);
+            if (distance2 > least2 || (distance2 == least2 && face >= found.face)) continue;
+            least2 = distance2;
+            found = {std::sqrt(distance2), face};
+        }
+    });
+    return found;
+}
+
+} // namespace raycontact

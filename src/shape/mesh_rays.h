@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/vector.h"
+#include "shape/shape_data.h"
+
+#include <limits>
+#include <span>
+
+namespace raycontact {
+
+/// Where a ray meets a mesh, in double and in the centred frame of the mesh.
+struct MeshHit {
+    double distance = std::numeric_limits<double>::infinity();
+    std::uint32_t face = NONE;
+    bool from_inside = false;
+};
+
+struct MeshRay {
+    Vec3 origin, direction;                   ///< direction: unit
+    double least, most;                       ///< hits with least < distance <= most count
+    bool from_inside = false;                 ///< faces met from outside do not count
+    std::span<const std::uint32_t> skipped{}; ///< faces that do not count
+};
+
+/// The closest face that counts; of equal ones the lowest.
+MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray);
+
+/// How a point is nearest to a mesh.
+struct NearestFace {
+    double distance = std::numeric_limits<double>::infinity();
+    std::uint32_t face = NONE;
+};
+
+/// The nearest face; or, once one is found within `enough`, that one.
+NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough);
+
+/// The point of a triangle that is nearest to p.
+Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+} // namespace raycontact
