@@ -35,8 +35,11 @@ std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const std::
             std::uint32_t{u <= error} & std::uint32_t{v <= error} & std::uint32_t{w <= error};
         on[k] = 0U - (from_inside | (from_outside & outside));
     }
+    // Their bits as a table, which compilers load into lanes.
+    constexpr std::array<std::uint32_t, TRIANGLE_LANES> bit{0x1,   0x2,   0x4,   0x8,   0x10,   0x20,   0x40,   0x80,
+                                                            0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000};
     std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) bits |= on[k] & (1U << k);
+    for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) bits |= on[k] & bit[k];
     return bits;
 }
 
