@@ -2,7 +2,10 @@
 #pragma once
 
 #include "device/host_kernels.h"
+#include "pairs/directed_pairs.h"
+#include "shape/shape_data.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,6 +16,15 @@ using kernels::NearEdge;
 
 /// An edge is short up to this, in diagonals of the smaller body (docs/edges.md).
 inline constexpr double short_edge = 0.2;
+
+/// Metres: shorter edges of a pair in contact need not be found. A little less than what the rule leaves out.
+inline double short_length(const PlacedBody& a, const PlacedBody& b) {
+    return 0.9999 * short_edge * smaller_size(a, b);
+}
+/// Whether all edges of both bodies are.
+inline bool has_short_edges_alone(const PlacedBody& a, const PlacedBody& b) {
+    return std::max(a.shape->data().longest_edge, b.shape->data().longest_edge) < short_length(a, b);
+}
 
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.
 using NearEdges = std::array<std::span<const NearEdge>, 2>;

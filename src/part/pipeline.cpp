@@ -120,8 +120,10 @@ void Pipeline::list_asked(const Update& update) {
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
         if (!has_near_ && certified_.is_apart(i) && !in_contact) continue;
-        const auto [a, b] = update.pairs[i];
-        if (!update.bodies[a].shape->has_inside() && !update.bodies[b].shape->has_inside()) continue;
+        const auto [first, second] = update.pairs[i];
+        const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
+        if (!a.shape->has_inside() && !b.shape->has_inside()) continue;
+        if (in_contact && has_short_edges_alone(a, b)) continue;
         AskedPair asked{i, {}};
         if (has_near_)
             asked.near = {near_.of(2 * i), near_.of(2 * i + 1)};

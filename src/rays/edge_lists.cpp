@@ -15,10 +15,6 @@ namespace {
 // For all pairs of a first step the search would take as much memory as all that is kept.
 constexpr std::size_t pairs_at_once = 1 << 13;
 
-double longest_edge(const PlacedBody& body) {
-    return body.shape->data().longest_edge;
-}
-
 } // namespace
 
 void EdgeLists::clear() {
@@ -34,16 +30,15 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
             const bool in_contact = contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
             WatchedPair& state = table.state(due.pair);
             if (!due.due && (in_contact || state.edges.all)) continue;
-            const auto [a, b] = update.pairs[due.pair];
-            const double least =
-                in_contact ? 0.9999 * short_edge * smaller_size(update.bodies[a], update.bodies[b]) : 0;
+            const auto [first, second] = update.pairs[due.pair];
+            const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
             Slack& slack = table.hot(due.pair);
-            const bool none = std::max(longest_edge(update.bodies[a]), longest_edge(update.bodies[b])) < least;
             slack.apart = false;
             slack.edges = never;
             release(state.edges);
             state.edges.all = !in_contact;
-            if (!none) due_.push_back({due, static_cast<float>(least)});
+            if (in_contact && has_short_edges_alone(a, b)) continue;
+            due_.push_back({due, in_contact ? static_cast<float>(short_length(a, b)) : 0});
         }
     if (due_.empty()) {
         pairs_.resize(update.device, 0);
