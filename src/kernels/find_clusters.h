@@ -115,8 +115,7 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
 
 // Edges are asked where at least one of the bodies has an inside.
 DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
-    return pair->source != NONE
-           && (edges == 0u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
+    return pair->source != NONE && (edges == 0u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
 }
 
 // Without horizons the horizon is negative.

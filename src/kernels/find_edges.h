@@ -4,7 +4,7 @@
 
 #define DIAGONAL_TOLERANCES 1048576.0f // ShapeHeader.tolerance is 2^-20 of the box diagonal
 
-#define MOST_CLEAR 1.0e9f                // PairBlock.clear
+#define MOST_CLEAR 1.0e9f // PairBlock.clear
 
 DEVICE float least_of_vertices(const float* values) {
     if (VERTICES_AT_ONCE == 16) return least_of_sixteen(values);
@@ -40,8 +40,8 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) m
 }
 
 // The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
-// be far from the surface: it does not enter the balls around their halves. clears: 1: it tells, too, how far the others
-// stay away.
+// be far from the surface: it does not enter the balls around their halves. clears: 1: it tells, too, how far the
+// others stay away.
 KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
                         READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(uint) clearances,
                         WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
@@ -97,7 +97,8 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
             FOR_LANES(k, VERTICES_AT_ONCE) {
                 const float gap = bounds_gap(b, found.x[k], found.y[k], found.z[k]) - 1.0005f * block->exit[first + k];
                 const float free = gap > beyond[k] ? gap : beyond[k];
-                const uint asked = (uint)(block->vertex[first + k] != NONE) & (uint)(block->exit[first + k] >= half_least);
+                const uint asked =
+                    (uint)(block->vertex[first + k] != NONE) & (uint)(block->exit[first + k] >= half_least);
                 beyond[k] = asked != 0u ? free : UNBOUNDED;
             }
             const float steps = least_of_vertices(beyond) / target->tolerance;

@@ -121,10 +121,12 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double size = smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         WatchedPair& state = table.state(i);
         Slack& slack = table.hot(i);
-        if (!update.settings.displacement_threshold && (speed > fastest * size || state.as_standard > 0)) {
+        if (slack.metres > 0 && !slack.casts) {
+            // Its edges alone are due.
+        } else if (!update.settings.displacement_threshold && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
-        } else if (!(slack.metres > 0) || slack.casts) {
+        } else {
             wake_pair(update, table, i, speed, slice);
         }
         if (!edges) return;

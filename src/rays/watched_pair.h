@@ -18,9 +18,9 @@ struct WatchedRays {
 /// What the certified method keeps for one direction of a pair: the vertex blocks that it watches, and a clock that
 /// counts metres moved since the pair's reference pose.
 struct Watched {
-    double clock = 0;        ///< at the reference pose
-    double wake = 0;         ///< no block need be looked at before the clock reaches this
-    double expiry = -1;      ///< a new list of blocks is due when the clock reaches this; below 0: at once
+    double clock = 0;   ///< at the reference pose
+    double wake = 0;    ///< no block need be looked at before the clock reaches this
+    double expiry = -1; ///< a new list of blocks is due when the clock reaches this; below 0: at once
     std::uint32_t first = 0, count = 0, capacity = 0; ///< the list
     WatchedRays rays;
 };
@@ -66,9 +66,9 @@ inline constexpr double never = 1e300; ///< metres
 
 /// A pair whose near edges may be sought in this step.
 struct DueEdges {
-    std::uint32_t pair; ///< its place
+    std::uint32_t pair;  ///< its place
     float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
-    bool due;           ///< else they are sought only if short ones are missing
+    bool due;            ///< else they are sought only if short ones are missing
 };
 
 } // namespace raycontact
