@@ -395,40 +395,58 @@ Converted ShapeCache::get_again(const btCollisionShape& shape) {
     return now.converted;
 }
 
+Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch) {
+    if (stretch == no_stretch) return converted;
+    const std::pair key(converted.shape.get(), stretch);
+    auto found = stretched_.find(key);
+    if (found == stretched_.end()) {
+        sweep();
+        const auto shape = stretch_shape(*converted.shape, stretch);
+        const Converted made{shape, std::make_shared<const MeshTree>(*shape), converted.names};
+        found = stretched_.emplace(key, Stretched{converted.shape, made}).first;
+    }
+    found->second.used = now_;
+    return found->second.converted;
+}
+
 void ShapeCache::sweep() {
     ++now_;
     if (now_ % 64 != 0) return;
     std::erase_if(known_, [&](const auto& known) { return known.second.used + keep_dispatches < now_; });
-    for (auto i = entries_.begin(); i != entries_.end();) {
-        Entry& entry = i->second;
-        if (entry.converted.shape.use_count() > 1) entry.used = now_;
-        i = entry.used + keep_dispatches < now_ ? entries_.erase(i) : std::next(i);
-    }
+    const auto drop = [&](auto& made) { // what a body has is in use
+        for (auto i = made.begin(); i != made.end();) {
+            auto& entry = i->second;
+            if (entry.converted.shape.use_count() > 1) entry.used = now_;
+            i = entry.used + keep_dispatches < now_ ? made.erase(i) : std::next(i);
+        }
+    };
+    drop(stretched_);
+    drop(entries_);
 }
 
-std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& scaling) {
-    for (int k = 0; k < 3; ++k) {
-        if (!std::isfinite(scaling[k]) || scaling[k] == btScalar(0))
-            throw InputError(shape.name() + ": local scaling must be finite and not zero in every axis");
-    }
-    PreparedMesh mesh;
-    mesh.name = shape.name();
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s) {
+    for (const double x : s)
+        if (!std::isfinite(x)) throw InputError(shape.name() + ": its scaling must be finite");
+    const bool mirrored =
+        s[0] * (s[4] * s[8] - s[5] * s[7]) - s[1] * (s[3] * s[8] - s[5] * s[6]) + s[2] * (s[3] * s[7] - s[4] * s[6])
+        < 0;
+    Mesh plain;
+    plain.name = shape.name();
+    plain.vertices.reserve(shape.vertices().size());
     for (const Vec3& v : shape.vertices())
-        mesh.vertices.push_back({v.x * static_cast<double>(scaling.x()), v.y * static_cast<double>(scaling.y()),
-                                 v.z * static_cast<double>(scaling.z())});
-    for (auto t : shape.triangles()) {
-        if (mirrors(scaling)) std::swap(t[1], t[2]);
-        mesh.triangles.push_back(t);
-    }
+        plain.vertices.push_back({s[0] * v.x + s[1] * v.y + s[2] * v.z, s[3] * v.x + s[4] * v.y + s[5] * v.z,
+                                  s[6] * v.x + s[7] * v.y + s[8] * v.z});
+    plain.triangles.assign(shape.triangles().begin(), shape.triangles().end());
+    if (mirrored)
+        for (auto& t : plain.triangles) std::swap(t[1], t[2]);
+    // Lengths, areas and volumes have changed: check again, but keep the file's indices.
+    PreparedMesh mesh;
+    mesh.report = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology).report;
+    mesh.name = std::move(plain.name);
+    mesh.vertices = std::move(plain.vertices);
+    mesh.triangles = std::move(plain.triangles);
     mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
     mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
-    // Lengths, areas and volumes have changed: check again, but keep the file's indices.
-    Mesh plain;
-    plain.name = mesh.name;
-    plain.vertices = mesh.vertices;
-    plain.triangles = mesh.triangles;
-    const PreparedMesh checked = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology);
-    mesh.report = checked.report;
     return Shape::make(mesh);
 }
 

@@ -56,7 +56,11 @@ void MeshShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
 
 void MeshShape::setLocalScaling(const btVector3& scaling) {
     if (scaling == scaling_) return;
-    scaled_ = scaling == btVector3(1, 1, 1) ? original_ : scale_shape(*original_, scaling);
+    for (int k = 0; k < 3; ++k)
+        if (scaling[k] == btScalar(0))
+            throw InputError(original_->name() + ": local scaling must not be zero in any axis");
+    const Stretch stretch{double(scaling.x()), 0, 0, 0, double(scaling.y()), 0, 0, 0, double(scaling.z())};
+    scaled_ = stretch == no_stretch ? original_ : stretch_shape(*original_, stretch);
     tree_ = std::make_shared<const MeshTree>(*scaled_);
     scaling_ = scaling;
 }
