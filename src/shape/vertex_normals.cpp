@@ -6,6 +6,7 @@ namespace raycontact {
 
 std::vector<Vec3> face_normals(const ShapeData& shape) {
     std::vector<Vec3> normals;
+    normals.reserve(shape.mesh.triangles.size());
     for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
         const Vec3 n = cross(shape.corner(t, 1) - shape.corner(t, 0), shape.corner(t, 2) - shape.corner(t, 0));
         const double size = length(n);
