@@ -85,15 +85,16 @@ public:
     /// The same, stretched; one for all that are stretched alike. Throws InputError where no mesh is left.
     Converted stretched(const Converted& converted, const Stretch& stretch);
     void forget(const btCollisionShape& shape) { known_.erase(&shape); }
+    /// How many shapes it has made so far.
+    std::uint64_t made() const { return made_; }
     /// Call it once a dispatch: drops shapes that no body has used for a while. Making shapes counts as time, too, so
     /// that memory is bounded where nothing is ever dispatched.
     void sweep();
 
 private:
     struct Entry {
-        // Compared in full: equal hashes do not mean equal contents.
-        Mesh mesh;                     ///< of a mesh or field
-        std::vector<btScalar> numbers; ///< of a convex shape
+        std::uint64_t second_hash = 0; ///< of a mesh or field
+        std::vector<btScalar> numbers; ///< of a convex shape, compared in full
         Converted converted;
         std::uint64_t used = 0;
     };
@@ -110,13 +111,13 @@ private:
         std::uint64_t used = 0;
     };
     Converted get_convex(const btCollisionShape& shape);
-    Converted convert(const Mesh& mesh, Repair repair) const;
+    Converted convert(const Mesh& mesh, Repair repair);
 
     std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
     std::unordered_map<const btCollisionShape*, Known> known_;
     std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_;
-    std::uint64_t now_ = 0;
+    std::uint64_t now_ = 0, made_ = 0;
 };
 
 /// The same shape, stretched in its own frame, with the file's indices; windings turn when it is mirrored. Throws

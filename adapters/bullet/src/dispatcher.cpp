@@ -14,7 +14,9 @@
 #include <world_recorder.h>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
@@ -67,6 +69,20 @@ const ManifoldSettings& checked(const ManifoldSettings& settings) {
         throw InputError("ManifoldSettings::keep_steps is " + std::to_string(settings.keep_steps) + "; give 0 to "
                          + std::to_string(most_keep_steps));
     return settings;
+}
+
+btVector3 velocity_at(const btCollisionObject& object, const btVector3& point) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body ? body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition()) : btVector3(0, 0, 0);
+}
+
+// Of a contact to come. Bullet takes what closes the gap off the speed that restitution gives back: such bodies turn
+// round before the gap is closed.
+bool bounces(const PairState& state, const Candidate& c) {
+    const btScalar restitution = btManifoldResult::calculateCombinedRestitution(state.object0, state.object1);
+    if (!(restitution > 0)) return false;
+    const btVector3 speed = velocity_at(*state.object0, c.on0) - velocity_at(*state.object1, c.on1);
+    return -speed.dot(c.normal) * restitution > btScalar(0.2); // Bullet's own bodies do not bounce below that speed
 }
 
 void name_places(PairState& state) {
@@ -139,6 +155,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.work.clear();
     s.batch.clear();
     s.objects.mended() = {};
+    const std::uint64_t made_before = s.objects.shapes().made();
     s.objects.shapes().sweep();
     s.objects.look_ahead(s.scene.settings().continuous ? info.m_timeStep : 0);
 
@@ -174,6 +191,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         PairState& pair = *s.work[i];
         pair.patches.update(pair.candidates, pair.record0.pose, pair.record1.pose, s.manifolds, s.stats);
     }
+    s.stats.shapes_made = s.objects.shapes().made() - made_before;
     s.stats.made_rigid = s.objects.mended().made_rigid;
     s.stats.scaled = s.objects.mended().scaled;
     s.stats.left_out = s.objects.mended().left_out;
@@ -440,6 +458,7 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);
+        if (c.depth <= 0 && bounces(*entry->state, candidate)) candidate.distance = 0;
         candidate.reach = entry->reach;
         entry->state->candidates.push_back(candidate);
     }
