@@ -53,7 +53,8 @@ TEST(MeshShape, TheBoxOfABodyThatStandsStillIsMadeOnce) {
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     for (int i = 0; i < 1000; ++i) {
         bodies.push_back(std::make_unique<btRigidBody>(btScalar(1), nullptr, &shape, btVector3(1, 1, 1)));
-        bodies.back()->setWorldTransform(at(2 * (i % 10), 2 * (i / 10 % 10), 2 * (i / 100)));
+        const int row = i / 10 % 10, layer = i / 100;
+        bodies.back()->setWorldTransform(at(2 * (i % 10), 2 * row, 2 * layer));
         bodies.back()->setInterpolationWorldTransform(bodies.back()->getWorldTransform());
         w.world.addRigidBody(bodies.back().get());
         bodies.back()->forceActivationState(ISLAND_SLEEPING);

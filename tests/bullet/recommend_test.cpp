@@ -59,7 +59,8 @@ Pile pile(const Change& change) {
     set_up(w, change);
     w.add_mesh(Shape::make(box_mesh(20, 20, 1)), 0, at(0, 0, -0.5));
     for (int i = 0; i < 48; ++i) {
-        btTransform pose = at(0.5 * (i % 2) - 0.25, 0.5 * (i / 2 % 2) - 0.25, 0.6 + 0.7 * (i / 4));
+        const int layer = i / 4, row = i / 2 % 2;
+        btTransform pose = at(0.5 * (i % 2) - 0.25, 0.5 * row - 0.25, 0.6 + 0.7 * layer);
         pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
         w.add_mesh(bunny(), 5, pose);
     }
