@@ -4,6 +4,8 @@
 // copies, the same with their files read, and what is made beside later steps.
 // Milliseconds, medians, by turns.
 // Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
+// raycontact_bench_new_shape --floor N [--ahead]: a static mesh of about N triangles, that has been in a running world
+// for a while, meets its first body: how long that step takes, with --ahead after add_body(), and the memory.
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
 #include <raycontact/collide.h>
@@ -157,14 +159,70 @@ void measure(std::uint32_t triangles, int rounds) {
     std::fflush(stdout);
 }
 
+/// Bytes that the system has given this process, now and at most; 0 where it does not tell.
+double resident(const char* which) {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;)
+        if (double kilobytes = 0; word == which && status >> kilobytes) return 1024 * kilobytes;
+    return 0;
+}
+void forget_peak() {
+    std::ofstream("/proc/self/clear_refs") << 5;
+}
+
+/// A small ball of triangles falls on the middle of a static mesh of Bullet's.
+void measure_floor(std::uint32_t triangles, bool ahead) {
+    const auto sphere = rc::scenes::scene_model("sphere", triangles).mesh;
+    BulletMesh mesh(sphere);
+    const auto size = double(sphere.triangles.size());
+    double before = resident("VmRSS:");
+    btBvhTriangleMeshShape floor_shape(&mesh.array, true);
+    std::printf("%.0f triangles; of Bullet's own tree: %.0f bytes a triangle kept\n", size,
+                (resident("VmRSS:") - before) / size);
+    double high = 0;
+    for (const rc::Vec3& v : sphere.vertices) high = std::max(high, v.z);
+
+    btDefaultCollisionConfiguration configuration;
+    rc::bullet::CollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    btRigidBody floor(0, nullptr, &floor_shape);
+    rc::bullet::MeshShape small(rc::Shape::make(rc::scenes::scene_model("sphere", 200).mesh));
+    btRigidBody body(1, nullptr, &small, btVector3(1, 1, 1));
+    before = resident("VmRSS:");
+    forget_peak();
+    world.addRigidBody(&floor);
+    if (ahead) std::printf("add_body()  %8.1f ms\n", milliseconds_of([&] { dispatcher.add_body(floor); }));
+    for (int i = 0; i < 60; ++i) world.stepSimulation(btScalar(1.0 / 60), 0);
+    body.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(high))));
+    world.addRigidBody(&body);
+    for (int i = 0; i < 3; ++i) {
+        const double time = milliseconds_of([&] { world.stepSimulation(btScalar(1.0 / 60), 0); });
+        std::printf("step %d      %8.1f ms, %llu shapes made, %llu pairs\n", i, time,
+                    static_cast<unsigned long long>(dispatcher.stats().shapes_made),
+                    static_cast<unsigned long long>(dispatcher.stats().mesh_pairs));
+        if (i == 0)
+            std::printf("            %.0f bytes a triangle at most, %.0f kept\n", (resident("VmHWM:") - before) / size,
+                        (resident("VmRSS:") - before) / size);
+    }
+    if (ahead) dispatcher.remove_body(floor);
+    world.removeRigidBody(&body);
+    world.removeRigidBody(&floor);
+}
+
 } // namespace
 
 int main(int argc, char** argv) try {
     int rounds = 5;
     if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0)
         rounds = std::max(1, std::atoi(argv[2]));
-    else if (argc > 1)
-        throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N]");
+    else if (argc >= 3 && std::strcmp(argv[1], "--floor") == 0) {
+        measure_floor(static_cast<std::uint32_t>(std::atoi(argv[2])),
+                      argc == 4 && std::strcmp(argv[3], "--ahead") == 0);
+        return 0;
+    } else if (argc > 1)
+        throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N | --floor N [--ahead]]");
     std::printf("triangles  Bullet BVH  Shape::make       a world waits    a new one waits  two, a query  files read  "
                 "prepare()  "
                 "(ms)\n");

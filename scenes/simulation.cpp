@@ -5,6 +5,7 @@
 
 #include <raycontact/bullet/mass.h>
 #include <raycontact/bullet/mesh_shape.h>
+#include <raycontact/bullet/recommend.h>
 #include <raycontact/error.h>
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
@@ -85,7 +86,6 @@ struct Simulation::State {
     }
 
     void configure();
-    void set_solver(const Response& response);
     std::unique_ptr<btRigidBody> make_body(btCollisionShape& shape, const btTransform& pose, const Inertia& inertia);
     const Inertia& inertia_of(const BodyStart& start);
     void add_body(const BodyStart& start);
@@ -112,7 +112,8 @@ void Simulation::State::configure() {
     world.setGravity(btVector3(btScalar(g.x), btScalar(g.y), btScalar(g.z)));
     // No sweep of the boxes along the motion: it would only add pairs that rays cannot find contacts in.
     world.getDispatchInfo().m_useContinuous = false;
-    if (!response.bullet_defaults) set_solver(response);
+    if (!response.bullet_defaults)
+        bullet::recommend(world, {.slop = response.slop, .erp = response.erp, .iterations = response.iterations});
     // Nobody sleeps, so islands save nothing.
     world.getSimulationIslandManager()->setSplitIslands(false);
 
@@ -126,18 +127,6 @@ void Simulation::State::configure() {
         plane = make_body(*plane_shape, btTransform::getIdentity(), {});
         world.addRigidBody(plane.get());
     }
-}
-
-void Simulation::State::set_solver(const Response& response) {
-    btContactSolverInfo& info = world.getSolverInfo();
-    info.m_numIterations = response.iterations;
-    // Directions fixed by the normal, so that a friction impulse carried over means the same in the next step.
-    info.m_solverMode = SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS
-                        | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
-    info.m_linearSlop = btScalar(response.slop);
-    info.m_erp2 = btScalar(response.erp);
-    info.m_splitImpulse = 1;
-    info.m_splitImpulsePenetrationThreshold = 0;
 }
 
 std::unique_ptr<btRigidBody> Simulation::State::make_body(btCollisionShape& shape, const btTransform& pose,

@@ -31,8 +31,8 @@ double shear_of(const std::array<double, 9>& r) {
 }
 
 // Newton's iteration for the polar decomposition: the mean of a matrix and its inverse transpose.
-std::array<double, 9> nearest_rotation(std::array<double, 9> r) {
-    for (int round = 0; round < 8 && shear_of(r) > 1e-15; ++round) {
+std::array<double, 9> nearest_rotation(std::array<double, 9> r, int rounds) {
+    for (int round = 0; round < rounds && shear_of(r) > 1e-15; ++round) {
         const double d = determinant(r);
         const std::array<double, 9> cofactors{
             r[4] * r[8] - r[5] * r[7], r[5] * r[6] - r[3] * r[8], r[3] * r[7] - r[4] * r[6],
@@ -43,13 +43,18 @@ std::array<double, 9> nearest_rotation(std::array<double, 9> r) {
     return r;
 }
 
-} // namespace
-
-const char* pose_fault(const Pose& pose) {
+const char* infinite_part(const Pose& pose) {
     for (const double x : pose.rotation)
         if (!std::isfinite(x)) return "the rotation has an entry that is not a finite number";
     if (!std::isfinite(pose.translation.x) || !std::isfinite(pose.translation.y) || !std::isfinite(pose.translation.z))
         return "the translation has an entry that is not a finite number";
+    return nullptr;
+}
+
+} // namespace
+
+const char* pose_fault(const Pose& pose) {
+    if (const char* fault = infinite_part(pose)) return fault;
     if (determinant(pose.rotation) <= 0)
         return "the pose is mirrored or flat (determinant not above 0); give a rotation and a translation";
     if (shear_of(pose.rotation) > rigid_to)
@@ -71,8 +76,19 @@ Pose pose_from_matrix(std::span<const double, 16> m) {
         || std::fabs(m[15] - 1) > rigid_to)
         throw InputError("pose: the last row must be 0 0 0 1 (matrices are row-major)");
     check_pose(pose, "pose");
-    pose.rotation = nearest_rotation(pose.rotation);
+    pose.rotation = nearest_rotation(pose.rotation, 8);
     return pose;
+}
+
+Pose nearest_rigid_pose(const Pose& pose) {
+    if (const char* fault = infinite_part(pose)) throw InputError(std::string("pose: ") + fault);
+    double largest = 0;
+    for (const double x : pose.rotation) largest = std::max(largest, std::fabs(x));
+    Pose rigid = pose;
+    for (double& x : rigid.rotation) x /= largest; // Newton's iteration halves what is too large, round by round
+    if (!(determinant(rigid.rotation) > 1e-9)) throw InputError("pose: it is mirrored or flat; give a rotation");
+    rigid.rotation = nearest_rotation(rigid.rotation, 64);
+    return rigid;
 }
 
 Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y, double z) {

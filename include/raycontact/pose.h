@@ -24,6 +24,13 @@ struct Pose {
 /// the library may rely on rotation^T being its inverse.
 Pose pose_from_matrix(std::span<const double, 16> row_major);
 
+/// The rigid pose nearest to one that is not: its rotation drifted, as a product of many float matrices does, or is
+/// scaled or sheared. Body to world; the rotation is that of the polar decomposition, the translation (metres) stays.
+/// The rest, rotation^T * given.rotation, is dropped: a symmetric stretch in the body frame, the identity where the
+/// pose was rigid. A body that shall be stretched needs a mesh that is. Throws InputError when an entry is not finite,
+/// and when the rotation is mirrored or flat (determinant at most 1e-9 of its largest entry's cube).
+Pose nearest_rigid_pose(const Pose& pose);
+
 /// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero or not
 /// finite.
 Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y, double z);

@@ -67,7 +67,8 @@ public:
     Scene& operator=(const Scene&) = delete;
 
     /// Gives the lowest free slot; no id is ever given twice. After remove() the slot of a body that was in a step is
-    /// free after the next step, any other slot at once. Throws InputError for a pose that is not finite and rigid.
+    /// free after the next step, any other slot at once. Throws InputError for a pose that is not finite and rigid to
+    /// 1e-4, as every function here that takes one; nearest_rigid_pose() mends those that drifted.
     BodyId add(std::shared_ptr<const Shape> shape, const Pose& pose = {});
     /// From now on every function that takes this id throws InputError naming it, as for any body that is not in the
     /// scene. No other body gets its slot before the next step is done.

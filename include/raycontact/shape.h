@@ -21,7 +21,7 @@ class Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. threads 0: one per core. Deterministic: equal input gives equal bits, whatever the
     /// threads. Throws InputError for a mesh without area.
-    static std::shared_ptr<const Shape> make(const PreparedMesh& mesh, std::uint32_t threads = 0);
+    static std::shared_ptr<const Shape> make(PreparedMesh mesh, std::uint32_t threads = 0);
     /// From a mesh, prepared with all repairs allowed; report() says which were made.
     static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace raycontact {
 
@@ -225,7 +226,9 @@ public:
         for (const bool four_levels : {balanced_, true}) {
             weigh(four_levels);
             shape_.nodes.clear();
-            if (collapse(0, 0, 1)) return true;
+            if (!collapse(0, 0, 1)) continue;
+            shape_.nodes.shrink_to_fit();
+            return true;
         }
         return false;
     }
@@ -262,7 +265,10 @@ private:
         for_each_part(executor_, parts, [&](const Part& p) {
             subtrees[static_cast<std::size_t>(&p - parts.data())].build(shape_, items_of(p));
         });
-        for (std::size_t i = 0; i < parts.size(); ++i) graft(subtrees[i], parts[i].branch);
+        std::size_t blocks = 0;
+        for (const Subtree& subtree : subtrees) blocks += subtree.blocks.size();
+        shape_.triangle_blocks.reserve(blocks);
+        for (std::size_t i = 0; i < parts.size(); ++i) graft(std::exchange(subtrees[i], {}), parts[i].branch);
         for (std::size_t id = 0; id < shape_.triangle_blocks.size(); ++id)
             for (std::size_t lane = 0; lane < block_size; ++lane)
                 if (const uint t = shape_.triangle_blocks[id].triangle[lane]; t != NONE)

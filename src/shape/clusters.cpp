@@ -90,6 +90,7 @@ Point3f rounded(const Vec3& v) {
 
 std::vector<Source> vertices_of(const ShapeData& shape) {
     std::vector<Source> sources;
+    sources.reserve(shape.points.size());
     for (uint v = 0; v < shape.points.size(); ++v)
         if (const float exit = shape.exit_distances[v]; exit > 0) {
             const Point3f n = rounded(shape.vertex_normals[v]);
@@ -99,10 +100,18 @@ std::vector<Source> vertices_of(const ShapeData& shape) {
 }
 
 std::vector<Source> edges_of(const ShapeData& shape) {
+    const auto is_named = [&](uint t, uint c) { // by this triangle, not by the one across
+        const uint across = shape.neighbours[t][c];
+        return across == NONE || across >= t;
+    };
+    std::size_t count = 0;
+    for (uint t = 0; t < shape.mesh.triangles.size(); ++t)
+        for (uint c = 0; c < 3; ++c) count += is_named(t, c) ? 1 : 0;
     std::vector<Source> sources;
+    sources.reserve(count);
     for (uint t = 0; t < shape.mesh.triangles.size(); ++t)
         for (uint c = 0; c < 3; ++c) {
-            if (const uint across = shape.neighbours[t][c]; across != NONE && across < t) continue;
+            if (!is_named(t, c)) continue;
             const Vec3 from = shape.corner(t, c), to = shape.corner(t, (c + 1) % 3), half = 0.5 * (to - from);
             const Point3f h = rounded(half);
             sources.push_back({rounded(0.5 * (from + to)),
@@ -114,6 +123,10 @@ std::vector<Source> edges_of(const ShapeData& shape) {
     return sources;
 }
 
+std::size_t blocks_of(std::size_t sources) {
+    return (sources + lanes - 1) / lanes;
+}
+
 void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executor& executor) {
     std::vector<uint> order(sources.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -122,6 +135,7 @@ void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executo
     constexpr Source nothing{{nan, nan, nan}, {}, {}, 0, NONE};
     tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
+    below.reserve(blocks_of(order.size()));
     for (std::size_t first = 0; first < order.size(); first += lanes) {
         kernels::VertexBlock& block = shape.vertex_blocks.emplace_back();
         Bounds& bounds = below.emplace_back();
@@ -169,8 +183,11 @@ void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executo
 } // namespace
 
 void build_clusters(ShapeData& shape, Executor& executor) {
-    build(shape, shape.header.vertices, vertices_of(shape), executor);
-    build(shape, shape.header.edges, edges_of(shape), executor);
+    const std::vector<Source> vertices = vertices_of(shape), edges = edges_of(shape);
+    shape.vertex_blocks.reserve(blocks_of(vertices.size()) + blocks_of(edges.size()));
+    build(shape, shape.header.vertices, vertices, executor);
+    build(shape, shape.header.edges, edges, executor);
+    shape.clusters.shrink_to_fit();
 }
 
 } // namespace raycontact

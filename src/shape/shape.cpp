@@ -53,7 +53,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads
     return make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, threads), threads);
 }
 
-std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t threads) {
+std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t threads) {
     const FloatEnvironment environment;
     Executor executor(mesh.triangles.size() < few_triangles ? 1 : threads);
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
@@ -66,14 +66,16 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t
     check_size(mesh.vertices, "mesh '" + mesh.name + "'");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
-    shape.mesh = mesh;
+    shape.mesh = std::move(mesh);
     shape.centre = box_of(shape.mesh.vertices).middle();
     round_vertices(shape);
 
-    const std::vector<Vec3> normals = face_normals(shape);
+    std::vector<Vec3> normals = face_normals(shape);
     if (std::all_of(normals.begin(), normals.end(), [](const Vec3& n) { return n == Vec3{}; }))
-        throw InputError("mesh '" + mesh.name + "': no triangle with an area; nothing to collide");
+        throw InputError("mesh '" + shape.mesh.name + "': no triangle with an area; nothing to collide");
     shape.neighbours = triangle_neighbours(shape.mesh.triangles);
+    shape.faces.reserve(normals.size());
+    shape.face_normals.reserve(normals.size());
     for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});
     find_sharp_edges(shape, normals);
     find_components(shape);
@@ -85,8 +87,8 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t
 
     // Bounds of the float32 error in a ray test, with a margin: docs/design.md derives them. Rays into an open mesh may
     // start well outside its box.
-    shape.header.closed = mesh.report.closed && mesh.report.oriented ? 1 : 0;
-    shape.header.outward = shape.header.closed != 0 && mesh.report.outward ? 1 : 0;
+    shape.header.closed = shape.mesh.report.closed && shape.mesh.report.oriented ? 1 : 0;
+    shape.header.outward = shape.header.closed != 0 && shape.mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
@@ -96,6 +98,7 @@ std::shared_ptr<const Shape> Shape::make(const PreparedMesh& mesh, std::uint32_t
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) longest_exit = std::max(longest_exit, exit);
     shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
+    normals = {}; // here the most memory is in use
     build_clusters(shape, executor);
     set_box_clearance(shape.header);
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));

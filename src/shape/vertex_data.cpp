@@ -24,6 +24,7 @@ Vec3 shaken(std::uint64_t vertex) {
 
 std::vector<Vec3> face_normals(const ShapeData& shape) {
     std::vector<Vec3> normals;
+    normals.reserve(shape.mesh.triangles.size());
     for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
         const Vec3 n = cross(shape.corner(t, 1) - shape.corner(t, 0), shape.corner(t, 2) - shape.corner(t, 0));
         const double size = length(n);

@@ -10,6 +10,8 @@
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 
+#include <scenes/models/model.h>
+
 #include <gtest/gtest.h>
 
 namespace raycontact::test {
@@ -138,6 +140,36 @@ TEST(Convert, ScaledMeshShapeKeepsItsFilesIndices) {
     EXPECT_THROW(shape.setLocalScaling(btVector3(0, 1, 1)), InputError);
     shape.setLocalScaling(btVector3(1, 1, 1));
     EXPECT_EQ(shape.shape(), table());
+}
+
+/// How many shapes the dispatches made while a table fell on a static mesh of Bullet's.
+std::uint64_t made_while_running(bool ahead) {
+    const Mesh box = box_mesh(6, 6, 1);
+    Arrays<float, unsigned int> arrays(box);
+    btTriangleIndexVertexArray mesh;
+    mesh.addIndexedMesh(arrays.part(PHY_FLOAT, PHY_INTEGER));
+    TestWorld w;
+    btRigidBody& floor = w.add(std::make_unique<btBvhTriangleMeshShape>(&mesh, true), 0, at(0, 0, -0.5));
+    if (ahead) w.dispatcher.add_body(floor);
+    w.add_mesh(table(), 5, at(0, 0, 1));
+    std::uint64_t made = 0;
+    for (int i = 0; i < 60; ++i) {
+        w.steps(1);
+        made += w.dispatcher.stats().shapes_made;
+    }
+    EXPECT_GT(w.touching(), 0);
+    if (ahead) w.dispatcher.remove_body(floor);
+    return made;
+}
+
+TEST(Convert, AddBodyMakesTheShapeAhead) {
+    EXPECT_EQ(made_while_running(false), 1u);
+    EXPECT_EQ(made_while_running(true), 0u);
+}
+
+TEST(Convert, AShapeTakesAQuarterOfAKilobyteATriangle) {
+    const auto shape = Shape::make(scenes::scene_model("torus", 50000).mesh);
+    EXPECT_LT(shape->memory_bytes(), 250 * shape->triangles().size());
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test_world.h"
 
+#include <mesh_tree.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
@@ -43,6 +44,46 @@ TEST(MeshShape, BoxHoldsEveryVertexAndFitsSnugly) {
             }
         }
     }
+}
+
+// Bullet asks for every box in every step, asleep or not.
+TEST(MeshShape, TheBoxOfABodyThatStandsStillIsMadeOnce) {
+    TestWorld w;
+    auto& shape = w.keep(std::make_unique<bullet::MeshShape>(torus()));
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+    for (int i = 0; i < 1000; ++i) {
+        bodies.push_back(std::make_unique<btRigidBody>(btScalar(1), nullptr, &shape, btVector3(1, 1, 1)));
+        const int row = i / 10 % 10, layer = i / 100;
+        bodies.back()->setWorldTransform(at(2 * (i % 10), 2 * row, 2 * layer));
+        bodies.back()->setInterpolationWorldTransform(bodies.back()->getWorldTransform());
+        w.world.addRigidBody(bodies.back().get());
+        bodies.back()->forceActivationState(ISLAND_SLEEPING);
+    }
+    w.steps(40); // the cache grows
+    const std::uint64_t before = shape.tree()->bounds_made();
+    w.steps(100);
+    EXPECT_LT(shape.tree()->bounds_made() - before, 100 * 1000 / 20u); // all of them would be 200 000
+
+    // Those that move are the only ones whose boxes are made.
+    for (int i = 0; i < 10; ++i) {
+        bodies[0]->getWorldTransform().setOrigin(btVector3(0, 0, btScalar(-0.01 * i)));
+        w.world.updateSingleAabb(bodies[0].get());
+        btVector3 low, high, own_low, own_high;
+        bodies[0]->getAabb(low, high);
+        shape.tree()->bounds(btTransform(bodies[0]->getWorldTransform()), own_low, own_high);
+        EXPECT_EQ(low, own_low);
+        EXPECT_EQ(high, own_high);
+    }
+    for (const auto& body : bodies) w.world.removeRigidBody(body.get());
+}
+
+TEST(MeshShape, ABoxTakesFewLooks) {
+    const auto looks = [](std::uint32_t triangles) {
+        const auto shape = Shape::make(scenes::scene_model("torus", triangles).mesh);
+        return bullet::MeshTree(*shape).bounds_size();
+    };
+    EXPECT_EQ(looks(600), torus()->vertices().size());
+    for (const std::uint32_t triangles : {2000u, 2400u, 6000u, 50000u}) EXPECT_LE(looks(triangles), 1024u) << triangles;
 }
 
 TEST(MeshShape, GivesEachTriangleInABoxOnce) {

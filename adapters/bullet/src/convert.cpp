@@ -80,6 +80,8 @@ void append(Mesh& mesh, const btStridingMeshInterface& interface, int index, con
         throw InputError(mesh.name + ": part " + std::to_string(index)
                          + " has vertices that are neither float nor double; convert them");
     const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.reserve(mesh.vertices.size() + static_cast<std::size_t>(part.vertex_count));
+    mesh.triangles.reserve(mesh.triangles.size() + static_cast<std::size_t>(part.triangle_count));
     for (int v = 0; v < part.vertex_count; ++v) {
         const Vec3 p = part.vertex(v);
         mesh.vertices.push_back({p.x * static_cast<double>(scaling.x()), p.y * static_cast<double>(scaling.y()),
@@ -177,13 +179,21 @@ std::uint64_t content_hash(const std::vector<btScalar>& numbers) {
     return hash;
 }
 
-std::uint64_t content_hash(const Mesh& mesh) {
-    std::uint64_t hash = mesh.vertices.size();
+/// Two hashes that differ in their beginnings and in how they mix: 128 bits stand for a mesh, which need not be kept.
+std::array<std::uint64_t, 2> content_hashes(const Mesh& mesh) {
+    std::uint64_t one = mesh.vertices.size(), two = ~std::uint64_t{mesh.triangles.size()};
+    const auto add = [&](std::uint64_t word) {
+        one = mix(one, word);
+        two = (std::rotl(two, 23) ^ word) * 0xff51afd7ed558ccdull;
+    };
     for (const Vec3& v : mesh.vertices) {
-        for (const double c : {v.x, v.y, v.z}) hash = mix(hash, std::bit_cast<std::uint64_t>(c));
+        for (const double c : {v.x, v.y, v.z}) add(std::bit_cast<std::uint64_t>(c));
     }
-    for (const auto& t : mesh.triangles) hash = mix(mix(hash, t[0] | std::uint64_t{t[1]} << 32), t[2]);
-    return hash;
+    for (const auto& t : mesh.triangles) {
+        add(t[0] | std::uint64_t{t[1]} << 32);
+        add(t[2]);
+    }
+    return {one, two};
 }
 
 /// A ball, or a capsule of two.
@@ -325,7 +335,8 @@ Form form_of(const btCollisionShape& shape) {
     return form;
 }
 
-Converted ShapeCache::convert(const Mesh& mesh, Repair repair) const {
+Converted ShapeCache::convert(const Mesh& mesh, Repair repair) {
+    ++made_;
     const auto shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_), threads_);
     return {shape, std::make_shared<const MeshTree>(*shape)};
 }
@@ -355,12 +366,12 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
     std::vector<PlaceName> names;
     Mesh mesh = extract(shape, names);
-    const std::uint64_t hash = content_hash(mesh);
+    const auto [hash, second_hash] = content_hashes(mesh);
     const auto [first, last] = entries_.equal_range(hash);
     for (auto i = first; i != last; ++i) {
         const auto& known_names = i->second.converted.names;
-        if (i->second.numbers.empty() && i->second.mesh.vertices == mesh.vertices
-            && i->second.mesh.triangles == mesh.triangles && (known_names ? *known_names == names : names.empty())) {
+        if (i->second.numbers.empty() && i->second.second_hash == second_hash
+            && (known_names ? *known_names == names : names.empty())) {
             i->second.used = now_;
             return i->second.converted;
         }
@@ -371,7 +382,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
     entry.converted = convert(mesh, repair);
     if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
-    entry.mesh = std::move(mesh);
+    entry.second_hash = second_hash;
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;
 }
@@ -395,41 +406,60 @@ Converted ShapeCache::get_again(const btCollisionShape& shape) {
     return now.converted;
 }
 
+Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch) {
+    if (stretch == no_stretch) return converted;
+    const std::pair key(converted.shape.get(), stretch);
+    auto found = stretched_.find(key);
+    if (found == stretched_.end()) {
+        sweep();
+        ++made_;
+        const auto shape = stretch_shape(*converted.shape, stretch);
+        const Converted made{shape, std::make_shared<const MeshTree>(*shape), converted.names};
+        found = stretched_.emplace(key, Stretched{converted.shape, made}).first;
+    }
+    found->second.used = now_;
+    return found->second.converted;
+}
+
 void ShapeCache::sweep() {
     ++now_;
     if (now_ % 64 != 0) return;
     std::erase_if(known_, [&](const auto& known) { return known.second.used + keep_dispatches < now_; });
-    for (auto i = entries_.begin(); i != entries_.end();) {
-        Entry& entry = i->second;
-        if (entry.converted.shape.use_count() > 1) entry.used = now_;
-        i = entry.used + keep_dispatches < now_ ? entries_.erase(i) : std::next(i);
-    }
+    const auto drop = [&](auto& made) { // what a body has is in use
+        for (auto i = made.begin(); i != made.end();) {
+            auto& entry = i->second;
+            if (entry.converted.shape.use_count() > 1) entry.used = now_;
+            i = entry.used + keep_dispatches < now_ ? made.erase(i) : std::next(i);
+        }
+    };
+    drop(stretched_);
+    drop(entries_);
 }
 
-std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& scaling) {
-    for (int k = 0; k < 3; ++k) {
-        if (!std::isfinite(scaling[k]) || scaling[k] == btScalar(0))
-            throw InputError(shape.name() + ": local scaling must be finite and not zero in every axis");
-    }
-    PreparedMesh mesh;
-    mesh.name = shape.name();
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s) {
+    for (const double x : s)
+        if (!std::isfinite(x)) throw InputError(shape.name() + ": its scaling must be finite");
+    const bool mirrored =
+        s[0] * (s[4] * s[8] - s[5] * s[7]) - s[1] * (s[3] * s[8] - s[5] * s[6]) + s[2] * (s[3] * s[7] - s[4] * s[6])
+        < 0;
+    Mesh plain;
+    plain.name = shape.name();
+    plain.vertices.reserve(shape.vertices().size());
     for (const Vec3& v : shape.vertices())
-        mesh.vertices.push_back({v.x * static_cast<double>(scaling.x()), v.y * static_cast<double>(scaling.y()),
-                                 v.z * static_cast<double>(scaling.z())});
-    for (auto t : shape.triangles()) {
-        if (mirrors(scaling)) std::swap(t[1], t[2]);
-        mesh.triangles.push_back(t);
-    }
+        plain.vertices.push_back({s[0] * v.x + s[1] * v.y + s[2] * v.z, s[3] * v.x + s[4] * v.y + s[5] * v.z,
+                                  s[6] * v.x + s[7] * v.y + s[8] * v.z});
+    plain.triangles.assign(shape.triangles().begin(), shape.triangles().end());
+    if (mirrored)
+        for (auto& t : plain.triangles) std::swap(t[1], t[2]);
+    // Lengths, areas and volumes have changed: check again, but keep the file's indices.
+    PreparedMesh mesh;
+    mesh.report = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology).report;
+    mesh.name = std::move(plain.name);
+    mesh.vertices = std::move(plain.vertices);
+    mesh.triangles = std::move(plain.triangles);
     mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
     mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
-    // Lengths, areas and volumes have changed: check again, but keep the file's indices.
-    Mesh plain;
-    plain.name = mesh.name;
-    plain.vertices = mesh.vertices;
-    plain.triangles = mesh.triangles;
-    const PreparedMesh checked = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology);
-    mesh.report = checked.report;
-    return Shape::make(mesh);
+    return Shape::make(std::move(mesh));
 }
 
 } // namespace raycontact::bullet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mesh_tree.h>
+#include <placement.h>
 #include <raycontact/shape.h>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -80,16 +82,19 @@ public:
     /// The same for a shape that is asked for again and again without a body: a mesh interface or field is read anew
     /// only when its form or box changes, after forget(), or if it was not asked for in a while.
     Converted get_again(const btCollisionShape& shape);
+    /// The same, stretched; one for all that are stretched alike. Throws InputError where no mesh is left.
+    Converted stretched(const Converted& converted, const Stretch& stretch);
     void forget(const btCollisionShape& shape) { known_.erase(&shape); }
+    /// How many shapes it has made so far.
+    std::uint64_t made() const { return made_; }
     /// Call it once a dispatch: drops shapes that no body has used for a while. Making shapes counts as time, too, so
     /// that memory is bounded where nothing is ever dispatched.
     void sweep();
 
 private:
     struct Entry {
-        // Compared in full: equal hashes do not mean equal contents.
-        Mesh mesh;                     ///< of a mesh or field
-        std::vector<btScalar> numbers; ///< of a convex shape
+        std::uint64_t second_hash = 0; ///< of a mesh or field
+        std::vector<btScalar> numbers; ///< of a convex shape, compared in full
         Converted converted;
         std::uint64_t used = 0;
     };
@@ -100,17 +105,23 @@ private:
         Converted converted;
         std::uint64_t used = 0;
     };
+    struct Stretched {
+        std::shared_ptr<const Shape> original; ///< kept, since its address is a key
+        Converted converted;
+        std::uint64_t used = 0;
+    };
     Converted get_convex(const btCollisionShape& shape);
-    Converted convert(const Mesh& mesh, Repair repair) const;
+    Converted convert(const Mesh& mesh, Repair repair);
 
     std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
     std::unordered_map<const btCollisionShape*, Known> known_;
-    std::uint64_t now_ = 0;
+    std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_;
+    std::uint64_t now_ = 0, made_ = 0;
 };
 
-/// The same shape with its coordinates multiplied; windings turn when the product is negative. Throws InputError when
-/// a factor is zero or not finite.
-std::shared_ptr<const Shape> scale_shape(const Shape& shape, const btVector3& scaling);
+/// The same shape, stretched in its own frame, with the file's indices; windings turn when it is mirrored. Throws
+/// InputError when an entry is not finite or the result has no area.
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& stretch);
 
 } // namespace raycontact::bullet

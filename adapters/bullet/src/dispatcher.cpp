@@ -14,7 +14,9 @@
 #include <world_recorder.h>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
@@ -57,14 +59,9 @@ bool is_whole(const btCollisionObjectWrapper& wrap) {
     return wrap.getCollisionShape() == wrap.getCollisionObject()->getCollisionShape();
 }
 
-btTransform world_pose(const PairState& state, bool of_0, const Leaf& leaf) {
-    return (of_0 ? state.object0 : state.object1)->getWorldTransform() * leaf.local;
-}
-
-HalfSpace plane_between(const PairState& state, const Leaf& a, const Leaf& b) {
-    const bool plane_is_0 = a.kind == Kind::plane;
-    const Leaf& plane = plane_is_0 ? a : b;
-    return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), world_pose(state, plane_is_0, plane));
+HalfSpace plane_between(const Leaf& a, const Leaf& b) {
+    const Leaf& plane = a.kind == Kind::plane ? a : b;
+    return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), plane.pose, plane.stretch);
 }
 
 const ManifoldSettings& checked(const ManifoldSettings& settings) {
@@ -72,6 +69,20 @@ const ManifoldSettings& checked(const ManifoldSettings& settings) {
         throw InputError("ManifoldSettings::keep_steps is " + std::to_string(settings.keep_steps) + "; give 0 to "
                          + std::to_string(most_keep_steps));
     return settings;
+}
+
+btVector3 velocity_at(const btCollisionObject& object, const btVector3& point) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body ? body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition()) : btVector3(0, 0, 0);
+}
+
+// Of a contact to come. Bullet takes what closes the gap off the speed that restitution gives back: such bodies turn
+// round before the gap is closed.
+bool bounces(const PairState& state, const Candidate& c) {
+    const btScalar restitution = btManifoldResult::calculateCombinedRestitution(state.object0, state.object1);
+    if (!(restitution > 0)) return false;
+    const btVector3 speed = velocity_at(*state.object0, c.on0) - velocity_at(*state.object1, c.on1);
+    return -speed.dot(c.normal) * restitution > btScalar(0.2); // Bullet's own bodies do not bounce below that speed
 }
 
 void name_places(PairState& state) {
@@ -90,7 +101,9 @@ void name_places(PairState& state) {
 struct CollisionDispatcher::State {
     State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m, ConvexShapes c)
         : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c),
-          queries(settings, objects.shapes(), c, d) {}
+          queries(settings, objects.shapes(), objects.faults(), c, d) {
+        objects.faults().set_callback(print);
+    }
 
     bool is_ours(btBroadphasePair& pair);
     void visit(btBroadphasePair& pair, const btDispatcherInfo& info);
@@ -101,7 +114,7 @@ struct CollisionDispatcher::State {
     PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
     bool apart(const Leaf& a, const Leaf& b) const;
-    std::optional<HalfSpace> face_between(const PairState& state, const Leaf& a, const Leaf& b) const;
+    std::optional<HalfSpace> face_between(const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
@@ -141,6 +154,8 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.ours.clear();
     s.work.clear();
     s.batch.clear();
+    s.objects.mended() = {};
+    const std::uint64_t made_before = s.objects.shapes().made();
     s.objects.shapes().sweep();
     s.objects.look_ahead(s.scene.settings().continuous ? info.m_timeStep : 0);
 
@@ -173,8 +188,14 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (i + 8 < s.work.size()) prefetch(s.work[i + 8]);
         if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();
         if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
-        s.work[i]->patches.update(s.work[i]->candidates, s.manifolds, s.stats);
+        PairState& pair = *s.work[i];
+        pair.patches.update(pair.candidates, pair.record0.pose, pair.record1.pose, s.manifolds, s.stats);
     }
+    s.stats.shapes_made = s.objects.shapes().made() - made_before;
+    s.stats.made_rigid = s.objects.mended().made_rigid;
+    s.stats.scaled = s.objects.mended().scaled;
+    s.stats.left_out = s.objects.mended().left_out;
+    s.objects.faults().tell();
 }
 
 void CollisionDispatcher::State::drop_algorithm(btBroadphasePair& pair) const {
@@ -266,6 +287,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     objects.refresh(*b, state.record1, dispatch);
     state.check_versions(state.record0.version, state.record1.version);
     state.candidates.clear();
+    if (state.record0.misplaced || state.record1.misplaced) return state.clear();
     work.push_back(&state);
     gather(state, state.record0, state.record1, info);
 }
@@ -301,10 +323,11 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
         for (int j = 0; j < static_cast<int>(b.leaves.size()); ++j) {
             const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
+            if (la.left_out() || lb.left_out()) continue;
             switch (work_for(la, lb)) {
             case Work::batch: {
                 if (several && apart(la, lb)) break;
-                if (const auto face = face_between(state, la, lb)) {
+                if (const auto face = face_between(la, lb)) {
                     add_plane(state, i, j, la, lb, *face);
                     break;
                 }
@@ -315,7 +338,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
                 break;
             }
             case Work::plane:
-                add_plane(state, i, j, la, lb, plane_between(state, la, lb));
+                add_plane(state, i, j, la, lb, plane_between(la, lb));
                 break;
             case Work::round:
                 add_round(state, i, j, la, lb);
@@ -341,16 +364,15 @@ bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
 }
 
 // The batch alone knows other directions, and what is coming.
-std::optional<HalfSpace> CollisionDispatcher::State::face_between(const PairState& state, const Leaf& a,
-                                                                  const Leaf& b) const {
+std::optional<HalfSpace> CollisionDispatcher::State::face_between(const Leaf& a, const Leaf& b) const {
     const bool box_is_0 = a.kind == Kind::convex;
     const Leaf& box = box_is_0 ? a : b;
     const Leaf& mesh = box_is_0 ? b : a;
     const Settings& settings = scene.settings();
-    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.continuous || settings.direction != Direction::reprojected)
+    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.continuous || settings.direction != Direction::reprojected
+        || box.stretch != no_stretch)
         return std::nullopt;
-    return only_face(mesh.converted, world_pose(state, !box_is_0, mesh), static_cast<const btBoxShape&>(*box.shape),
-                     world_pose(state, box_is_0, box));
+    return only_face(mesh.converted, mesh.pose, static_cast<const btBoxShape&>(*box.shape), box.pose);
 }
 
 void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b,
@@ -359,7 +381,7 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
     const btVector3& normal = space.normal;
-    plane_contacts(mesh.converted, world_pose(state, mesh_is_0, mesh), space, below);
+    plane_contacts(mesh.converted, mesh.pose, space, below);
     for (const PlaneContact& c : below) {
         const btVector3 on_plane = c.point + normal * c.depth;
         Candidate candidate;
@@ -379,13 +401,11 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
     const Leaf& ball = mesh_is_0 ? b : a;
-    const btTransform pose0 = world_pose(state, true, a);
-    const btTransform pose1 = world_pose(state, false, b);
     const Round round = round_of(*ball.shape);
     // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
     const btScalar reach =
         btMin(gContactBreakingThreshold, ball.shape->getContactBreakingThreshold(gContactBreakingThreshold));
-    round_contacts(mesh.converted, mesh_is_0 ? pose0 : pose1, round, mesh_is_0 ? pose1 : pose0, reach, near);
+    round_contacts(mesh.converted, mesh.pose, round, ball.pose, reach, near);
     for (const RoundContact& c : near) {
         const btVector3 on_ball = c.point + c.normal * c.distance;
         Candidate candidate;
@@ -438,6 +458,7 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);
+        if (c.depth <= 0 && bounces(*entry->state, candidate)) candidate.distance = 0;
         candidate.reach = entry->reach;
         entry->state->candidates.push_back(candidate);
     }
@@ -446,12 +467,17 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
 BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
     if (object.getCollisionShape() == nullptr)
         throw InputError("CollisionDispatcher::add_body: the object has no shape; give it one first");
-    const Object& record = state_->objects.refresh(object, state_->dispatch);
-    state_->objects.pin(object, true);
+    Objects& objects = state_->objects;
+    const Object& record = objects.refresh(object, state_->dispatch);
+    if (record.left_out()) {
+        objects.drop_unused(&object);
+        throw ObjectError(objects.faults().take(object));
+    }
+    objects.pin(object, true);
     for (const Leaf& leaf : record.leaves) {
         if (leaf.body != Leaf::no_body) return leaf.body;
     }
-    state_->objects.pin(object, false);
+    objects.pin(object, false);
     throw InputError("CollisionDispatcher::add_body: the object has no mesh, nor a shape that one stands for; only "
                      "these need to be added");
 }
@@ -474,6 +500,10 @@ void CollisionDispatcher::refresh(const btCollisionObject& object) {
     if (object.getCollisionShape())
         each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
                   [&](const btCollisionShape& shape, const btTransform&) { state_->objects.shapes().forget(shape); });
+}
+
+void CollisionDispatcher::on_fault(std::function<void(const Fault&)> callback) {
+    state_->objects.faults().set_callback(std::move(callback));
 }
 
 void CollisionDispatcher::prepare() {

@@ -7,11 +7,14 @@
 #include <raycontact/error.h>
 #include <vectors.h>
 
+#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <LinearMath/btAabbUtil2.h>
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace raycontact::bullet {
 
@@ -56,9 +59,36 @@ void MeshShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
 
 void MeshShape::setLocalScaling(const btVector3& scaling) {
     if (scaling == scaling_) return;
-    scaled_ = scaling == btVector3(1, 1, 1) ? original_ : scale_shape(*original_, scaling);
+    for (int k = 0; k < 3; ++k)
+        if (scaling[k] == btScalar(0))
+            throw InputError(original_->name() + ": local scaling must not be zero in any axis");
+    const Stretch stretch{double(scaling.x()), 0, 0, 0, double(scaling.y()), 0, 0, 0, double(scaling.z())};
+    scaled_ = stretch == no_stretch ? original_ : stretch_shape(*original_, stretch);
     tree_ = std::make_shared<const MeshTree>(*scaled_);
     scaling_ = scaling;
+}
+
+int MeshShape::calculateSerializeBufferSize() const {
+    return static_cast<int>(sizeof(btTriangleMeshShapeData));
+}
+
+const char* MeshShape::serialize(void* data, btSerializer* serializer) const {
+    auto& out = *static_cast<btTriangleMeshShapeData*>(data);
+    out = {};
+    btCollisionShape::serialize(&out.m_collisionShapeData, serializer);
+    out.m_collisionShapeData.m_shapeType = TRIANGLE_MESH_SHAPE_PROXYTYPE;
+    std::vector<btScalar> vertices;
+    for (const Vec3& v : original_->vertices())
+        vertices.insert(vertices.end(), {btScalar(v.x), btScalar(v.y), btScalar(v.z)});
+    std::vector<int> indices;
+    for (const auto& t : original_->triangles())
+        for (const std::uint32_t corner : t) indices.push_back(static_cast<int>(corner));
+    btTriangleIndexVertexArray mesh(static_cast<int>(indices.size() / 3), indices.data(), 3 * sizeof(int),
+                                    static_cast<int>(vertices.size() / 3), vertices.data(), 3 * sizeof(btScalar));
+    mesh.setScaling(scaling_);
+    mesh.serialize(&out.m_meshInterface, serializer); // copies the lists
+    out.m_collisionMargin = static_cast<float>(m_collisionMargin);
+    return "btTriangleMeshShapeData";
 }
 
 } // namespace raycontact::bullet

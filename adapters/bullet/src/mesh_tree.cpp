@@ -10,16 +10,22 @@ namespace raycontact::bullet {
 namespace {
 constexpr std::uint32_t leaf_triangles = 8;
 constexpr std::size_t exact_bounds = 1024;
+constexpr std::uint32_t most_groups = 1024; ///< of large meshes, for bounds
 } // namespace
 
-MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles().begin(), shape.triangles().end()) {
+MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles()) {
     vertices_.reserve(shape.vertices().size());
     for (const Vec3& v : shape.vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+    if (vertices_.size() > exact_bounds) return;
+    points_.reserve(vertices_.size());
+    for (const btVector3& v : vertices_) points_.add(v, btVector3(0, 0, 0));
 }
 
 class MeshTree::Builder {
 public:
-    Builder(const MeshTree& tree, Boxes& boxes) : boxes_(boxes), keys_(tree.triangles_.size()) {
+    Builder(const MeshTree& tree, Boxes& boxes)
+        : boxes_(boxes), keys_(tree.triangles_.size()),
+          group_(std::max(leaf_triangles, static_cast<std::uint32_t>((keys_.size() + most_groups - 1) / most_groups))) {
         items_.reserve(tree.triangles_.size());
         for (const auto& t : tree.triangles_) {
             btVector3 low = tree.vertices_[t[0]], high = low;
@@ -34,7 +40,7 @@ public:
         boxes_.nodes.reserve(items_.size() / (leaf_triangles / 4) + 1);
     }
 
-    void build(std::uint32_t begin, std::uint32_t end) {
+    void build(std::uint32_t begin, std::uint32_t end, bool in_group = false) {
         const std::size_t index = boxes_.nodes.size();
         Node& node = boxes_.nodes.emplace_back();
         std::vector<std::uint32_t>& order = boxes_.order;
@@ -49,6 +55,10 @@ public:
         }
         node.low = low;
         node.high = high;
+        if (!in_group && end - begin <= group_) {
+            boxes_.extent.add((low + high) * btScalar(0.5), (high - low) * btScalar(0.5));
+            in_group = true;
+        }
         if (end - begin <= leaf_triangles) {
             node.begin = begin;
             node.end = end;
@@ -59,8 +69,8 @@ public:
             for (std::uint32_t k = begin; k < end; ++k) keys[k] = {items_[order[k]].centroid3[axis], order[k]};
             std::nth_element(keys + begin, keys + middle, keys + end);
             for (std::uint32_t k = begin; k < end; ++k) order[k] = keys[k].second;
-            build(begin, middle);
-            build(middle, end);
+            build(begin, middle, in_group);
+            build(middle, end, in_group);
         }
         boxes_.nodes[index].skip = static_cast<std::uint32_t>(boxes_.nodes.size());
     }
@@ -74,6 +84,7 @@ private:
     Boxes& boxes_;
     std::vector<Item> items_; // by triangle
     std::vector<std::pair<btScalar, std::uint32_t>> keys_;
+    std::uint32_t group_; // most triangles of a group
 };
 
 const MeshTree::Boxes& MeshTree::boxes() const {
@@ -81,10 +92,6 @@ const MeshTree::Boxes& MeshTree::boxes() const {
         Boxes made;
         Builder(*this, made).build(0, static_cast<std::uint32_t>(triangles_.size()));
         made.nodes.shrink_to_fit();
-        for (const Node& node : made.nodes) {
-            if (node.begin != node.end)
-                made.cover.push_back({(node.low + node.high) * btScalar(0.5), (node.high - node.low) * btScalar(0.5)});
-        }
         boxes_ = std::move(made);
     });
     return boxes_;
@@ -124,27 +131,12 @@ void MeshTree::vertices_below(const btVector3& normal, btScalar offset, std::vec
     out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
+const Extent& MeshTree::extent() const {
+    return vertices_.size() <= exact_bounds ? points_ : boxes().extent;
+}
+
 void MeshTree::bounds(const btTransform& transform, btVector3& low, btVector3& high) const {
-    const btMatrix3x3& basis = transform.getBasis();
-    for (int axis = 0; axis < 3; ++axis) {
-        const btScalar x = basis[axis].x(), y = basis[axis].y(), z = basis[axis].z();
-        btScalar least = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
-        const auto add = [&](const btVector3& centre, btScalar r) {
-            const btScalar p = x * centre.x() + y * centre.y() + z * centre.z();
-            least = p - r < least ? p - r : least;
-            most = p + r > most ? p + r : most;
-        };
-        if (vertices_.size() <= exact_bounds) {
-            for (const btVector3& v : vertices_) add(v, 0);
-        } else {
-            for (const Cover& c : boxes().cover)
-                add(c.centre, btFabs(x) * c.half.x() + btFabs(y) * c.half.y() + btFabs(z) * c.half.z());
-        }
-        low[axis] = least + transform.getOrigin()[axis];
-        high[axis] = most + transform.getOrigin()[axis];
-    }
-    low.setW(0);
-    high.setW(0);
+    cache_.get(transform, low, high, [&](btVector3& from, btVector3& to) { extent().bounds(transform, from, to); });
 }
 
 } // namespace raycontact::bullet

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <box_cache.h>
+#include <extent.h>
 #include <raycontact/shape.h>
 
 #include <LinearMath/btTransform.h>
@@ -9,12 +11,14 @@
 #include <array>
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <vector>
 
 namespace raycontact::bullet {
 
 /// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres. They
 /// are made when they are first asked for, on any thread: a mesh of Bullet's that meets only meshes never needs them.
+/// The shape must live as long.
 class MeshTree {
 public:
     explicit MeshTree(const Shape& shape);
@@ -43,8 +47,12 @@ public:
     void vertices_below(const btVector3& normal, btScalar offset, std::vector<std::uint32_t>& out) const;
 
     /// Box of the mesh in a frame with these axes and origin (rows of a rotation, a translation): exact for up to 1024
-    /// vertices, beyond that of the rotated boxes of small groups of triangles.
+    /// vertices, beyond that of the rotated boxes of at most 1024 groups of triangles. Made anew only where this
+    /// transform has changed since it was last asked about.
     void bounds(const btTransform& transform, btVector3& low, btVector3& high) const;
+    /// How many boxes bounds() has made, and how many vertices or groups each looked at.
+    std::uint64_t bounds_made() const { return cache_.made(); }
+    std::size_t bounds_size() const { return extent().size(); }
 
 private:
     struct Node {
@@ -52,13 +60,10 @@ private:
         std::uint32_t begin = 0, end = 0; ///< triangles of a leaf, positions in the order; empty in an inner node
         std::uint32_t skip = 0;           ///< next node when this box is missed
     };
-    struct Cover {
-        btVector3 centre, half;
-    };
     struct Boxes {
         std::vector<std::uint32_t> order; ///< triangles, leaf by leaf
         std::vector<Node> nodes;
-        std::vector<Cover> cover;
+        Extent extent; ///< of groups of triangles
     };
 
     static bool overlap(const btVector3& a_low, const btVector3& a_high, const btVector3& b_low,
@@ -69,9 +74,12 @@ private:
     bool triangle_overlaps(std::uint32_t index, const btVector3& low, const btVector3& high) const;
     class Builder;
     const Boxes& boxes() const;
+    const Extent& extent() const;
 
     std::vector<btVector3> vertices_;
-    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::span<const std::array<std::uint32_t, 3>> triangles_;
+    Extent points_; ///< all vertices, where there are few
+    mutable BoxCache cache_;
     mutable std::once_flag made_;
     mutable Boxes boxes_; ///< after made_
 };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <objects.h>
+
+#include <raycontact/error.h>
 #include <vectors.h>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -62,60 +64,112 @@ Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch
 Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     if (!unchanged(object, record)) make_leaves(object, record);
-    for (Leaf& leaf : record.leaves) {
-        if (leaf.body == Leaf::no_body) continue;
-        const btTransform pose = object.getWorldTransform() * leaf.local;
-        scene_.set_pose(leaf.body, to_pose(pose));
-        find_box(*leaf.converted.shape, pose, leaf.low, leaf.high);
-    }
-    if (ahead_ > 0) expect(object, record);
+    place_object(object, record);
+    if (ahead_ > 0 && !record.misplaced) expect(object, record);
     record.seen = dispatch;
     return record;
 }
 
-// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object.
+void Objects::place_object(const btCollisionObject& object, Object& record) {
+    Placement whole;
+    record.misplaced = false;
+    try {
+        whole = place(object.getWorldTransform());
+    } catch (const InputError& error) {
+        record.misplaced = true;
+        faults_.add(object, 0, error.what());
+    }
+    record.pose = whole.pose;
+    for (Leaf& leaf : record.leaves)
+        if (leaf.kind != Kind::other && !record.misplaced) place_leaf(object, record, leaf, whole);
+    if (record.left_out())
+        mended_.left_out.push_back(&object);
+    else
+        faults_.forget(object);
+}
+
+void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole) {
+    const auto child = static_cast<int>(&leaf - record.leaves.data());
+    leaf.misplaced = false;
+    Placement placed = whole;
+    try {
+        if (object.getCollisionShape()->isCompound()) placed = place(object.getWorldTransform() * leaf.local);
+    } catch (const InputError& error) {
+        leaf.misplaced = true;
+        return faults_.add(object, child, error.what());
+    }
+    leaf.pose = placed.pose;
+    if (placed.drifted) ++mended_.made_rigid;
+    if (placed.stretch != no_stretch) ++mended_.scaled;
+    if (placed.stretch != leaf.stretch) {
+        drop_body(leaf);
+        leaf.stretch = placed.stretch;
+        leaf.unusable = false;
+        record.version = ++versions_;
+    }
+    if (!in_scene(leaf.kind) || leaf.unusable) return;
+    if (leaf.body == Leaf::no_body)
+        give_body(object, record, leaf);
+    else
+        scene_.set_pose(leaf.body, to_pose(leaf.pose));
+    if (leaf.body != Leaf::no_body) find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
+}
+
+// A flat convex shape has no mesh to stand for it, and so no body.
+void Objects::give_body(const btCollisionObject& object, const Object& record, Leaf& leaf) {
+    if (leaf.flat) return;
+    try {
+        leaf.converted = shapes_.get(*leaf.shape);
+        if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
+    } catch (const InputError& error) {
+        leaf.unusable = true;
+        return faults_.add(object, static_cast<int>(&leaf - record.leaves.data()), error.what());
+    }
+    leaf.flat = !leaf.converted.shape;
+    if (!leaf.flat) leaf.body = scene_.add(leaf.converted.shape, to_pose(leaf.pose));
+}
+
+// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object, and
+// of one whose speed is beyond all bounds.
 void Objects::expect(const btCollisionObject& object, const Object& record) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     if (body == nullptr || body->isStaticOrKinematicObject()) return;
     const btVector3 velocity =
         body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
     btTransform then;
-    btTransformUtil::integrateTransform(object.getWorldTransform(), velocity, body->getAngularVelocity(), ahead_, then);
+    btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     for (const Leaf& leaf : record.leaves) {
-        if (leaf.body != Leaf::no_body) scene_.set_next_pose(leaf.body, to_pose(then * leaf.local));
+        if (leaf.body == Leaf::no_body || leaf.misplaced) continue;
+        try {
+            scene_.set_next_pose(leaf.body, to_pose(place(then * leaf.local).pose));
+        } catch (const InputError&) {
+            return;
+        }
     }
 }
 
 void Objects::make_leaves(const btCollisionObject& object, Object& record) {
     drop_bodies(record);
-    const auto make = [&](const btCollisionShape& shape, const btTransform& local) {
-        Leaf leaf;
-        leaf.shape = &shape;
-        leaf.local = local;
-        leaf.kind = kind_for_us(shape);
-        if (in_scene(leaf.kind)) {
-            leaf.form = form_of(shape);
-            leaf.converted = shapes_.get(shape);
-            if (leaf.converted.shape)
-                leaf.body = scene_.add(leaf.converted.shape, to_pose(object.getWorldTransform() * leaf.local));
-        }
-        record.leaves.push_back(leaf);
-    };
-    try {
-        each_leaf(*object.getCollisionShape(), btTransform::getIdentity(), make);
-    } catch (...) { // of one child: those before it do not stay without it
-        drop_bodies(record);
-        record.version = 0;
-        throw;
-    }
+    each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
+              [&](const btCollisionShape& shape, const btTransform& local) {
+                  Leaf& leaf = record.leaves.emplace_back();
+                  leaf.shape = &shape;
+                  leaf.local = local;
+                  leaf.kind = kind_for_us(shape);
+                  if (in_scene(leaf.kind)) leaf.form = form_of(shape);
+              });
     record.version = ++versions_;
     record.stale = false;
 }
 
+void Objects::drop_body(Leaf& leaf) {
+    if (leaf.body != Leaf::no_body) scene_.remove(leaf.body);
+    leaf.body = Leaf::no_body;
+    leaf.converted = {};
+}
+
 void Objects::drop_bodies(Object& record) {
-    for (const Leaf& leaf : record.leaves) {
-        if (leaf.body != Leaf::no_body) scene_.remove(leaf.body);
-    }
+    for (Leaf& leaf : record.leaves) drop_body(leaf);
     record.leaves.clear();
 }
 

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <convert.h>
+#include <faults.h>
+#include <placement.h>
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/scene.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
@@ -21,20 +24,39 @@ struct Leaf {
     btTransform local = btTransform::getIdentity(); ///< leaf frame in the object's frame
     Form form;                                      ///< at conversion
     Kind kind = Kind::other;
-    Converted converted;                   ///< mesh, field or convex
-    BodyId body = no_body;                 ///< in the scene; of the same kinds
+    Converted converted;                           ///< mesh, field or convex
+    Stretch stretch = no_stretch;                  ///< of what was converted: its transform is scaled
+    BodyId body = no_body;                         ///< in the scene; of the same kinds
+    btTransform pose = btTransform::getIdentity(); ///< in the world, rigid; of all kinds but `other`
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
+    bool flat = false;                     ///< a convex shape without a mesh to stand for it
+    bool unusable = false;                 ///< no mesh can be made of it
+    bool misplaced = false;                ///< its transform is not finite, or flat
     static constexpr BodyId no_body = ~BodyId{0};
+
+    bool left_out() const { return unusable || misplaced; }
 };
 
 /// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.
 struct Object {
     std::vector<Leaf> leaves;
-    std::uint64_t version = 0; ///< changes when the leaves change
-    std::uint64_t seen = 0;    ///< dispatch in which poses were last handed over
-    std::uint32_t uses = 0;    ///< pairs that refer to it
-    bool pinned = false;       ///< by add_body
-    bool stale = false;        ///< refresh() was called
+    btTransform pose = btTransform::getIdentity(); ///< in the world, rigid
+    std::uint64_t version = 0;                     ///< changes when the leaves change
+    std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over
+    std::uint32_t uses = 0;                        ///< pairs that refer to it
+    bool pinned = false;                           ///< by add_body
+    bool stale = false;                            ///< refresh() was called
+    bool misplaced = false;                        ///< all of it
+
+    bool left_out() const {
+        return misplaced || std::ranges::any_of(leaves, [](const Leaf& leaf) { return leaf.left_out(); });
+    }
+};
+
+/// Of one dispatch.
+struct Mended {
+    std::uint64_t made_rigid = 0, scaled = 0; ///< leaves
+    std::vector<const btCollisionObject*> left_out;
 };
 
 /// Whether leaves of this kind are bodies of the scene.
@@ -60,7 +82,8 @@ public:
     Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex), shapes_(scene.settings().threads) {}
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
-    /// poses to the scene once per `dispatch`. If that throws, an object that is in no use has no record.
+    /// poses to the scene once per `dispatch`. A leaf whose mesh or transform cannot be used is left out, which is a
+    /// fault. If this throws, an object that is in no use has no record.
     Object& refresh(const btCollisionObject& object, std::uint64_t dispatch);
     /// The same for a record that is known.
     Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
@@ -82,17 +105,25 @@ public:
     void look_ahead(btScalar seconds) { ahead_ = seconds; }
 
     ShapeCache& shapes() { return shapes_; }
+    Faults& faults() { return faults_; }
+    Mended& mended() { return mended_; }
 
 private:
     Kind kind_for_us(const btCollisionShape& shape) const;
     bool unchanged(const btCollisionObject& object, const Object& record) const;
     void make_leaves(const btCollisionObject& object, Object& record);
+    void drop_body(Leaf& leaf);
     void drop_bodies(Object& record);
+    void place_object(const btCollisionObject& object, Object& record);
+    void place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole);
+    void give_body(const btCollisionObject& object, const Object& record, Leaf& leaf);
     void expect(const btCollisionObject& object, const Object& record);
 
     Scene& scene_;
     ConvexShapes convex_;
     ShapeCache shapes_;
+    Faults faults_;
+    Mended mended_;
     std::unordered_map<const btCollisionObject*, Object> records_;
     std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
     std::uint64_t versions_ = 0;

@@ -62,17 +62,17 @@ void combine_materials(btManifoldPoint& p, const btCollisionObject* a, const btC
     btPlaneSpace1(p.m_normalWorldOnB, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
 }
 
-btManifoldPoint to_point(const Candidate& c, const btCollisionObject* a, const btCollisionObject* b) {
-    btManifoldPoint p(a->getWorldTransform().invXform(c.on0), b->getWorldTransform().invXform(c.on1), c.normal,
-                      c.distance);
+btManifoldPoint to_point(const Candidate& c, const btTransform& pose0, const btTransform& pose1,
+                         const btCollisionObject* a, const btCollisionObject* b) {
+    btManifoldPoint p(pose0.invXform(c.on0), pose1.invXform(c.on1), c.normal, c.distance);
     p.m_positionWorldOnA = c.on0;
     p.m_positionWorldOnB = c.on1;
     p.m_partId0 = c.key.child0;
     p.m_partId1 = c.key.child1;
     p.m_index0 = c.key.vertex_body == 0 ? c.key.vertex : c.triangle;
     p.m_index1 = c.key.vertex_body == 0 ? c.triangle : c.key.vertex;
-    p.m_contactPointFlags = flag_ours | (c.key.vertex_body == 0 ? 0 : flag_vertex_on_1)
-                            | static_cast<int>(c.key.feature) << feature_shift;
+    p.m_contactPointFlags =
+        flag_ours | (c.key.vertex_body == 0 ? 0 : flag_vertex_on_1) | static_cast<int>(c.key.feature) << feature_shift;
     combine_materials(p, a, b);
     return p;
 }
@@ -145,8 +145,8 @@ void Patches::clear() {
     manifolds_.clear();
 }
 
-void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings,
-                     DispatcherStats& stats) {
+void Patches::update(const std::vector<Candidate>& candidates, const btTransform& pose0, const btTransform& pose1,
+                     const ManifoldSettings& settings, DispatcherStats& stats) {
     stats.contacts += candidates.size();
     if (candidates.empty() && manifolds_.empty()) return;
 
@@ -161,12 +161,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         const int count = m->getNumContacts();
         for (int i = 0; i < count; ++i) {
             const btManifoldPoint& p = m->getContactPoint(i);
-            Old o{p,
-                  patches.size(),
-                  CollisionDispatcher::key(p),
-                  object0_->getWorldTransform()(p.m_localPointA),
-                  object1_->getWorldTransform()(p.m_localPointB),
-                  0};
+            Old o{p, patches.size(), CollisionDispatcher::key(p), pose0(p.m_localPointA), pose1(p.m_localPointB), 0};
             o.distance = (o.on0 - o.on1).dot(p.m_normalWorldOnB);
             patch.normal += p.m_normalWorldOnB;
             patch.centre += middle(o.on0, o.on1);
@@ -251,7 +246,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
             const std::size_t c = patch.members[static_cast<std::size_t>(i)];
             const int at = index_of(m, candidates[c].key);
             if (at < 0) continue;
-            btManifoldPoint p = to_point(candidates[c], object0_, object1_);
+            btManifoldPoint p = to_point(candidates[c], pose0, pose1, object0_, object1_);
             inherit(p, m.getContactPoint(at));
             p.m_userPersistentData = m.getContactPoint(at).m_userPersistentData;
             m.getContactPoint(at) = p;
@@ -280,7 +275,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const ManifoldSet
         };
         leave(!arriving.empty());
         for (const std::size_t c : arriving) {
-            btManifoldPoint p = to_point(candidates[c], object0_, object1_);
+            btManifoldPoint p = to_point(candidates[c], pose0, pose1, object0_, object1_);
             if (before[c]) {
                 inherit(p, before[c]->point);
                 ++stats.points_matched;

@@ -24,8 +24,10 @@ public:
     Patches(const Patches&) = delete;
     Patches& operator=(const Patches&) = delete;
 
-    /// This step's contacts, in the order of their keys. Points whose key is there again keep their impulses.
-    void update(const std::vector<Candidate>& candidates, const ManifoldSettings& settings, DispatcherStats& stats);
+    /// This step's contacts, in the order of their keys. Points whose key is there again keep their impulses. The
+    /// poses: of the two objects, rigid.
+    void update(const std::vector<Candidate>& candidates, const btTransform& pose0, const btTransform& pose1,
+                const ManifoldSettings& settings, DispatcherStats& stats);
     /// Prefetches what update() will read: the list of manifolds, then the manifolds.
     void fetch_list() const { prefetch(manifolds_.data()); }
     void fetch() const {

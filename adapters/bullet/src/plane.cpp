@@ -4,14 +4,24 @@
 #include <objects.h>
 #include <vectors.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace raycontact::bullet {
 
-HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose) {
+HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose, const Stretch& stretch) {
     HalfSpace space;
-    space.normal = (plane_pose.getBasis() * plane.getPlaneNormal()).normalized();
-    space.height = dot_in_double(space.normal, plane_pose.getOrigin()) + double(plane.getPlaneConstant());
+    btVector3 normal = plane.getPlaneNormal();
+    btScalar nearer = 1;
+    if (stretch != no_stretch) { // normal . p <= constant is (inverse normal) . (stretch p) <= constant
+        std::array<btScalar, 9> s;
+        std::transform(stretch.begin(), stretch.end(), s.begin(), [](double x) { return btScalar(x); });
+        normal = btMatrix3x3(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]).inverse() * normal;
+        nearer = normal.length();
+    }
+    space.normal = (plane_pose.getBasis() * normal).normalized();
+    space.height = dot_in_double(space.normal, plane_pose.getOrigin()) + double(plane.getPlaneConstant() / nearer);
     return space;
 }
 

@@ -23,7 +23,8 @@ struct HalfSpace {
     btVector3 normal; ///< unit
     double height = 0;
 };
-HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose);
+HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose,
+                     const Stretch& stretch = no_stretch);
 
 /// Every vertex of the mesh within the half space, ascending.
 void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space,

@@ -3,6 +3,7 @@
 
 #include <place_name.h>
 #include <plane.h>
+#include <raycontact/error.h>
 #include <round.h>
 #include <vectors.h>
 #include <work.h>
@@ -40,7 +41,7 @@ btVector3 normal_of(const Contact& c) {
     return btVector3(c.normal[0], c.normal[1], c.normal[2]);
 }
 
-std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) const {
+std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) {
     std::vector<Placed> leaves;
     each_leaf(*wrap.getCollisionShape(), wrap.getWorldTransform(),
               [&](const btCollisionShape& shape, const btTransform& pose) {
@@ -49,6 +50,14 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   placed.leaf.kind = kind_of(shape);
                   const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
+                  try {
+                      const Placement placement = place(pose);
+                      placed.leaf.pose = placement.pose;
+                      placed.leaf.stretch = placement.stretch;
+                  } catch (const InputError& error) {
+                      placed.leaf.misplaced = true;
+                      faults_.add(*wrap.getCollisionObject(), placed.index, error.what());
+                  }
                   leaves.push_back(placed);
               });
     return leaves;
@@ -64,6 +73,7 @@ void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrap
         one.leaf.shape->getAabb(one.pose, low, high);
         const btVector3 around(apart, apart, apart);
         for (Placed& two : leaves_b) {
+            if (one.leaf.misplaced || two.leaf.misplaced) continue;
             btVector3 low_b, high_b;
             two.leaf.shape->getAabb(two.pose, low_b, high_b);
             if (!TestAabbAgainstAabb2(low - around, high + around, low_b, high_b)) continue;
@@ -71,19 +81,29 @@ void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrap
             result.setPersistentManifold(manifold); // Bullet's algorithms put in theirs, which is gone
         }
     }
+    faults_.tell();
+}
+
+void Queries::convert(Placed& placed, const btCollisionObjectWrapper& whole) {
+    Leaf& leaf = placed.leaf;
+    if (!in_scene(leaf.kind) || leaf.converted.shape || leaf.unusable) return;
+    try {
+        leaf.converted = shapes_.get_again(*leaf.shape);
+        if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
+    } catch (const InputError& error) {
+        leaf.unusable = true;
+        faults_.add(*whole.getCollisionObject(), placed.index, error.what());
+    }
 }
 
 void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
                        const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info,
                        btManifoldResult& result) {
-    const auto convert = [&](Placed& placed) {
-        if (in_scene(placed.leaf.kind) && !placed.leaf.converted.shape)
-            placed.leaf.converted = shapes_.get_again(*placed.leaf.shape);
-    };
     if (a.leaf.kind == Kind::mesh || b.leaf.kind == Kind::mesh) {
-        convert(a);
-        convert(b);
+        convert(a, whole_a);
+        convert(b, whole_b);
     }
+    if (a.leaf.unusable || b.leaf.unusable) return;
     const bool convex = a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex;
     switch (work_for(a.leaf, b.leaf)) {
     case Work::plane:
@@ -110,10 +130,11 @@ void Queries::run_plane(const Placed& a, const Placed& b, btManifoldResult& resu
     const bool a_is_mesh = b.leaf.kind == Kind::plane;
     const Placed& mesh = a_is_mesh ? a : b;
     const Placed& plane = a_is_mesh ? b : a;
-    const HalfSpace space = half_space(static_cast<const btStaticPlaneShape&>(*plane.leaf.shape), plane.pose);
+    const HalfSpace space =
+        half_space(static_cast<const btStaticPlaneShape&>(*plane.leaf.shape), plane.leaf.pose, plane.leaf.stretch);
     const btVector3& normal = space.normal;
     std::vector<PlaneContact> found;
-    plane_contacts(mesh.leaf.converted, mesh.pose, space, found);
+    plane_contacts(mesh.leaf.converted, mesh.leaf.pose, space, found);
     for (const PlaneContact& c : found) {
         const int vertex = static_cast<int>(mesh.leaf.converted.shape->vertex_index()[c.vertex]);
         identify(result, a_is_mesh, name_of_feature(mesh.leaf, {.vertex = vertex}), {});
@@ -129,7 +150,7 @@ void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& resu
     const Placed& mesh = a_is_mesh ? a : b;
     const Placed& ball = a_is_mesh ? b : a;
     std::vector<RoundContact> found;
-    round_contacts(mesh.leaf.converted, mesh.pose, round_of(*ball.leaf.shape), ball.pose,
+    round_contacts(mesh.leaf.converted, mesh.leaf.pose, round_of(*ball.leaf.shape), ball.leaf.pose,
                    result.m_closestPointDistanceThreshold, found);
     for (const RoundContact& c : found) {
         const int triangle = static_cast<int>(mesh.leaf.converted.shape->triangle_index()[c.triangle]);
@@ -145,7 +166,8 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
     // A callback may ask for other contacts, or throw: nothing of this pair is in the scene when it is called.
     std::vector<Contact> contacts;
     {
-        const Guest guest_a(scene_, a.leaf.converted.shape, a.pose), guest_b(scene_, b.leaf.converted.shape, b.pose);
+        const Guest guest_a(scene_, a.leaf.converted.shape, a.leaf.pose),
+            guest_b(scene_, b.leaf.converted.shape, b.leaf.pose);
         const std::array pairs{Pair{guest_a.body, guest_b.body}};
         const std::span<const Contact> found = scene_.step(pairs);
         contacts.assign(found.begin(), found.end());

@@ -15,11 +15,13 @@ namespace raycontact::bullet {
 /// What contactTest and contactPairTest need: the contacts of two objects of which RayContact handles a pair of leaves.
 class Queries {
 public:
-    Queries(const Settings& settings, ShapeCache& shapes, ConvexShapes convex, btCollisionDispatcher& dispatcher)
-        : scene_(settings), shapes_(shapes), convex_(convex), dispatcher_(dispatcher) {}
+    Queries(const Settings& settings, ShapeCache& shapes, Faults& faults, ConvexShapes convex,
+            btCollisionDispatcher& dispatcher)
+        : scene_(settings), shapes_(shapes), faults_(faults), convex_(convex), dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
+    /// What cannot be used is left out, as in a dispatch.
     void run(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btDispatcherInfo& info,
              btManifoldResult& result);
     const Scene& scene() const { return scene_; } ///< with the contacts of the last pair of meshes, its bodies gone
@@ -27,10 +29,11 @@ public:
 private:
     struct Placed {
         Leaf leaf;
-        btTransform pose; ///< world
+        btTransform pose; ///< world, as Bullet has it; the leaf's is rigid
         int index;
     };
-    std::vector<Placed> leaves_of(const btCollisionObjectWrapper& wrap) const;
+    std::vector<Placed> leaves_of(const btCollisionObjectWrapper& wrap);
+    void convert(Placed& placed, const btCollisionObjectWrapper& whole);
     void run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
                   const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
     void run_plane(const Placed& a, const Placed& b, btManifoldResult& result);
@@ -41,6 +44,7 @@ private:
 
     Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
     ShapeCache& shapes_;
+    Faults& faults_;
     ConvexShapes convex_;
     btCollisionDispatcher& dispatcher_;
 };

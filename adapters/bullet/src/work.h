@@ -15,8 +15,9 @@ inline bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
 }
 
 inline Work work_for(const Leaf& a, const Leaf& b) {
-    // A flat hull has no mesh to stand for it.
+    // A flat hull has no mesh to stand for it, and a stretched ball is none.
     const auto kind = [](const Leaf& leaf) {
+        if (leaf.kind == Kind::round && leaf.stretch != no_stretch) return Kind::other;
         return leaf.kind == Kind::convex && !leaf.converted.shape ? Kind::other : leaf.kind;
     };
     const Kind one = kind(a), two = kind(b);

@@ -38,6 +38,33 @@ TEST(Pose, RefusesWhatIsNotRigid) {
     EXPECT_THROW(pose_from_quaternion({nan, 0, 0}, 1, 0, 0, 0), InputError);
 }
 
+TEST(Pose, TheNearestRigidPoseDropsDriftAndScale) {
+    const Pose turned = pose_from_quaternion({1, 2, 3}, 1, 2, 3, 4);
+    EXPECT_EQ(nearest_rigid_pose({}), Pose{});
+    // rotation * stretch, of symmetric stretches
+    for (const std::array<double, 9>& s : {std::array<double, 9>{1, 1e-3, 0, 1e-3, 1, 0, 0, 0, 1.001},
+                                           std::array<double, 9>{1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01},
+                                           std::array<double, 9>{1e-6, 0, 0, 0, 1e-6, 0, 0, 0, 1e-6},
+                                           std::array<double, 9>{1e9, 0, 0, 0, 1e9, 0, 0, 0, 1e9},
+                                           std::array<double, 9>{100, 0, 0, 0, 1, 0, 0, 0, 0.1}}) {
+        Pose given = turned;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                given.rotation[3 * i + j] = 0;
+                for (int k = 0; k < 3; ++k)
+                    given.rotation[3 * i + j] += turned.rotation[3 * i + k] * s[static_cast<std::size_t>(3 * k + j)];
+            }
+        const Pose mended = nearest_rigid_pose(given);
+        EXPECT_EQ(mended.translation, turned.translation);
+        for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(mended.rotation[i], turned.rotation[i], 1e-12);
+    }
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Pose& bad : {Pose{{-1, 0, 0, 0, 1, 0, 0, 0, 1}, {}}, Pose{{1, 0, 0, 0, 1, 0, 0, 0, 0}, {}},
+                            Pose{{0, 0, 0, 0, 0, 0, 0, 0, 0}, {}}, Pose{{nan, 0, 0, 0, 1, 0, 0, 0, 1}, {}},
+                            Pose{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {nan, 0, 0}}})
+        EXPECT_THROW(nearest_rigid_pose(bad), InputError);
+}
+
 TEST(Pose, RelativePoseUndoesTheOuter) {
     const Pose a = pose_from_quaternion({1, 2, 3}, 1, 2, 3, 4), b = pose_from_quaternion({-4, 0, 9}, 4, -3, 2, 1);
     const Vec3 p{0.3, -0.7, 0.2};

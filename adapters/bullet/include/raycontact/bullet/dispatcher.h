@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/bullet/fault.h>
+#include <raycontact/bullet/precision.h>
 #include <raycontact/recorder.h>
 #include <raycontact/scene.h>
 
@@ -8,7 +10,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <vector>
 
 namespace raycontact::bullet {
 
@@ -46,6 +50,18 @@ struct DispatcherStats {
     std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
     std::uint64_t reduced_away = 0;   ///< contacts that no manifold point stands for
     std::uint64_t manifolds = 0;      ///< patches
+    /// Meshes made of Bullet's shapes, because they met something for the first time: some 1 us a triangle in which the
+    /// dispatch waits. add_body() has them made ahead.
+    std::uint64_t shapes_made = 0;
+    /// Shapes (each child of a compound) whose transform had drifted, as a product of many float matrices does: by at
+    /// most 1e-3 of their size. The nearest rigid pose was taken.
+    std::uint64_t made_rigid = 0;
+    /// Shapes whose transform is scaled, sheared or mirrored: their mesh is made anew, scaled. Each other scale, in
+    /// steps of about 1e-3, makes another; balls and capsules are left to Bullet.
+    std::uint64_t scaled = 0;
+    /// Objects of which a shape took no part: its transform is not finite or flat, or no mesh can be made of it. Each
+    /// such fault is told to on_fault() once.
+    std::vector<const btCollisionObject*> left_out;
 };
 
 /// Names a manifold point's contact from step to step, unique within its two objects.
@@ -75,8 +91,7 @@ public:
                                  const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
     ~CollisionDispatcher() override;
 
-    /// Throws InputError naming the body when the pose of one that has a pair is not finite, or a mesh cannot be
-    /// converted.
+    /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
 
@@ -85,13 +100,18 @@ public:
     btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         btPersistentManifold* manifold, ebtDispatcherQueryType type) override;
 
-    /// Optional: gives the object's meshes their slots in scene() at once and keeps them even when no pair needs them,
-    /// so slots follow the caller's order. Returns the id of its first mesh. The object must be removed by remove_body
-    /// before it is deleted.
+    /// Optional: makes the object's meshes now, so that no dispatch has to wait for them, gives them their slots in
+    /// scene(), and keeps both even when no pair needs them. So slots follow the caller's order. Returns the id of its
+    /// first mesh. The object must be removed by remove_body before it is deleted. Throws ObjectError, which has the
+    /// object, for one that a dispatch would leave out, and InputError for one without a mesh.
     BodyId add_body(const btCollisionObject& object);
     void remove_body(const btCollisionObject& object);
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
+
+    /// Called at the end of the dispatch or query that found a fault, once for each; it may throw. At first it prints a
+    /// line on stderr; an empty function says nothing.
+    void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a
     /// mesh is prepared beside the dispatches once it meets others a second time.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/bullet/precision.h>
 #include <raycontact/shape.h>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -50,6 +51,11 @@ public:
     const char* getName() const override {
         return "RayContactMesh";
     }
+    /// As a btBvhTriangleMeshShape, with the vertices and triangles of the mesh after its repairs. Bullet's importers
+    /// read it back as one, which the dispatcher takes as it takes this. They make bodies of such meshes static: one
+    /// that moved needs setMassProps(), cleared collision flags, and to be added to its world again.
+    int calculateSerializeBufferSize() const override;
+    const char* serialize(void* data, btSerializer* serializer) const override;
 
 private:
     std::shared_ptr<const Shape> original_;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/error.h>
+
+#include <string>
+#include <utility>
+
+class btCollisionObject;
+
+namespace raycontact::bullet {
+
+/// Why an object, or a child of its compound, takes no part in the contacts that RayContact finds.
+struct Fault {
+    const btCollisionObject* object = nullptr;
+    int child = 0;    ///< index of the leaf shape, depth first, when the object is a compound; else 0
+    std::string text; ///< names shape and reason, and says what to do, in one line
+};
+
+/// CollisionDispatcher::add_body() throws it where a dispatch would leave the object out.
+class ObjectError : public InputError {
+public:
+    explicit ObjectError(Fault fault) : InputError(fault.text), fault_(std::move(fault)) {}
+    const Fault& fault() const { return fault_; }
+
+private:
+    Fault fault_;
+};
+
+} // namespace raycontact::bullet

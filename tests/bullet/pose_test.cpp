@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Transforms that Bullet takes although they are not rigid, and meshes without an area: none ends a simulation.
+#include "test_world.h"
+
+#include <placement.h>
+
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace raycontact::test {
+namespace {
+
+constexpr btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
+
+btTransform with_basis(const btMatrix3x3& basis, const btVector3& origin) {
+    return btTransform(basis, origin);
+}
+
+btMatrix3x3 diagonal(double x, double y, double z) {
+    return btMatrix3x3(btScalar(x), 0, 0, 0, btScalar(y), 0, 0, 0, btScalar(z));
+}
+
+btMatrix3x3 turned(double angle) {
+    return btMatrix3x3(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(angle)));
+}
+
+/// Rounded as a product of float matrices is, also in a Bullet in double precision.
+btMatrix3x3 in_float(const btMatrix3x3& m) {
+    btMatrix3x3 rounded;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) rounded[i][j] = btScalar(float(m[i][j]));
+    return rounded;
+}
+
+std::unique_ptr<btTriangleMesh> triangle(const btVector3& a, const btVector3& b, const btVector3& c) {
+    auto mesh = std::make_unique<btTriangleMesh>();
+    mesh->addTriangle(a, b, c);
+    return mesh;
+}
+
+/// The faults that were told.
+struct Told {
+    explicit Told(TestWorld& world) {
+        world.dispatcher.on_fault([this](const bullet::Fault& fault) { faults.push_back(fault); });
+    }
+    std::vector<bullet::Fault> faults;
+};
+
+TEST(BulletPose, ABasisThatDriftsIsMadeRigid) {
+    TestWorld w;
+    btRigidBody& wheel = w.add_mesh(torus(), 0, at(0, 0, 0));
+    wheel.setCollisionFlags(wheel.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    w.add_mesh(Shape::make(box_mesh(1, 1, 0.2)), 1, at(0.4, 0, 0));
+    const btMatrix3x3 turn = in_float(turned(0.01));
+    std::uint64_t mended = 0;
+    for (int i = 0; i < 12000; ++i) {
+        btTransform pose = wheel.getWorldTransform();
+        pose.setBasis(in_float(pose.getBasis() * turn));
+        wheel.setWorldTransform(pose);
+        if (i % 10 == 0) w.world.performDiscreteCollisionDetection();
+        ASSERT_TRUE(w.dispatcher.stats().left_out.empty()) << i;
+        ASSERT_EQ(w.dispatcher.stats().scaled, 0u) << i;
+        mended += w.dispatcher.stats().made_rigid;
+    }
+    EXPECT_GT(mended, 1000u);
+    EXPECT_GT(w.dispatcher.stats().contacts, 0u);
+}
+
+TEST(BulletPose, DriftScaleAndWhatCannotBeUsed) {
+    const btVector3 origin(1, 2, 3);
+    EXPECT_FALSE(bullet::place(with_basis(turned(1), origin)).drifted);
+    for (const double off : {1e-4, 5e-4}) {
+        const auto placed = bullet::place(with_basis(turned(1) * diagonal(1, 1 + off, 1), origin));
+        EXPECT_TRUE(placed.drifted);
+        EXPECT_EQ(placed.stretch, bullet::no_stretch);
+        EXPECT_EQ(placed.pose.getOrigin(), origin);
+        EXPECT_FALSE(bullet::place(placed.pose).drifted);
+    }
+    const btMatrix3x3 shear(1, btScalar(0.5), 0, 0, 1, 0, 0, 0, 1);
+    for (const btMatrix3x3& basis : {diagonal(1.01, 1.01, 1.01), diagonal(2.5, 2.5, 2.5), diagonal(0.01, 0.01, 0.01),
+                                     diagonal(1, 2, 30), diagonal(-1, 1, 1), diagonal(-3, -3, -3), shear}) {
+        const btMatrix3x3 given = turned(1) * basis;
+        const auto placed = bullet::place(with_basis(given, origin));
+        EXPECT_FALSE(placed.drifted);
+        EXPECT_FALSE(bullet::place(placed.pose).drifted);
+        btScalar largest = 0;
+        for (int i = 0; i < 3; ++i) largest = btMax(largest, given[i].absolute()[given[i].absolute().maxAxis()]);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                btScalar product = 0;
+                for (int k = 0; k < 3; ++k)
+                    product += placed.pose.getBasis()[i][k] * btScalar(placed.stretch[3 * k + j]);
+                EXPECT_NEAR(double(product), double(given[i][j]), 2e-3 * double(largest)) << i << j;
+            }
+    }
+    const btMatrix3x3 unturned = btMatrix3x3::getIdentity();
+    EXPECT_THROW(bullet::place(with_basis(unturned, btVector3(0, nan, 0))), InputError);
+    EXPECT_THROW(bullet::place(with_basis(diagonal(1, double(nan), 1), origin)), InputError);
+    EXPECT_THROW(bullet::place(with_basis(diagonal(0, 1, 1), origin)), InputError);
+    EXPECT_THROW(bullet::place(with_basis(diagonal(0, 0, 0), origin)), InputError);
+    EXPECT_THROW(bullet::place(with_basis(diagonal(1, 1, double(INFINITY)), origin)), InputError);
+}
+
+/// The highest point of a table let fall on a scaled floor, after it came to rest.
+double rest_on(TestWorld& w, btRigidBody& floor, const btMatrix3x3& basis, const btVector3& origin) {
+    floor.setWorldTransform(with_basis(basis, origin));
+    w.world.updateSingleAabb(&floor);
+    const btRigidBody& body = w.add_mesh(table(), 5, at(0.1, 0.2, 1.5));
+    w.steps(180);
+    EXPECT_LT(double(body.getLinearVelocity().length()), 0.05);
+    EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+    return double(body.getWorldTransform().getOrigin().z()) - 0.4;
+}
+
+TEST(BulletPose, BodiesRestOnAScaledFloor) {
+    for (const double scale : {1.01, 2.0, 0.5}) {
+        const btVector3 low(0, 0, btScalar(-0.5 * scale));
+        const auto basis = diagonal(scale, scale, scale);
+        {
+            TestWorld w;
+            btRigidBody& floor = w.add_mesh(Shape::make(box_mesh(12, 12, 1)), 0, at(0, 0, 0));
+            EXPECT_NEAR(rest_on(w, floor, basis, low), 0, 0.02) << scale;
+            EXPECT_EQ(w.dispatcher.stats().scaled, 1u);
+        }
+        {
+            TestWorld w;
+            btRigidBody& floor = w.add(std::make_unique<btBoxShape>(btVector3(6, 6, btScalar(0.5))), 0, at(0, 0, 0));
+            EXPECT_NEAR(rest_on(w, floor, basis, low), 0, 0.02) << scale;
+        }
+        {
+            TestWorld w; // the plane is at z = 0.5 in its frame
+            btRigidBody& floor =
+                w.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0.5)), 0, at(0, 0, 0));
+            EXPECT_NEAR(rest_on(w, floor, basis, low), 0, 0.02) << scale;
+        }
+        {
+            const std::vector<btScalar> heights(13 * 13, btScalar(0.5)); // middle of its range: 0
+            TestWorld w;
+            btRigidBody& floor = w.add(
+                std::make_unique<btHeightfieldTerrainShape>(13, 13, heights.data(), btScalar(0), btScalar(1), 2, false),
+                0, at(0, 0, 0));
+            EXPECT_NEAR(rest_on(w, floor, basis, btVector3(0, 0, 0)), 0, 0.02) << scale;
+        }
+        {
+            TestWorld w;
+            auto& mesh = w.keep(std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(12, 12, 1))));
+            auto compound = std::make_unique<btCompoundShape>();
+            compound->addChildShape(btTransform(basis, low), &mesh);
+            btRigidBody& floor = w.add(std::move(compound), 0, at(0, 0, 0));
+            EXPECT_NEAR(rest_on(w, floor, btMatrix3x3::getIdentity(), btVector3(0, 0, 0)), 0, 0.02) << scale;
+        }
+    }
+}
+
+TEST(BulletPose, AScaledMeshHasTheContactsOfAScaledShape) {
+    for (const btVector3& scale : {btVector3(2, 2, 2), btVector3(1, btScalar(0.5), 2), btVector3(-1, 1, 1)}) {
+        TestWorld by_pose, by_shape;
+        btRigidBody& scaled = by_pose.add_mesh(torus(), 0, at(0, 0, 0));
+        scaled.setWorldTransform(
+            with_basis(diagonal(double(scale.x()), double(scale.y()), double(scale.z())), {0, 0, 0}));
+        by_pose.world.updateSingleAabb(&scaled);
+        auto shape = std::make_unique<bullet::MeshShape>(torus());
+        shape->setLocalScaling(scale);
+        by_shape.add(std::move(shape), 0, at(0, 0, 0));
+        for (TestWorld* w : {&by_pose, &by_shape}) {
+            w->add_mesh(table(), 5, at(0.3, 0.2, 0.45));
+            w->world.performDiscreteCollisionDetection();
+        }
+        const std::size_t found = by_pose.dispatcher.scene().contacts().size();
+        EXPECT_EQ(found, by_shape.dispatcher.scene().contacts().size());
+        EXPECT_GT(found, 0u);
+        EXPECT_NEAR(by_pose.dispatcher.scene().stats().depth_max, by_shape.dispatcher.scene().stats().depth_max, 1e-5);
+    }
+}
+
+TEST(BulletPose, WhatCannotBePlacedIsLeftOutAndNamed) {
+    TestWorld w;
+    Told told(w);
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.4));
+    body.setUserIndex(42);
+    w.steps(30);
+    ASSERT_GT(w.touching(), 0);
+    for (const btMatrix3x3& basis : {diagonal(1, 0, 1), diagonal(double(nan), 1, 1)}) {
+        told.faults.clear();
+        const btTransform before = body.getWorldTransform();
+        body.setWorldTransform(with_basis(basis, before.getOrigin()));
+        for (int i = 0; i < 3; ++i) {
+            // The pair stays: Bullet does not move a box that is not finite.
+            w.dispatcher.dispatchAllCollisionPairs(w.world.getPairCache(), w.world.getDispatchInfo(), &w.dispatcher);
+            EXPECT_EQ(w.dispatcher.stats().left_out, std::vector<const btCollisionObject*>{&body});
+            EXPECT_EQ(w.touching(), 0);
+        }
+        ASSERT_EQ(told.faults.size(), 1u);
+        EXPECT_EQ(told.faults[0].object, &body);
+        EXPECT_NE(told.faults[0].text.find("user index 42"), std::string::npos) << told.faults[0].text;
+        EXPECT_THROW(w.dispatcher.add_body(body), bullet::ObjectError);
+        body.setWorldTransform(before);
+        w.world.performDiscreteCollisionDetection();
+        EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+        EXPECT_GT(w.touching(), 0);
+    }
+}
+
+TEST(BulletPose, MeshesOfWhichNoneCanBeMadeAreLeftOutAndNamed) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    const auto point = triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+    const auto far = triangle({0, 0, 0}, {btScalar(3e9), 0, 0}, {0, btScalar(3e9), 0});
+    for (const auto* mesh : {&flat, &point, &far}) {
+        TestWorld w;
+        Told told(w);
+        btRigidBody& bad = w.add(std::make_unique<btBvhTriangleMeshShape>(mesh->get(), false), 0, at(0, 0, 0));
+        w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+        w.steps(5);
+        ASSERT_EQ(told.faults.size(), 1u);
+        EXPECT_EQ(told.faults[0].object, &bad);
+        EXPECT_EQ(w.dispatcher.stats().left_out, std::vector<const btCollisionObject*>{&bad});
+        try {
+            w.dispatcher.add_body(bad);
+            FAIL() << "it was added";
+        } catch (const bullet::ObjectError& error) {
+            EXPECT_EQ(error.fault().object, &bad);
+        }
+    }
+}
+
+TEST(BulletPose, QueriesTakeThemToo) {
+    struct Count : btCollisionWorld::ContactResultCallback {
+        int points = 0;
+        btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                                 const btCollisionObjectWrapper*, int, int) override {
+            ++points;
+            return 0;
+        }
+    };
+    TestWorld w;
+    Told told(w);
+    btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 1.5));
+    const auto points = [&] {
+        Count count;
+        w.world.contactPairTest(&low, &high, count);
+        return count.points;
+    };
+    EXPECT_EQ(points(), 0);
+    high.setWorldTransform(with_basis(diagonal(1, 1, 4), {0, 0, btScalar(1.5)})); // down to -0.5
+    EXPECT_GT(points(), 0);
+    high.setWorldTransform(with_basis(diagonal(1, 1, 0), {0, 0, 0}));
+    EXPECT_EQ(points(), 0);
+    EXPECT_EQ(points(), 0);
+    ASSERT_EQ(told.faults.size(), 1u);
+    EXPECT_EQ(told.faults[0].object, &high);
+}
+
+// A speed beyond all bounds makes a pose that is not finite; `continuous` asks for it before Bullet does.
+TEST(BulletPose, NoSpeedEndsAContinuousSimulation) {
+    Settings settings;
+    settings.continuous = true;
+    TestWorld w(settings);
+    w.dispatcher.on_fault({});
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.4));
+    for (const btScalar speed : {btScalar(1e30), btScalar(INFINITY), nan}) {
+        body.setWorldTransform(at(0, 0, 0.4));
+        body.setLinearVelocity(btVector3(0, 0, speed));
+        w.world.performDiscreteCollisionDetection();
+    }
+    EXPECT_GT(w.dispatcher.stats().contacts, 0u);
+}
+
+} // namespace
+} // namespace raycontact::test
