@@ -3,6 +3,7 @@
 
 Prints frames a second while it plays at 640 x 400 pixels, and fails below 4 (10 is what a quiet machine must reach)."""
 
+import json
 import os
 import subprocess
 import sys
@@ -56,8 +57,36 @@ def main(chromium, raycontact, recording=None):
         browser = Browser(chromium)
         try:
             check(browser, page)
+            check_legend(browser, raycontact, folder)
         finally:
             browser.close()
+
+
+CUBE = """v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1
+f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
+
+
+def check_legend(browser, raycontact, folder):
+    """Two cubes that begin a metre deep in each other, and then all rest within millimetres."""
+    with open(os.path.join(folder, "cube.obj"), "w") as file:
+        file.write(CUBE)
+    bodies = [{"mesh": "cube", "position": [x, 0, 1]} for x in (0, 1, 4, 7)]
+    bodies[0]["static"] = True
+    with open(os.path.join(folder, "deep.json"), "w") as file:
+        json.dump({"steps": 120, "ground": {"slab": 30}, "meshes": {"cube": {"file": "cube.obj"}}, "bodies": bodies},
+                  file)
+    recording, page = os.path.join(folder, "deep.glb"), os.path.join(folder, "deep.html")
+    subprocess.run([raycontact, "run", os.path.join(folder, "deep.json"), "--record", recording, "--json"], check=True,
+                   capture_output=True)
+    subprocess.run([raycontact, "view", recording, "--out", page, "--layers-every", "119", "--json"], check=True,
+                   capture_output=True)
+    browser.size(1280, 800)
+    open_page(browser, page, "#step=119&layers=contacts")
+    browser.wait_for("+document.documentElement.dataset.marks > 0")
+    legend = browser.value("document.getElementById('legend').textContent")
+    assert legend.endswith("deeper, up to 1 m in step 0") and " mm" in legend.replace("0", " "), legend
+    about = browser.value("document.getElementById('about').textContent")
+    assert "3 moving bodies, 2 standing still" in about, about
 
 
 def check(browser, page):
