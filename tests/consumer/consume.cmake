@@ -37,7 +37,10 @@ if(WAY STREQUAL "install")
     file(RENAME ${WORK}/first ${WORK}/prefix)
     list(APPEND options -DCMAKE_PREFIX_PATH=${WORK}/prefix -DEXPECT_BULLET=${BULLET})
 else()
-    list(APPEND options -DRAYCONTACT_SOURCE=${SOURCE} -DRAYCONTACT_EXECUTOR=${EXECUTOR})
+    # As strict as a project may be about itself: this is neither about our sources nor about our headers.
+    list(APPEND options -DRAYCONTACT_SOURCE=${SOURCE} -DRAYCONTACT_EXECUTOR=${EXECUTOR}
+        "-DCMAKE_CXX_FLAGS=${CXX_FLAGS} -Wall -Wextra -Wpedantic -Wold-style-cast -Wconversion -Wsign-conversion -Wshadow -Werror"
+        -DCMAKE_COMPILE_WARNING_AS_ERROR=ON)
 endif()
 run(${CMAKE_COMMAND} -S ${PROJECT} -B ${WORK}/build ${options})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
@@ -51,6 +54,18 @@ if(PROGRAM)
             message(FATAL_ERROR "README's program ${number} failed (${status}) or found no contact: ${said}")
         endif()
     endforeach()
+endif()
+if(WAY STREQUAL "install")
+    # Containers of other sizes than the library's are refused by one line that says so.
+    execute_process(COMMAND ${CMAKE_COMMAND} -S ${PROJECT} -B ${WORK}/debug ${options}
+        "-DCMAKE_CXX_FLAGS=${CXX_FLAGS} -D_GLIBCXX_DEBUG" OUTPUT_QUIET)
+    execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/debug --target consumer
+        RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
+    string(REGEX MATCHALL "undefined [^\n]*" lines "${said}")
+    list(LENGTH lines count)
+    if(status EQUAL 0 OR NOT count EQUAL 1 OR NOT said MATCHES "library_built_with_GLIBCXX_DEBUG")
+        message(FATAL_ERROR "_GLIBCXX_DEBUG against a library without is not refused by one line: ${said}")
+    endif()
 endif()
 if(EXISTS ${WORK}/build/recording_consumer)
     run(${WORK}/build/recording_consumer ${WORK}/own.glb)
