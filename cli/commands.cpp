@@ -9,10 +9,12 @@
 #include "cli/replay.h"
 #include "cli/reproduce.h"
 #include "cli/run.h"
+#include "cli/samples.h"
 #include "cli/view.h"
 
 void add_commands(CLI::App& app) {
     add_devices(app);
+    add_samples(app);
     add_mesh(app);
     add_collide(app);
     add_clash(app);

@@ -18,7 +18,7 @@ namespace {
 using namespace raycontact;
 using namespace raycontact::bench;
 
-constexpr double seconds_a_pass = 0.7; ///< of GImpact over a frame's pairs; meshes of a user's own can be large
+constexpr double seconds_a_pass = 0.1; ///< of GImpact over a frame's pairs; meshes of a user's own can be large
 constexpr std::size_t turns = 3;
 
 Work work_of(const scenes::RunLog& log, const scenes::Frame& frame) {
@@ -45,7 +45,7 @@ std::vector<Pair> evenly(const std::vector<Pair>& pairs, std::size_t count) {
 
 /// So many of the pairs that a pass of the slower one stays short.
 void leave_out(Peer& slow, WorkStep& step) {
-    constexpr std::size_t first = 64;
+    constexpr std::size_t first = 16;
     if (step.pairs.size() <= first) return;
     WorkStep trial{step.poses, evenly(step.pairs, first)};
     Found ignored;

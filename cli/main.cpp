@@ -42,8 +42,9 @@ int run_program(int argc, char** argv) {
         return bad_input;
     }
     if (app.get_subcommands().empty()) {
-        throw raycontact::InputError("a subcommand is required: devices, mesh, collide, clash, run, replay, view, "
-                                     "reproduce or bench (see raycontact --help)");
+        throw raycontact::InputError(
+            "a subcommand is required: devices, samples, mesh, collide, clash, run, replay, view, "
+            "reproduce or bench (see raycontact --help)");
     }
     if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
     return stop_signal() == 0 ? fine : 128 + stop_signal(); // as a shell has it

@@ -11,6 +11,7 @@
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <recording/replay.h>
+#include <report/counted.h>
 #include <report/plot.h>
 
 #include <fmt/format.h>
@@ -105,15 +106,16 @@ std::string hash_for_a_person(const Json& s) {
 
 std::string for_a_person(const Json& s) {
     std::string text = fmt::format(
-        "{}: {} bodies, {} steps, seed {}\n"
+        "{}: {}, {}, seed {}\n"
         "pairs      {} at most\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most\n"
         "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n",
-        s["scene"].get<std::string>(), s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(),
-        s["seed"].get<std::uint64_t>(), s["pairs_max"].get<std::uint64_t>(), s["rays"].get<std::uint64_t>(),
-        s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
-        s["wall_ms"].get<double>() / 1000, s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(),
+        s["scene"].get<std::string>(), report::counted(s["bodies"].get<std::uint64_t>(), "body", "bodies"),
+        report::counted(s["steps"].get<std::uint64_t>(), "step", "steps"), s["seed"].get<std::uint64_t>(),
+        s["pairs_max"].get<std::uint64_t>(), s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(),
+        s["ray_length"].get<double>(), s["penetration_max"].get<double>(), s["wall_ms"].get<double>() / 1000,
+        s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(),
         s["narrow_ms"]["median"].get<double>());
     if (s["cut_short"].get<bool>())
         text += fmt::format("cut short  by {}: {} steps of {}\n", stop_name(), s["steps"].get<std::uint64_t>(),

@@ -4,6 +4,7 @@
 #include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
+#include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/progress.h"
 #include "cli/record.h"
@@ -13,6 +14,7 @@
 
 #include <output/out_folder.h>
 #include <raycontact/error.h>
+#include <report/counted.h>
 #include <report/report.h>
 #include <scenes/simulation.h>
 
@@ -35,14 +37,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using raycontact::InputError;
+using raycontact::report::counted;
 using namespace raycontact::scenes;
 
 struct RunOptions {
     RunScene scene;
     std::string out, record;
+    std::uint32_t pictures = raycontact::report::ReportOptions().pictures;
     bool json = false;
     raycontact::Settings settings;
 };
+
+Json count(const std::optional<std::uint32_t>& bodies) {
+    return bodies ? Json(*bodies) : Json(nullptr);
+}
 
 Json summary(const RunOptions& options, const Simulation& scene, double wall_ms) {
     using raycontact::to_string;
@@ -85,28 +93,34 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"deep_contacts", health.deep_contacts},
         {"deep_steps_longest", health.deep_steps_longest},
         {"deep_steps_last_second", health.deep_steps_last_second},
-        {"below_ground", health.below_ground},
-        {"flown_off", health.flown_off}};
+        {"below_ground", count(health.below_ground)},
+        {"flown_off", count(health.flown_off)}};
     work.put(result);
     put_settings(result, options.settings);
     return result;
 }
 
+std::string whereabouts(const Json& s) {
+    if (s["below_ground"].is_null()) return "no ground that bodies could fall from";
+    return counted(s["below_ground"].get<std::uint64_t>(), "body", "bodies") + " below ground, "
+           + std::to_string(s["flown_off"].get<std::uint64_t>()) + " flown off";
+}
+
 std::string for_a_person(const Json& s) {
     std::string text = fmt::format(
-        "{}: {} bodies, {} steps, seed {}; {}\n"
+        "{}: {}, {}, seed {}; {}\n"
         "pairs      {} at most, {} in the last second\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
         "depth      {:.4f} m at most, {:.4f} m in the last second\n"
-        "speed      median {:.4f} m/s in the last second; {} bodies below ground, {} flown off\n"
+        "speed      median {:.4f} m/s in the last second; {}\n"
         "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median, {:.2f} ms in the "
         "last second\n",
-        s["scene"].get<std::string>(), s["bodies"].get<std::uint64_t>(), s["steps"].get<std::uint64_t>(),
-        s["seed"].get<std::uint64_t>(), s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(),
-        s["pairs_last_second"].get<double>(), s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(),
-        s["ray_length"].get<double>(), s["penetration_max"].get<double>(),
-        s["penetration_max_last_second"].get<double>(), s["median_speed_last_second"].get<double>(),
-        s["below_ground"].get<std::uint64_t>(), s["flown_off"].get<std::uint64_t>(), s["wall_ms"].get<double>() / 1000,
+        s["scene"].get<std::string>(), counted(s["bodies"].get<std::uint64_t>(), "body", "bodies"),
+        counted(s["steps"].get<std::uint64_t>(), "step", "steps"), s["seed"].get<std::uint64_t>(),
+        s["mesh_source"].get<std::string>(), s["pairs_max"].get<std::uint64_t>(), s["pairs_last_second"].get<double>(),
+        s["rays"].get<std::uint64_t>(), s["contacts"].get<std::uint64_t>(), s["ray_length"].get<double>(),
+        s["penetration_max"].get<double>(), s["penetration_max_last_second"].get<double>(),
+        s["median_speed_last_second"].get<double>(), whereabouts(s), s["wall_ms"].get<double>() / 1000,
         s["step_ms"]["median"].get<double>(), s["step_ms"]["p95"].get<double>(), s["narrow_ms"]["median"].get<double>(),
         s["narrow_ms_last_second"].get<double>());
     if (s["cut_short"].get<bool>())
@@ -123,6 +137,15 @@ std::string steps_csv(const std::vector<StepRow>& rows) {
         text += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}{}\n", r.step, r.pairs, r.rays, r.contacts, r.step_ms,
                             r.narrow_ms, r.ray_length, r.penetration_max, r.median_speed, work_cells(r));
     return text;
+}
+
+std::uint32_t pictures_from(const std::string& word) {
+    constexpr std::uint32_t most = 1000;
+    if (word == "none") return 0;
+    const auto number = read_number<std::uint32_t>(word);
+    if (!number || *number < 1 || *number > most)
+        throw InputError(fmt::format("--pictures: \"{}\" is neither a number from 1 to {} nor \"none\"", word, most));
+    return *number;
 }
 
 /// Viewers go by the ending, and a recording under another name overwrites what nobody meant.
@@ -161,10 +184,14 @@ RunLog log_of(const Simulation& scene, const std::string& summary_json) {
     return log;
 }
 
-void write_files(raycontact::output::OutFolder& folder, const RunLog& log, bool cut_short) {
-    std::cerr << "drawing the report\n";
+void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::uint32_t pictures, bool cut_short) {
     folder.write("steps.csv", steps_csv(log.rows));
-    raycontact::report::write_report(folder, log, compare_with_gimpact(log));
+    raycontact::report::ReportOptions report{pictures, compare_with_gimpact(log)};
+    Progress progress("drawing", work_of(log, report), "");
+    report.progress = [&](std::uint32_t done) { progress.show(done); };
+    report.stop = [before = stop_signal()] { return stop_signal() != before; };
+    raycontact::report::write_report(folder, log, report);
+    progress.done();
     folder.keep(cut_short);
     std::cerr << "report: " << folder.kept("report.html").string() << '\n';
 }
@@ -174,7 +201,7 @@ void run(const RunOptions& options) {
     Outputs outputs(options);
     const auto start = std::chrono::steady_clock::now();
     SceneDescription described = describe_scene(options.scene, options.settings);
-    if (!options.out.empty()) described.frames = raycontact::report::film_frames;
+    if (!options.out.empty()) described.frames = std::max(raycontact::report::film_frames, options.pictures);
     Simulation scene(std::move(described));
     const SceneDescription& description = scene.description();
     std::set<std::uint32_t> moving;
@@ -205,7 +232,7 @@ void run(const RunOptions& options) {
     // What cannot be written is told last: the summary of a run of hours is worth more.
     std::string error = recorder.error();
     try {
-        if (outputs.folder) write_files(*outputs.folder, log_of(scene, text), cut_short);
+        if (outputs.folder) write_files(*outputs.folder, log_of(scene, text), options.pictures, cut_short);
     } catch (const std::exception& unwritten) {
         error += (error.empty() ? "" : "; ") + std::string(unwritten.what());
     }
@@ -223,8 +250,14 @@ void add_run(CLI::App& app) {
             "write a recording there: for `raycontact replay`, and any glTF viewer")
         ->type_name("FILE.glb");
     add_out(*command, "--out", options->out,
-            "write report.html, pictures and steps.csv there; drawing takes some seconds")
+            "write report.html, pictures and steps.csv there; the pictures take some ten seconds on two cores")
         ->type_name("DIR");
+    command
+        ->add_option_function<std::string>(
+            "--pictures", [options](const std::string& word) { options->pictures = pictures_from(word); },
+            "with --out: large pictures, evenly over the run, and a film of it; none: neither")
+        ->type_name("N|none")
+        ->default_str(std::to_string(options->pictures));
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     command->add_flag("--continuous", options->settings.continuous,
                       "stop bodies before they pass through something in one step (docs/continuous.md)");
@@ -232,6 +265,8 @@ void add_run(CLI::App& app) {
     command->footer(stop_footer);
     command->callback([command, options] {
         if (command->count("--record") > 0) check_record(options->record);
+        if (command->count("--pictures") > 0 && options->out.empty())
+            throw InputError("--pictures: is for the report; give --out DIR, too");
         run(*options);
     });
 }

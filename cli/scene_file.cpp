@@ -7,6 +7,7 @@
 #include <scenes/centred_shape.h>
 #include <scenes/circle_source.h>
 #include <scenes/ground.h>
+#include <scenes/meshes_in_words.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
@@ -81,28 +82,25 @@ public:
         Random random(scene_.seed);
         if (const auto sources = root.find("sources"))
             for (const JsonField& source : sources->items()) read_source(source, random);
-        if (scene_.bodies.size() == ground_bodies_)
+        if (scene_.bodies.size() == (scene_.slab ? 1u : 0u))
             root.refuse("has no bodies; list them under \"bodies\" or \"sources\"");
         read_response(root);
+        scene_.region = region();
         return std::move(scene_);
     }
 
 private:
     // Before the bodies, so that they may come at any time: a slab is the first body.
     void read_ground(const JsonField& ground) {
-        const bool downward = scene_.gravity.x == 0 && scene_.gravity.y == 0 && scene_.gravity.z < 0;
         if (ground.is_text()) {
             const std::string word = ground.text();
             if (word != "plane" && word != "none")
                 ground.refuse(quoted(word) + " is not known; give \"plane\", \"none\" or {\"slab\": METRES}");
             scene_.plane = word == "plane";
-            if (scene_.plane) scene_.region.low.z = 0;
         } else {
             ground.only({"slab"});
             add_slab(scene_, ground.at("slab").positive() / 2, Region::inf);
-            ground_bodies_ = scene_.bodies.size();
         }
-        if (!downward) scene_.region = {}; // what is above it then, nobody knows
     }
 
     void read_meshes(const JsonField& root) {
@@ -121,8 +119,7 @@ private:
                 const std::string path = from_file->text();
                 made = at_fault(*from_file,
                                 [&] { return centred_shape(load_mesh(file_.parent_path() / path), metres, factor); });
-                source = fmt::format("{} ({} vertices and {} triangles)", path, made.shape->vertices().size(),
-                                     made.shape->triangles().size());
+                source = mesh_in_words(path, *made.shape);
             } else {
                 const std::string kind = model->text();
                 const auto triangles = mesh.find("triangles");
@@ -132,10 +129,8 @@ private:
                 source = known.source;
             }
             meshes_[name] = {static_cast<std::uint32_t>(scene_.shapes.size()), made.centre, made.extent};
-            scene_.shapes.push_back({made.shape, bullet::Bounds::box});
-            scene_.mesh_source += (scene_.mesh_source.empty() ? "" : "; ") + source;
+            scene_.shapes.push_back({made.shape, bullet::Bounds::box, source});
         }
-        if (meshes_.size() > 1) scene_.mesh_source.insert(0, "one of: ");
     }
 
     const NamedMesh& mesh_of(const JsonField& name) const {
@@ -223,11 +218,29 @@ private:
         }
     }
 
+    // What stands still and all above it. Bodies of a scene without such things cannot be lost.
+    Region region() const {
+        Region region = Region::empty();
+        if (scene_.plane)
+            for (const double far : {-Region::inf, Region::inf}) region.include({far, far, 0});
+        for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
+            const BodyStart& body = scene_.bodies[k];
+            if (body.density > 0) continue;
+            for (const Vec3& v : scene_.shapes[body.shape].shape->vertices()) {
+                if (scene_.slab == k && v.z < 0) continue; // a slab's top is the ground
+                const btVector3 p = body.pose * bullet_vector(v);
+                region.include({double(p.x()), double(p.y()), double(p.z())});
+            }
+        }
+        if (region.low.z > region.high.z) return {};
+        region.open_above(scene_.gravity);
+        return region;
+    }
+
     std::filesystem::path file_;
     nlohmann::json document_;
     const SceneFileOptions& options_;
     SceneDescription scene_;
-    std::size_t ground_bodies_ = 0;
     std::map<std::string, NamedMesh> meshes_;
     double smallest_ = Region::inf; ///< extent of what moves
 };

@@ -2,27 +2,24 @@
 #pragma once
 
 #include <raycontact/scene.h>
+#include <scenes/quantile.h>
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 // What `run` and `replay` say alike of their steps.
 
-/// The value that this part of the rows does not exceed; 0 of none.
 template <class Row, class Value>
 double quantile(const std::vector<Row>& rows, double part, Value value) {
-    if (rows.empty()) return 0;
     std::vector<double> all;
     all.reserve(rows.size());
     for (const Row& row : rows) all.push_back(value(row));
-    const auto at = all.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(all.size() - 1));
-    std::nth_element(all.begin(), at, all.end());
-    return *at;
+    return raycontact::scenes::quantile(std::move(all), part);
 }
 
 template <class Row, class Value>

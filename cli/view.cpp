@@ -8,6 +8,7 @@
 
 #include <output/out_file.h>
 #include <raycontact/error.h>
+#include <report/counted.h>
 #include <view/motion.h>
 #include <view/view.h>
 
@@ -86,6 +87,7 @@ void view_recording(const CLI::App& command, const ViewCommand& given) {
                           {"shape_bytes", page.shape_bytes},
                           {"layer_bytes", page.layer_bytes},
                           {"bodies", bodies},
+                          {"standing", page.standing},
                           {"steps", reader.steps()},
                           {"every", options.stride},
                           {"layers_every", options.layer_every},
@@ -96,10 +98,11 @@ void view_recording(const CLI::App& command, const ViewCommand& given) {
                   << '\n';
     } else {
         constexpr double mega = 1e6;
-        std::cout << fmt::format("{}: {:.1f} MB (poses {:.1f}, shapes {:.1f}, layers {:.1f}); {} bodies, {} steps\n",
-                                 out, double(page.html.size()) / mega, double(page.motion_bytes) / mega,
-                                 double(page.shape_bytes) / mega, double(page.layer_bytes) / mega, bodies,
-                                 reader.steps());
+        std::cout << fmt::format("{}: {:.1f} MB (poses {:.1f}, shapes {:.1f}, layers {:.1f}); {}, {}\n", out,
+                                 double(page.html.size()) / mega, double(page.motion_bytes) / mega,
+                                 double(page.shape_bytes) / mega, double(page.layer_bytes) / mega,
+                                 report::counted(bodies - page.standing, "moving body", "moving bodies"),
+                                 report::counted(reader.steps(), "step", "steps"));
     }
     if (given.no_open || given.json) return;
     if (!has_screen() || !open_in_browser(out))

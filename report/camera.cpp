@@ -19,14 +19,16 @@ std::vector<Ball> without_strays(std::vector<Ball> balls) {
 
 } // namespace
 
-Camera frame_balls(const std::vector<Ball>& all, float ground, std::uint32_t width, std::uint32_t height) {
+Camera frame_balls(const std::vector<Ball>& all, std::optional<float> ground, std::uint32_t width,
+                   std::uint32_t height) {
     Camera camera;
     camera.half_height = 0.25f; // a vertical field of view of 28 degrees
     camera.half_width = camera.half_height * static_cast<float>(width) / static_cast<float>(height);
     camera.forward = unit({-0.50f, 0.80f, -0.42f});
     camera.right = unit(cross(camera.forward, {0, 0, 1}));
     camera.up = cross(camera.right, camera.forward);
-    const std::vector<Ball> balls = all.empty() ? std::vector<Ball>{{{0, 0, ground}, 1}} : without_strays(all);
+    const std::vector<Ball> balls =
+        all.empty() ? std::vector<Ball>{{{0, 0, ground.value_or(0)}, 1}} : without_strays(all);
 
     // Aim and distance by turns until the balls' extent on the picture is centred and fills it to 92 %.
     Float3 aim = balls.front().centre;
@@ -48,7 +50,7 @@ Camera frame_balls(const std::vector<Ball>& all, float ground, std::uint32_t wid
         distance *= 0.3f + 0.7f * fill / 0.92f;
     }
     camera.eye = aim - distance * camera.forward;
-    camera.eye.z = std::max(camera.eye.z, ground + 0.2f);
+    if (ground) camera.eye.z = std::max(camera.eye.z, *ground + 0.2f);
     return camera;
 }
 

@@ -16,6 +16,7 @@ struct Camera {
 };
 
 /// Looks down on the balls from one side, near enough that all but a few strays just fill the picture.
-Camera frame_balls(const std::vector<Ball>& balls, float ground, std::uint32_t width, std::uint32_t height);
+Camera frame_balls(const std::vector<Ball>& balls, std::optional<float> ground, std::uint32_t width,
+                   std::uint32_t height);
 
 } // namespace raycontact::report

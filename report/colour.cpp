@@ -39,6 +39,10 @@ Float3 body_colour(std::size_t body) {
     return shade * palette[(mixed >> 16) % palette.size()];
 }
 
+Float3 resting_colour() {
+    return {0.5f, 0.5f, 0.5f};
+}
+
 Float3 sky(Float3 direction) {
     const Float3 horizon{0.93f, 0.95f, 1.0f}, zenith{0.55f, 0.72f, 1.05f}, below{0.62f, 0.58f, 0.54f};
     if (direction.z < 0) return below;

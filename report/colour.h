@@ -14,6 +14,9 @@ Float3 linear(std::uint32_t srgb);
 /// A pleasant colour for a body, from its index alone: the same body has the same colour in every picture.
 Float3 body_colour(std::size_t body);
 
+/// Of a body that stands still.
+Float3 resting_colour();
+
 /// What the sky sends from a unit direction, z up.
 Float3 sky(Float3 direction);
 

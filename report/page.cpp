@@ -21,12 +21,11 @@ h2{font-size:19px;margin:38px 0 12px}
 .stage{margin:0;position:relative;border-radius:12px;overflow:hidden;background:#dfe5ec;box-shadow:0 1px 3px #0003}
 .stage img{display:block;width:100%;height:auto}
 .stage figcaption{position:absolute;left:14px;bottom:12px;padding:3px 11px;border-radius:99px;background:#000a;color:#fff;font-size:14px;font-variant-numeric:tabular-nums}
-.strip{display:grid;grid-template-columns:repeat(8,1fr);gap:8px;margin-top:8px}
+.strip{display:grid;grid-template-columns:repeat(auto-fill,minmax(128px,1fr));gap:8px;margin-top:8px}
 .strip button{padding:0;border:0;border-radius:7px;overflow:hidden;cursor:pointer;background:none;color:var(--soft);font:12px/1.7 inherit;font-family:inherit;outline-offset:2px}
 .strip img{display:block;width:100%;height:auto;border-radius:7px;border:2px solid transparent}
 .strip button[aria-pressed=true]{color:var(--ink)}
 .strip button[aria-pressed=true] img{border-color:var(--c0)}
-@media(max-width:760px){.strip{grid-template-columns:repeat(4,1fr)}}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));gap:14px}
 .plot{margin:0;padding:12px 14px 8px;background:var(--card);border:1px solid var(--rule);border-radius:10px}
 .plot figcaption{font-size:14px;display:flex;gap:10px;flex-wrap:wrap;align-items:baseline;min-height:1.6em}

@@ -14,12 +14,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace raycontact::report {
 namespace {
 
-constexpr std::uint32_t ambient_rays = 3; ///< per primary ray
 const Float3 sun_direction = unit({-0.62f, -0.38f, 0.84f});
 constexpr Float3 sun_light{3.0f, 2.75f, 2.35f}; // linear, warm against the blue of the sky
 constexpr float sun_radius = 0.05f;             // of its disc at distance 1: the softness of the shadows
@@ -77,8 +77,8 @@ struct View {
     std::vector<Pose> poses;     ///< per body
     float reach = 1;             ///< radius about the pile within which the ground is drawn in full, metres
     Point2 middle;               ///< of the pile
+    bool coarse = false;         ///< one sample a pixel, also at edges
     float pixel = 0;             ///< width at distance 1
-    std::uint32_t side = 2;      ///< side x side primary rays a pixel
 };
 
 RTCRayHit ray_from(Float3 origin, Float3 direction, float near) {
@@ -91,13 +91,13 @@ RTCRayHit ray_from(Float3 origin, Float3 direction, float near) {
     return ray;
 }
 
-/// The body normal, from the body's to the picture's frame.
-Float3 turned(const View& view, const Pose& pose, Float3 n) {
+/// A normal, from the body's to the picture's frame.
+Float3 turned(const Pose& pose, Float3 n) {
     const auto& r = pose.rotation;
-    float world[3];
-    for (std::size_t i = 0; i < 3; ++i)
-        world[i] = static_cast<float>(r[3 * i] * n.x + r[3 * i + 1] * n.y + r[3 * i + 2] * n.z);
-    return unit({world[view.stage.axes[0]], world[view.stage.axes[1]], world[view.stage.axes[2]]});
+    const auto part = [&](std::size_t i) {
+        return static_cast<float>(r[3 * i] * n.x + r[3 * i + 1] * n.y + r[3 * i + 2] * n.z);
+    };
+    return unit({part(0), part(1), part(2)});
 }
 
 bool occluded(const View& view, Float3 origin, Float3 direction) {
@@ -128,12 +128,15 @@ Hit cast(const View& view, Float3 direction) {
     RTCRayHit ray = ray_from(view.camera.eye, direction, 0.01f);
     rtcIntersect1(view.scene, &context, &ray);
     Hit hit;
-    if (direction.z < 0) hit.distance = (view.stage.ground - view.camera.eye.z) / direction.z;
+    if (view.stage.ground && direction.z < 0) {
+        hit.distance = (view.stage.ground->height - view.camera.eye.z) / direction.z;
+        if (!view.stage.ground->holds(view.camera.eye + hit.distance * direction)) hit.distance = Hit().distance;
+    }
     if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID && ray.ray.tfar < hit.distance) {
         const std::uint32_t body = ray.hit.instID[0];
         hit.distance = ray.ray.tfar;
         hit.albedo = view.colours[body];
-        hit.normal = turned(view, view.poses[body], {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z});
+        hit.normal = turned(view.poses[body], {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z});
         if (dot(hit.normal, direction) > 0) hit.normal = -1.0f * hit.normal;
     } else if (std::isfinite(hit.distance)) {
         const Float3 p = view.camera.eye + hit.distance * direction;
@@ -150,6 +153,8 @@ struct Shade {
 };
 
 Shade shade(const View& view, Float3 direction, std::uint32_t pixel, std::uint32_t sample) {
+    // The light of further samples is smoothed with the first's: they are there for the colours.
+    const std::uint32_t ambient_rays = sample == 0 ? 3 : 1;
     const Hit hit = cast(view, direction);
     Shade result;
     if (!std::isfinite(hit.distance)) {
@@ -171,12 +176,12 @@ Shade shade(const View& view, Float3 direction, std::uint32_t pixel, std::uint32
     frame_of(n, a, b);
     const Sampler ambient(pixel, 1);
     for (std::uint32_t k = 0; k < ambient_rays; ++k) {
-        const Point2 u = in_disc(ambient(sample * ambient_rays + k)); // cosine-weighted
+        const Point2 u = in_disc(ambient(2 * std::min(sample, 1u) + sample + k)); // cosine-weighted
         const Float3 d = u.x * a + u.y * b + std::sqrt(std::max(0.0f, 1 - u.x * u.x - u.y * u.y)) * n;
         const Float3 open = sky(d);
         // A ray that meets a body brings what that body, of about this colour, reflects: light after the first bounce.
         const Float3 seen = occluded(view, origin, d) ? 0.38f * (hit.albedo * open) : open;
-        light += (1.0f / ambient_rays) * seen;
+        light += (1.0f / float(ambient_rays)) * seen;
     }
 
     Float3 extra;
@@ -196,6 +201,52 @@ Shade shade(const View& view, Float3 direction, std::uint32_t pixel, std::uint32
         result.extra = fade * backdrop;
     }
     return result;
+}
+
+/// The sum of a pixel's samples, and how many there are and of these met something.
+struct Pixel {
+    Shade sum;
+    std::uint32_t samples = 0, hits = 0;
+};
+
+void add_sample(const View& view, std::uint32_t x, std::uint32_t y, const Layers& size, Pixel& pixel) {
+    constexpr std::uint32_t side = 2; // of the square of samples
+    const std::uint32_t here = y * size.width + x, k = pixel.samples++;
+    const Point2 jitter = Sampler(here, 2)(k);
+    const float u = static_cast<float>(x) + (static_cast<float>(k % side) + jitter.x) / float(side);
+    const float v = static_cast<float>(y) + (static_cast<float>(k / side) + jitter.y) / float(side);
+    const Float3 direction =
+        view.camera.direction(u / static_cast<float>(size.width), v / static_cast<float>(size.height));
+    const Shade s = shade(view, direction, here, k);
+    pixel.sum.albedo += s.albedo;
+    pixel.sum.light += s.light;
+    pixel.sum.extra += s.extra;
+    pixel.sum.normal += s.normal;
+    pixel.sum.position += s.position;
+    pixel.hits += dot(s.normal, s.normal) > 0;
+}
+
+void put(const Pixel& pixel, std::size_t here, Layers& layers) {
+    const float share = 1.0f / float(pixel.samples);
+    layers.albedo[here] = share * pixel.sum.albedo;
+    layers.extra[here] = share * pixel.sum.extra;
+    if (pixel.hits == 0) return;
+    layers.light[here] = (1 / float(pixel.hits)) * pixel.sum.light;
+    layers.normal[here] = unit(pixel.sum.normal);
+    layers.position[here] = (1 / float(pixel.hits)) * pixel.sum.position;
+}
+
+/// Whether one sample is too few: another face, another body or the backdrop is beside this pixel.
+bool is_edge(const Layers& layers, std::uint32_t x, std::uint32_t y) {
+    const std::size_t here = std::size_t{y} * layers.width + x;
+    const Float3 n = layers.normal[here], colour = layers.albedo[here];
+    const auto differs = [&](std::size_t there) {
+        const Float3 m = layers.normal[there], d = layers.albedo[there] - colour;
+        if (dot(n, n) == 0 && dot(m, m) == 0) return false;
+        return dot(n, m) < 0.85f || dot(d, d) > 1e-3f;
+    };
+    return (x > 0 && differs(here - 1)) || (x + 1 < layers.width && differs(here + 1))
+           || (y > 0 && differs(here - layers.width)) || (y + 1 < layers.height && differs(here + layers.width));
 }
 
 Image develop_layers(const Layers& layers) {
@@ -240,18 +291,18 @@ struct Renderer::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
-    /// One instance a body, its id the body's; the ground is left to the plane.
+    /// One instance a body, its id the body's; the ground is drawn without one.
     RTCScene scene_of(const scenes::Frame& frame, const Stage& stage) const {
         const RTCScene scene = rtcNewScene(device);
         for (std::size_t body = 0; body < frame.poses.size(); ++body) {
-            if (stage.is_ground[body]) continue;
+            if (stage.ground && stage.ground->body == body) continue;
             const std::uint32_t shape = log.body_shape[body];
             const Pose& pose = frame.poses[body];
             const Float3 at = place(stage, transform_point(pose, log.shapes[shape]->centre()));
-            float matrix[12]; // 3 x 4, column-major, rows exchanged as the stage says
+            float matrix[12]; // 3 x 4, column-major
             for (std::size_t row = 0; row < 3; ++row)
                 for (std::size_t column = 0; column < 3; ++column)
-                    matrix[3 * column + row] = static_cast<float>(pose.rotation[3 * stage.axes[row] + column]);
+                    matrix[3 * column + row] = static_cast<float>(pose.rotation[3 * row + column]);
             matrix[9] = at.x, matrix[10] = at.y, matrix[11] = at.z;
             const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
             rtcSetGeometryInstancedScene(instance, shapes[shape]);
@@ -275,7 +326,9 @@ struct Renderer::State {
 /// Camera and what goes with it.
 void Renderer::State::look_at(const std::vector<Ball>& balls, std::uint32_t width, std::uint32_t height,
                               View& view) const {
-    view.camera = frame_balls(balls, view.stage.ground, width, height);
+    std::optional<float> ground;
+    if (view.stage.ground) ground = view.stage.ground->height;
+    view.camera = frame_balls(balls, ground, width, height);
     view.pixel = 2 * view.camera.half_height / static_cast<float>(height);
     for (const Ball& ball : balls) {
         view.middle.x += ball.centre.x / static_cast<float>(balls.size());
@@ -289,10 +342,9 @@ void Renderer::State::look_at(const std::vector<Ball>& balls, std::uint32_t widt
 Image Renderer::State::draw(const scenes::Frame& frame, std::uint32_t width, std::uint32_t height, View& view) const {
     view.poses = frame.poses;
     for (std::size_t body = 0; body < frame.poses.size(); ++body)
-        view.colours.push_back(log.body_moves[body] ? body_colour(body) : Float3{0.5f, 0.5f, 0.5f});
+        view.colours.push_back(log.body_moves[body] ? body_colour(body) : resting_colour());
     view.scene = scene_of(frame, view.stage);
 
-    const std::uint32_t side = view.side;
     const std::size_t pixels = std::size_t{width} * height;
     Layers layers{width,
                   height,
@@ -301,38 +353,28 @@ Image Renderer::State::draw(const scenes::Frame& frame, std::uint32_t width, std
                   std::vector<Float3>(pixels),
                   std::vector<Float3>(pixels),
                   std::vector<Float3>(pixels)};
-    tbb::parallel_for(tbb::blocked_range2d<std::uint32_t>(0, height, 16, 0, width, 16), [&](const auto& tile) {
-        for (std::uint32_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
-            for (std::uint32_t x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-                const std::uint32_t here = y * width + x;
-                const Sampler inside(here, 2);
-                Shade sum;
-                float hits = 0;
-                for (std::uint32_t k = 0; k < side * side; ++k) {
-                    const Point2 jitter = inside(k);
-                    const std::uint32_t column = k % side, row = k / side;
-                    const float u = static_cast<float>(x) + (static_cast<float>(column) + jitter.x) / float(side);
-                    const float v = static_cast<float>(y) + (static_cast<float>(row) + jitter.y) / float(side);
-                    const Float3 direction =
-                        view.camera.direction(u / static_cast<float>(width), v / static_cast<float>(height));
-                    const Shade s = shade(view, direction, here, k);
-                    sum.albedo += s.albedo;
-                    sum.light += s.light;
-                    sum.extra += s.extra;
-                    sum.normal += s.normal;
-                    sum.position += s.position;
-                    if (dot(s.normal, s.normal) > 0) ++hits;
-                }
-                const float share = 1.0f / float(side * side);
-                layers.albedo[here] = share * sum.albedo;
-                layers.extra[here] = share * sum.extra;
-                if (hits > 0) {
-                    layers.light[here] = (1 / hits) * sum.light;
-                    layers.normal[here] = unit(sum.normal);
-                    layers.position[here] = (1 / hits) * sum.position;
-                }
-            }
+    std::vector<Pixel> first(pixels);
+    const auto each = [&](auto look) {
+        tbb::parallel_for(tbb::blocked_range2d<std::uint32_t>(0, height, 16, 0, width, 16), [&](const auto& tile) {
+            for (std::uint32_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
+                for (std::uint32_t x = tile.cols().begin(); x < tile.cols().end(); ++x)
+                    look(x, y, std::size_t{y} * width + x);
+        });
+    };
+    each([&](std::uint32_t x, std::uint32_t y, std::size_t here) {
+        add_sample(view, x, y, layers, first[here]);
+        put(first[here], here, layers);
     });
+    if (!view.coarse) {
+        // Three more where colours change: faces are flat, and their light is smoothed anyway.
+        std::vector<char> edges(pixels);
+        each([&](std::uint32_t x, std::uint32_t y, std::size_t here) { edges[here] = is_edge(layers, x, y); });
+        each([&](std::uint32_t x, std::uint32_t y, std::size_t here) {
+            if (!edges[here]) return;
+            while (first[here].samples < 4) add_sample(view, x, y, layers, first[here]);
+            put(first[here], here, layers);
+        });
+    }
     rtcReleaseScene(view.scene);
     smooth_light(layers, view.camera.eye, view.pixel);
     return develop_layers(layers);
@@ -352,10 +394,10 @@ Image Renderer::render_for_film(const scenes::Frame& frame, std::uint32_t width,
     const auto& frames = state_->log.frames;
     View view;
     view.stage = make_stage(state_->log, frames.back());
+    view.coarse = true;
     std::vector<Ball> balls;
     for (const scenes::Frame* seen : {&frames.front(), &frames[frames.size() / 2], &frames.back()})
         for (const Ball& ball : moving_balls(view.stage, state_->log, *seen)) balls.push_back(ball);
-    view.side = 1;
     state_->look_at(balls, width, height, view);
     return state_->draw(frame, width, height, view);
 }

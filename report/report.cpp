@@ -16,9 +16,9 @@
 namespace raycontact::report {
 namespace {
 
-constexpr std::uint32_t picture_width = 1920, picture_height = 1080, film_width = 640, film_height = 360;
-constexpr std::size_t most_pictures = 8;
-constexpr int jpeg_quality = 82; // in the page; the files beside it are PNG
+constexpr std::uint32_t picture_width = 1600, picture_height = 900, film_width = 640, film_height = 360;
+constexpr std::uint32_t picture_cost = 12; // in frames of the film
+constexpr int jpeg_quality = 82;           // in the page; the files beside it are PNG
 
 const char* const page_name = "report.html";
 const char* const film_name = "pictures/film.webp";
@@ -41,12 +41,33 @@ void check(const scenes::RunLog& log) {
 }
 
 /// The first, the last, and as many as fit evenly between.
-std::vector<std::size_t> chosen_frames(std::size_t count) {
+std::vector<std::size_t> chosen_frames(std::size_t count, std::size_t most) {
     std::vector<std::size_t> chosen;
-    const std::size_t wanted = std::min(count, most_pictures);
-    for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(wanted > 1 ? k * (count - 1) / (wanted - 1) : 0);
+    const std::size_t wanted = std::min(count, most);
+    for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(wanted > 1 ? k * (count - 1) / (wanted - 1) : count - 1);
     return chosen;
 }
+
+/// Those of the film; of a run with a few frames none.
+std::vector<std::size_t> film_frames_of(const scenes::RunLog& log, const ReportOptions& options) {
+    if (options.pictures == 0 || log.frames.size() < 3) return {};
+    return chosen_frames(log.frames.size(), film_frames);
+}
+
+/// Counts what is drawn, and asks whether to go on.
+class Drawing {
+public:
+    explicit Drawing(const ReportOptions& options) : options_(options) {}
+    bool goes_on() const { return !options_.stop || !options_.stop(); }
+    void did(std::uint32_t work) {
+        done_ += work;
+        if (options_.progress) options_.progress(done_);
+    }
+
+private:
+    const ReportOptions& options_;
+    std::uint32_t done_ = 0;
+};
 
 template <class Value>
 Line line(const scenes::RunLog& log, const char* name, Value value) {
@@ -118,16 +139,19 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
     return plots;
 }
 
-/// As long as the run where it can be shown so; nothing for a run with a few frames.
-std::string film_of(const scenes::RunLog& log, const Renderer& renderer) {
-    if (log.frames.size() < 3) return {};
+/// As long as the run where it can be shown so.
+std::string film_of(const scenes::RunLog& log, const std::vector<std::size_t>& frames, const Renderer& renderer,
+                    Drawing& drawing) {
     std::vector<Image> images;
-    const std::size_t every = (log.frames.size() + film_frames - 1) / film_frames;
-    for (std::size_t k = 0; k < log.frames.size(); k += every)
+    for (const std::size_t k : frames) {
+        if (!drawing.goes_on()) return {};
         images.push_back(renderer.render_for_film(log.frames[k], film_width, film_height));
+        drawing.did(1);
+    }
+    if (images.empty()) return {};
     const double seconds = static_cast<double>(log.rows.size()) * log.dt;
     const double each = 1000 * seconds / static_cast<double>(images.size());
-    return encode_webp(images, static_cast<int>(std::clamp(each, 60.0, 220.0)));
+    return encode_webp(images, static_cast<int>(std::clamp(each, 60.0, 420.0)));
 }
 
 } // namespace
@@ -137,25 +161,38 @@ void claim_report(output::OutFolder& folder) {
     folder.claim(film_name);
 }
 
-void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Comparison& comparison) {
+std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options) {
+    const std::size_t pictures = chosen_frames(log.frames.size(), options.pictures).size();
+    return static_cast<std::uint32_t>(picture_cost * pictures + film_frames_of(log, options).size());
+}
+
+void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options) {
     check(log);
     Page page;
     describe(log, page);
     page.plots = plots_of(log);
-    page.comparison = comparison;
+    page.comparison = options.comparison;
     const Renderer renderer(log);
-    for (const std::size_t k : chosen_frames(log.frames.size())) {
+    Drawing drawing(options);
+    for (const std::size_t k : chosen_frames(log.frames.size(), options.pictures)) {
+        if (!drawing.goes_on()) break;
         const scenes::Frame& frame = log.frames[k];
         const Image image = renderer.render(frame, picture_width, picture_height);
         folder.write(fmt::format("pictures/step-{:03}.png", frame.step), encode_png(image));
         page.stills.push_back({encode_jpeg(image, jpeg_quality),
                                fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
+        drawing.did(picture_cost);
     }
-    page.film = film_of(log, renderer);
+    page.film = film_of(log, film_frames_of(log, options), renderer, drawing);
     if (!page.film.empty()) {
         folder.write(film_name, page.film);
         page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
     }
+    if (!page.stills.empty() || !page.film.empty())
+        page.footer =
+            fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. The "
+                        "camera follows the pile from picture to picture. {}",
+                        log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
     folder.write(page_name, make_page(page));
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace raycontact::report {
@@ -14,14 +15,24 @@ namespace raycontact::report {
 /// Claims what write_report will write, as far as its names are known.
 void claim_report(output::OutFolder& folder);
 
-/// Writes report.html, one file that needs no network and no other file, and the pictures in it once more as
-/// pictures/step-NNN.png. Up to eight of the log's frames are drawn; all of them, up to 48, are a film,
-/// pictures/film.webp, too. The caller keeps them. Throws InputError for a log without steps or frames, and as
-/// OutFolder::write does.
-void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Comparison& comparison = {});
+/// What a report is to have, beside the numbers.
+struct ReportOptions {
+    std::uint32_t pictures = 4; ///< large ones, evenly over the log's frames; 0: neither these nor the film
+    Comparison comparison;
+    std::function<void(std::uint32_t)> progress = {}; ///< told how much of work_of() is drawn
+    std::function<bool()> stop = {};                  ///< asked before each picture: true leaves out those to come
+};
 
-/// Frames that a log should have for a film.
-constexpr std::uint32_t film_frames = 48;
+/// Frames that a log should have for a film, and for so many pictures.
+constexpr std::uint32_t film_frames = 24;
+
+/// Units of drawing, for a progress bar.
+std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options);
+
+/// Writes report.html, one file that needs no network and no other file, and the pictures in it once more as
+/// pictures/step-NNN.png. About 24 of the log's frames are a film, pictures/film.webp, too. The caller keeps them.
+/// Throws InputError for a log without steps or frames, and as OutFolder::write does.
+void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options = {});
 
 /// The bytes of a PNG file of one of the log's frames. Throws InputError when there is no such frame or no area.
 std::string picture_png(const scenes::RunLog& log, std::size_t frame, std::uint32_t width, std::uint32_t height);

@@ -5,18 +5,25 @@
 #include <scenes/run_log.h>
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace raycontact::report {
 
-/// How the world of a run is laid out for pictures: z up, origin among the bodies, where the ground is.
-/// The axes are told from the bodies that do not move (the slab's thinnest axis is up), else z is up, as it is over an
-/// endless plane.
+/// The top of the slab, or the endless plane; picture frame, metres.
+struct Ground {
+    float height = 0;
+    std::array<float, 2> low{}, high{}; ///< along x and y; infinite: a plane
+    std::optional<std::size_t> body;    ///< the slab, of which nothing else is drawn; turned it is not
+
+    bool holds(Float3 p) const { return p.x >= low[0] && p.x <= high[0] && p.y >= low[1] && p.y <= high[1]; }
+};
+
+/// How the world of a run is laid out for pictures: origin among the bodies, and the ground, if there is one.
 struct Stage {
-    std::array<std::size_t, 3> axes{0, 1, 2}; ///< world axis of each picture axis; a cyclic, so a proper, exchange
-    Vec3 origin;                              ///< world frame, metres
-    float ground = 0;                         ///< height of the ground, picture frame, metres
-    std::vector<bool> is_ground; ///< per body of the frame: drawn as the endless ground plane, not as itself
+    Vec3 origin; ///< world frame, metres
+    std::optional<Ground> ground;
 };
 
 Stage make_stage(const scenes::RunLog& log, const scenes::Frame& frame);

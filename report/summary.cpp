@@ -2,6 +2,7 @@
 #include <report/summary.h>
 
 #include <raycontact/settings.h>
+#include <report/counted.h>
 #include <report/svg.h>
 
 #include <fmt/format.h>
@@ -48,9 +49,9 @@ constexpr Known known[] = {
     {"deep_steps_longest", "Deep, longest", "steps", "for how many steps on end one contact stayed past the limit"},
     {"deep_steps_last_second", "Deep, last second", "steps", "the same, of those that reach into the last second"},
     {"median_speed_last_second", "Median speed, last second", "mm/s",
-     "half of the bodies are slower, in each step of the last second", 1000},
-    {"below_ground", "Below ground", "bodies", "whose centre is under the ground at the end"},
-    {"flown_off", "Flown off", "bodies", "off the ground, or higher than any started, at the end"},
+     "half of the bodies are slower; median over the last second's steps", 1000},
+    {"below_ground", "Below ground", "bodies", "whose centre is lower than the ground at the end"},
+    {"flown_off", "Flown off", "bodies", "beside the ground, or higher than any started, at the end"},
     {"wall_ms", "Wall clock", "s", "all steps together, setup included, pictures not", 0.001},
     {"step_ms.median", "Step, median", "ms", "wall clock: detection and response"},
     {"step_ms.p95", "Step, 95th percentile", "ms", "one step in twenty takes longer"},
@@ -131,10 +132,11 @@ std::string option(const Json& summary, const char* key, const char* name) {
     std::string text;
     if (at->is_array())
         for (const Json& item : *at)
-            text += (text.empty() ? "" : ",") + (item.is_string() ? item.get<std::string>() : item.dump());
+            text +=
+                fmt::format("{}{}", text.empty() ? "" : ",", item.is_string() ? item.get<std::string>() : item.dump());
     else
         text = at->is_string() ? at->get<std::string>() : at->dump();
-    return text.empty() ? "" : std::string(" ") + name + " " + text;
+    return text.empty() ? "" : fmt::format(" {} {}", name, text);
 }
 
 /// The thresholds that are not what they are anyway.
@@ -165,20 +167,20 @@ void describe(const scenes::RunLog& log, Page& page) {
     for (const bool moves : log.body_moves) moving += moves;
     const double seconds = static_cast<double>(log.rows.size()) * log.dt;
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    page.title = fmt::format("{}: {} meshes", log.scene.empty() ? "run" : log.scene, moving);
+    page.title = fmt::format("{}: {}", log.scene.empty() ? "run" : log.scene, counted(moving, "mesh", "meshes"));
     page.title[0] =
         static_cast<char>(page.title[0] >= 'a' && page.title[0] <= 'z' ? page.title[0] - 'a' + 'A' : page.title[0]);
     page.summary = fmt::format(
-        "{} bodies over {} steps, {:.3g} s of simulated time at {:.4g} steps a second. Each body is {}. All contacts "
-        "between "
-        "meshes were found by RayContact by casting rays from the vertices of one mesh into the other (method {}, "
+        "{} over {}, {:.3g} s of simulated time at {:.4g} steps a second. Meshes: {}. All contacts between meshes were "
+        "found by RayContact by casting rays from the vertices of one mesh into the other (method {}, "
         "caster {}, "
         "direction {}, features {}); the response is Bullet's sequential impulse solver. Times are wall clock on {} "
         "core{} ({}), "
         "devices: {}.",
-        moving, log.rows.size(), seconds, 1 / log.dt, log.mesh_source.empty() ? "of unknown origin" : log.mesh_source,
-        word(summary, "method", "standard"), word(summary, "caster", "bvh"), word(summary, "direction", "reprojected"),
-        word(summary, "features", "edges"), cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
+        counted(moving, "body", "bodies"), counted(log.rows.size(), "step", "steps"), seconds, 1 / log.dt,
+        log.mesh_source.empty() ? "of unknown origin" : log.mesh_source, word(summary, "method", "standard"),
+        word(summary, "caster", "bvh"), word(summary, "direction", "reprojected"), word(summary, "features", "edges"),
+        cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
 
     std::vector<std::pair<std::string, Json>> figures;
     flatten(summary, "", figures);
@@ -225,10 +227,7 @@ void describe(const scenes::RunLog& log, Page& page) {
                    + option(summary, "direction", "--direction") + option(summary, "features", "--features")
                    + (summary.value("continuous", Json(false)) == true ? " --continuous" : "") + thresholds(summary)
                    + option(summary, "devices", "--devices") + " --out DIR";
-    page.footer =
-        "Pictures: Embree, sun and sky, one ground square is 1 m; colours tell bodies apart and mean nothing else. "
-        "The camera follows the pile from picture to picture. The same command gives the same contacts and hash; "
-        "times differ from machine to machine.";
+    page.footer = "The same command gives the same contacts and hash; times differ from machine to machine.";
 }
 
 } // namespace raycontact::report

@@ -34,8 +34,7 @@ SceneDescription avalanche(const AvalancheOptions& options) {
     scene.steps = options.steps;
     scene.settings = options.settings;
     scene.response = options.response;
-    scene.mesh_source = model.source;
-    scene.shapes.push_back({Shape::make(stood_up(model.mesh)), bullet::Bounds::box});
+    scene.shapes.push_back({Shape::make(stood_up(model.mesh)), bullet::Bounds::box, model.source});
 
     const Grid grid{options.bodies, options.spacing, 0.02, 0.75};
     Random random(options.seed);

@@ -5,12 +5,13 @@
 #include <raycontact/bullet/mesh_shape.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
+#include <scenes/region.h>
 
 #include <LinearMath/btTransform.h>
 
 #include <cstdint>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct Response {
 struct SceneShape {
     std::shared_ptr<const Shape> shape;
     bullet::Bounds bounds = bullet::Bounds::box; ///< what the broad phase sees; the paper's pair counts go with boxes
+    std::string source; ///< what the mesh is and where it came from, for a person; empty for the ground of a scene
 };
 
 /// A body at the moment it comes.
@@ -42,21 +44,15 @@ struct BodyStart {
     std::uint32_t step = 0;                        ///< the first step it takes part in
 };
 
-/// A box of the world, metres.
-struct Region {
-    static constexpr double inf = std::numeric_limits<double>::infinity();
-    Vec3 low{-inf, -inf, -inf}, high{inf, inf, inf};
-};
-
 /// All that decides a simulation. Right-handed, metres, seconds, kilograms.
 struct SceneDescription {
     std::string name;
     std::string arguments; ///< of `raycontact run`, that name this scene and its number of bodies
     std::uint64_t seed = 1;
-    std::string mesh_source; ///< "each body is ...": what the meshes are and where they came from, for a person
     std::vector<SceneShape> shapes;
-    std::vector<BodyStart> bodies; ///< in the order in which they come, by step
-    bool plane = false;            ///< an endless ground z = 0, whose contacts are none of meshes and not counted
+    std::vector<BodyStart> bodies;     ///< in the order in which they come, by step
+    std::optional<std::uint32_t> slab; ///< the body that is the ground, if one of them is
+    bool plane = false;                ///< an endless ground z = 0, whose contacts are none of meshes and not counted
     Vec3 gravity{0, 0, -9.81};
     double dt = 1.0 / 60;      ///< of a step; the solver takes one substep
     std::uint32_t steps = 600; ///< planned; the frames kept for pictures are spread over these
@@ -64,7 +60,7 @@ struct SceneDescription {
     Response response;
     Settings settings;         ///< of RayContact
     double depth_limit = 0.02; ///< metres; a deeper contact counts as deep (Health)
-    Region region;             ///< a body below it has fallen through the ground, one beside or above it has flown off
+    Region region;             ///< bodies are meant to stay in it (Health); without limits: there is no ground
 };
 
 } // namespace raycontact::scenes

@@ -22,7 +22,8 @@ void add_slab(SceneDescription& description, double half_width, double top, doub
     BodyStart body;
     body.shape = static_cast<std::uint32_t>(description.shapes.size());
     body.density = 0;
-    description.shapes.push_back({Shape::make(slab(half_width, depth)), bullet::Bounds::vertices});
+    description.shapes.push_back({Shape::make(slab(half_width, depth)), bullet::Bounds::vertices, {}});
+    description.slab = static_cast<std::uint32_t>(description.bodies.size());
     description.bodies.push_back(body);
     description.region = {{-half_width, -half_width, 0}, {half_width, half_width, top}};
 }

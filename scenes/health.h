@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace raycontact::scenes {
 
@@ -12,9 +13,10 @@ struct Health {
     std::uint64_t deep_contacts = 0;          ///< contacts deeper than the limit, summed over the steps
     std::uint32_t deep_steps_longest = 0;     ///< most steps in a row that one contact (same key) was deeper
     std::uint32_t deep_steps_last_second = 0; ///< the same, of runs that reach into the last second
-    double median_speed_last_second = 0;      ///< median over bodies, the largest of the last second's steps, m/s
-    std::uint32_t below_ground = 0;           ///< bodies whose centre of mass is under the region now
-    std::uint32_t flown_off = 0;              ///< bodies beside or above the region now
+    double median_speed_last_second = 0; ///< over the bodies, and of these medians over the last second's steps, m/s
+    /// Bodies whose centre of mass is now under the region, and beside or above it; one that fell past an edge is both.
+    /// Nothing where the scene has no ground.
+    std::optional<std::uint32_t> below_ground, flown_off;
 };
 
 } // namespace raycontact::scenes

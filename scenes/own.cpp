@@ -5,6 +5,7 @@
 #include <scenes/centred_shape.h>
 #include <scenes/grid.h>
 #include <scenes/ground.h>
+#include <scenes/meshes_in_words.h>
 #include <scenes/random.h>
 
 #include <algorithm>
@@ -27,11 +28,6 @@ void check(const OwnOptions& o) {
     if (o.ground && o.plane) throw InputError("own meshes: the ground is either a mesh or the plane");
 }
 
-std::string in_words(const std::string& name, const Shape& shape) {
-    return name + " (" + std::to_string(shape.vertices().size()) + " vertices and "
-           + std::to_string(shape.triangles().size()) + " triangles)";
-}
-
 } // namespace
 
 SceneDescription own(const OwnOptions& options) {
@@ -48,10 +44,8 @@ SceneDescription own(const OwnOptions& options) {
         diameter = std::max(diameter, 2 * mesh.shape->radius());
         largest = std::max(largest, mesh.extent);
         smallest = std::min(smallest, mesh.extent);
-        scene.mesh_source += (scene.shapes.empty() ? "" : "; ") + in_words(file.filename().string(), *mesh.shape);
-        scene.shapes.push_back({mesh.shape, bullet::Bounds::box});
+        scene.shapes.push_back({mesh.shape, bullet::Bounds::box, mesh_in_words(file.filename().string(), *mesh.shape)});
     }
-    if (options.files.size() > 1) scene.mesh_source.insert(0, "one of these in turn: ");
     scene.response.slop *= smallest;
     scene.depth_limit *= smallest;
 
@@ -80,7 +74,8 @@ SceneDescription own(const OwnOptions& options) {
         BodyStart body;
         body.shape = static_cast<std::uint32_t>(scene.shapes.size());
         body.density = 0;
-        scene.shapes.push_back({ground, bullet::Bounds::vertices});
+        scene.shapes.push_back(
+            {ground, bullet::Bounds::vertices, mesh_in_words(options.ground->filename().string(), *ground)});
         scene.bodies.push_back(body);
         scene.region = {ground->box_min(), {ground->box_max().x, ground->box_max().y, top}};
     } else if (options.plane) {

@@ -40,12 +40,10 @@ SceneDescription rain(const RainOptions& options) {
     CircleSource source;
     const std::pair<std::string, std::uint32_t> models[] = {
         {options.model, 902}, {"torus", 2130}, {"star", 3456}, {"knot", 3458}};
-    scene.mesh_source = "one of four in turn:";
     for (const auto& [kind, triangles] : models) {
         const Model model = scene_model(kind, triangles);
-        scene.mesh_source += (source.shapes.empty() ? " " : "; ") + model.source;
         source.shapes.push_back(static_cast<std::uint32_t>(scene.shapes.size()));
-        scene.shapes.push_back({Shape::make(stood_up(model.mesh)), bullet::Bounds::box});
+        scene.shapes.push_back({Shape::make(stood_up(model.mesh)), bullet::Bounds::box, model.source});
     }
     source.bodies = options.bodies;
     source.rate = options.rate;

@@ -42,6 +42,7 @@ struct RunLog {
     std::vector<std::shared_ptr<const Shape>> shapes; ///< distinct shapes
     std::vector<std::uint32_t> body_shape;            ///< index into shapes, per body, in the order in which they came
     std::vector<bool> body_moves;                     ///< false for the ground
+    std::optional<std::uint32_t> slab;                ///< the body that is a slab of ground
     std::optional<double> plane;                      ///< height z of an endless ground that is no body, metres
     std::vector<StepRow> rows;                        ///< one a step
     std::vector<Frame> frames;                        ///< a few, evenly over the run, the first and last included

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <scenes/run_watch.h>
 
+#include <scenes/meshes_in_words.h>
+#include <scenes/quantile.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,14 +11,15 @@
 namespace raycontact::scenes {
 
 RunWatch::RunWatch(const SceneDescription& description)
-    : region_(description.region), planned_steps_(std::max(description.steps, 1u)),
+    : region_(description.region), gravity_(description.gravity), planned_steps_(std::max(description.steps, 1u)),
       frames_(std::max(description.frames, 2u)), hash_(description.settings.direction),
       depths_(description.depth_limit) {
     log_.scene = description.name;
     log_.arguments = description.arguments;
     log_.seed = description.seed;
     log_.dt = description.dt;
-    log_.mesh_source = description.mesh_source;
+    log_.mesh_source = meshes_in_words(description);
+    log_.slab = description.slab;
     if (description.plane) log_.plane = 0;
     for (const SceneShape& shape : description.shapes) log_.shapes.push_back(shape.shape);
 }
@@ -56,10 +60,7 @@ double RunWatch::median_speed(std::span<const Pose> poses) {
         speeds.push_back(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) / log_.dt);
         positions_[i] = now;
     }
-    if (speeds.empty()) return 0;
-    const auto half = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-    std::nth_element(speeds.begin(), half, speeds.end());
-    return *half;
+    return quantile(std::move(speeds), 0.5);
 }
 
 // Evenly over the planned run, its first and last step included.
@@ -75,21 +76,25 @@ Health RunWatch::health() const {
     Health h;
     const std::uint32_t second = steps_of_a_second(log_.dt);
     const std::uint32_t late = steps() > second ? steps() - second : 0;
+    std::vector<double> late_speeds;
     for (const StepRow& row : log_.rows) {
         h.penetration_max = std::max(h.penetration_max, row.penetration_max);
-        if (row.step >= late) h.median_speed_last_second = std::max(h.median_speed_last_second, row.median_speed);
+        if (row.step >= late) late_speeds.push_back(row.median_speed);
     }
+    h.median_speed_last_second = quantile(std::move(late_speeds), 0.5);
     h.depth_limit = depths_.limit();
     h.deep_contacts = depths_.contacts();
     h.deep_steps_longest = depths_.longest();
     h.deep_steps_last_second = depths_.longest_since(late);
-    const Vec3 &low = region_.low, &high = region_.high;
+    if (!region_.has_ground(gravity_)) return h;
+    std::uint32_t below = 0, left = 0;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         if (!log_.body_moves[i]) continue;
-        const Vec3& p = positions_[i];
-        if (p.z < low.z) ++h.below_ground;
-        if (p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y || p.z > high.z) ++h.flown_off;
+        below += region_.is_below(gravity_, positions_[i]);
+        left += region_.has_left(gravity_, positions_[i]);
     }
+    h.below_ground = below;
+    h.flown_off = left;
     return h;
 }
 

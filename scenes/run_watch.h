@@ -40,6 +40,7 @@ private:
     void keep_frame(std::uint32_t step, std::span<const Pose> poses);
 
     Region region_;
+    Vec3 gravity_;
     std::uint32_t planned_steps_, frames_;
     RunLog log_;
     ContactHash hash_;

@@ -13,10 +13,11 @@
 
 namespace raycontact {
 
+#ifdef RAYCONTACT_MODE
+const bool RAYCONTACT_MODE(library_built) = true;
+#endif
 namespace {
-
-constexpr std::uint32_t most_iterations = 4096; // bounds what one pair can cost; a mesh of a million triangles is some
-                                                // 2000 of them across
+constexpr std::uint32_t most_iterations = 4096; // bounds a pair's cost; a million triangles are some 2000 across
 
 constexpr std::array methods{std::pair{Method::standard, std::string_view("standard")},
                              std::pair{Method::iterative, std::string_view("iterative")},
@@ -80,8 +81,7 @@ void check_settings(const Settings& settings) {
     if (settings.max_iterations == 0)
         throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
     if (settings.max_iterations > most_iterations)
-        throw InputError("max_iterations must be at most " + std::to_string(most_iterations)
-                         + ": a walk that is longer goes in circles");
+        throw InputError("max_iterations must be at most " + std::to_string(most_iterations) + ": longer walks circle");
     if (settings.displacement_threshold && settings.distance_extension
         && *settings.distance_extension < *settings.displacement_threshold)
         throw InputError("distance_extension (" + text_of(*settings.distance_extension)

@@ -34,6 +34,11 @@ std::uint16_t quantised(double part) {
     return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
 }
 
+bool same(const Pose& a, const Pose& b) {
+    const Vec3 &p = a.translation, &q = b.translation;
+    return p.x == q.x && p.y == q.y && p.z == q.z && a.rotation == b.rotation;
+}
+
 struct Kept {
     std::array<double, 3> place{};
     std::array<double, 4> turn{0, 0, 0, 1};
@@ -55,7 +60,8 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
     motion.bodies = static_cast<std::uint32_t>(bodies.size());
     motion.kept = (reader.steps() + stride - 1) / stride;
     std::vector<Kept> kept(bodies.size() * motion.kept);
-    std::vector<Pose> poses;
+    motion.moves.assign(bodies.size(), false);
+    std::vector<Pose> poses, first(bodies.size());
     std::vector<Pair> pairs;
     constexpr double far = std::numeric_limits<double>::infinity();
     motion.low.fill(far);
@@ -64,16 +70,19 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
         // Every step: a body may come and go between two that are kept, and reading in order is cheap.
         reader.read_step(i, poses, pairs);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-            if (!bodies[b].alive(i) || (i % stride != 0 && bodies[b].first_step != i)) continue;
+            if (!bodies[b].alive(i)) continue;
             const Pose& pose = poses[slot_of(bodies[b].id)];
+            if (bodies[b].first_step == i) first[b] = pose;
+            if (!same(pose, first[b])) motion.moves[b] = true;
+            if (i % stride != 0 && bodies[b].first_step != i) continue;
             const std::uint32_t at = i / stride;
             Kept now{{pose.translation.x, pose.translation.y, pose.translation.z}, quaternion_of(pose.rotation)};
             Kept* const own = &kept[b * motion.kept];
             if (bodies[b].first_step == i) std::fill(own, own + at, now);
             const auto& last = own[at == 0 ? 0 : at - 1].turn; // both signs are the same turn: take the nearer one
-            const double same =
+            const double alike =
                 now.turn[0] * last[0] + now.turn[1] * last[1] + now.turn[2] * last[2] + now.turn[3] * last[3];
-            if (same < 0)
+            if (alike < 0)
                 for (double& part : now.turn) part = -part;
             own[at] = now;
             for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -8,6 +8,7 @@
 
 #include <raycontact/error.h>
 #include <recording/replay.h>
+#include <report/colour.h>
 
 #include <nlohmann/json.hpp>
 
@@ -59,16 +60,30 @@ Json shapes_json(const recording::Reader& reader, std::uint32_t triangles, std::
     return json;
 }
 
-Json bodies_json(const recording::Reader& reader) {
+/// As the report's pictures show it, 0xrrggbb.
+std::uint32_t colour_of(std::size_t body, bool moves) {
+    constexpr float light = 1.5f; // a side that the sun meets at some 60 degrees
+    std::uint8_t rgb[3];
+    report::develop(light * (moves ? report::body_colour(body) : report::resting_colour()), rgb);
+    return static_cast<std::uint32_t>(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
+}
+
+/// Where nothing moves at all, nothing is told from the ground.
+Json bodies_json(const recording::Reader& reader, const std::vector<bool>& moves) {
+    const bool still = std::find(moves.begin(), moves.end(), true) == moves.end();
     Json json = Json::array();
-    for (const recording::Body& body : reader.bodies())
-        json.push_back({body.shape, body.first_step, std::min(body.end_step, reader.steps())});
+    for (std::size_t b = 0; b < moves.size(); ++b) {
+        const recording::Body& body = reader.bodies()[b];
+        json.push_back(
+            {body.shape, body.first_step, std::min(body.end_step, reader.steps()), colour_of(b, still || moves[b])});
+    }
     return json;
 }
 
 struct Found {
     std::vector<LayerStep> layers;
     std::vector<std::uint64_t> pairs, contacts; ///< by step
+    std::vector<double> depths;                 ///< of the deepest contact of each step, metres
     std::vector<std::string> devices;
 };
 
@@ -85,6 +100,7 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         scene.step(pairs);
         found.pairs.push_back(scene.stats().pairs);
         found.contacts.push_back(scene.stats().contacts);
+        found.depths.push_back(scene.stats().depth_max);
         if (i % options.layer_every == 0) found.layers.push_back(layer_reader.read(scene, i));
         if (i == 0)
             for (const DeviceWork& work : scene.stats().work) found.devices.push_back(work.device);
@@ -105,8 +121,10 @@ Json layers_json(const Found& found, View& view) {
         view.contacts += layer.contacts.size();
         view.predictions += layer.predictions.size();
     }
-    Json json{{"low", scale.low}, {"high", scale.high},       {"length", scale.length}, {"depth", scale.depth},
-              {"steps", steps},   {"devices", found.devices}, {"pairs", found.pairs},   {"contacts", found.contacts}};
+    Json json{
+        {"low", scale.low},      {"high", scale.high},       {"length", scale.length}, {"depth", scale.depth},
+        {"steps", steps},        {"devices", found.devices}, {"pairs", found.pairs},   {"contacts", found.contacts},
+        {"depths", found.depths}};
     view.layer_bytes = dump(json).size();
     return json;
 }
@@ -122,6 +140,7 @@ View make_view(recording::Reader& reader, const ViewOptions& options) {
     View view;
     const recording::Info& info = reader.info();
     const Motion motion = read_motion(reader, std::max(options.stride, 1u), options.progress);
+    view.standing = static_cast<std::uint32_t>(std::count(motion.moves.begin(), motion.moves.end(), false));
     Json motion_json{{"low", motion.low},
                      {"high", motion.high},
                      {"kept", motion.kept},
@@ -135,7 +154,8 @@ View make_view(recording::Reader& reader, const ViewOptions& options) {
               {"method", to_string(options.settings.method)},
               {"direction", to_string(options.settings.direction)},
               {"meshSource", info.mesh_source},
-              {"bodies", bodies_json(reader)},
+              {"bodies", bodies_json(reader, motion.moves)},
+              {"standing", view.standing},
               {"shapes", shapes_json(reader, options.triangles, view.shape_bytes)},
               {"motion", motion_json},
               {"layers", nullptr}};

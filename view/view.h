@@ -29,6 +29,7 @@ struct View {
     std::uint64_t shape_bytes = 0;
     std::uint64_t layer_bytes = 0;
     std::uint64_t contacts = 0, predictions = 0; ///< in the layers
+    std::uint32_t standing = 0;                  ///< bodies that never move
 };
 
 /// Throws InputError for a damaged recording, one without steps, or unusable settings.

@@ -17,6 +17,7 @@ Model procedural(Mesh mesh, const char* what) {
 } // namespace
 
 Model scene_model(std::string_view kind, std::uint32_t triangles) {
+    if (kind == "hare") return procedural(hare(triangles), "hare");
     if (kind == "knot") return procedural(knot(triangles), "trefoil knot");
     if (kind == "gear") return procedural(gear(triangles), "gear");
     if (kind == "star") return procedural(star(triangles), "star of six arms");
@@ -44,7 +45,7 @@ Mesh stood_up(Mesh mesh) {
 }
 
 std::vector<std::string> model_kinds() {
-    return {"bunny", "knot", "gear", "torus", "star", "sphere"};
+    return {"bunny", "hare", "knot", "gear", "torus", "star", "sphere"};
 }
 
 } // namespace raycontact::scenes

@@ -7,6 +7,7 @@
 #include <scenes/models/trigonometry.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace raycontact::scenes {
@@ -54,6 +55,34 @@ double star_radius(const Vec3& d) {
         return fourth * fourth * fourth;
     };
     return 0.36 + 0.64 * (arm(d.x) + arm(d.y) + arm(d.z));
+}
+
+/// Distance from the chest of the hare in a unit direction: lobes for all that sticks out.
+double hare_radius(const Vec3& d) {
+    struct Lobe {
+        Vec3 along;
+        double length;
+        int sharpness; ///< its cosine is squared so often
+    };
+    static const std::array<Lobe, 12> lobes{{{unit({-0.80, -0.45, 0}), 0.36, 2},
+                                             {unit({0, -1, 0}), 0.16, 2},
+                                             {unit({0.52, 0.75, 0}), 0.40, 3},
+                                             {unit({0.86, 0.50, 0}), 0.16, 5},
+                                             {unit({0.05, 0.96, 0.30}), 0.72, 6},
+                                             {unit({0.05, 0.96, -0.30}), 0.72, 6},
+                                             {unit({-0.96, -0.05, 0}), 0.16, 6},
+                                             {unit({0.62, -0.75, 0.20}), 0.22, 5},
+                                             {unit({0.62, -0.75, -0.20}), 0.22, 5},
+                                             {unit({0.05, -0.85, 0.45}), 0.22, 4},
+                                             {unit({0.05, -0.85, -0.45}), 0.22, 4},
+                                             {unit({0, 0, 1}), 0.02, 2}}};
+    double radius = 0.36;
+    for (const Lobe& lobe : lobes) {
+        double part = (1 + d.x * lobe.along.x + d.y * lobe.along.y + d.z * lobe.along.z) / 2;
+        for (int k = 0; k < lobe.sharpness; ++k) part *= part;
+        radius += lobe.length * part;
+    }
+    return radius;
 }
 
 /// A sphere of rings, drawn out to the distance `radius_in` of each unit direction.
@@ -125,6 +154,10 @@ Mesh round_sphere(std::uint32_t triangles) {
 
 Mesh star(std::uint32_t triangles) {
     return drawn_out_sphere("star", triangles, 400, star_radius);
+}
+
+Mesh hare(std::uint32_t triangles) {
+    return drawn_out_sphere("hare", triangles, 400, hare_radius);
 }
 
 Mesh bumpy_torus(std::uint32_t triangles) {

@@ -57,7 +57,7 @@ class Browser:
         text, self.buffer = self.buffer.split(b"\0", 1)
         return json.loads(text)
 
-    def call(self, method, timeout=120, **parameters):
+    def call(self, method, timeout=1200, **parameters):
         self.next_id += 1
         message = {"id": self.next_id, "method": method, "params": parameters}
         if getattr(self, "session", None):
@@ -96,7 +96,8 @@ class Browser:
             raise RuntimeError(f"{expression}: {result['exceptionDetails']}")
         return result["result"].get("value")
 
-    def wait_for(self, expression, seconds=60):
+    def wait_for(self, expression, seconds=600):
+        """A hang ends some time; how long an answer takes is the machine's business."""
         deadline = time.monotonic() + seconds
         while not self.value(expression):
             if time.monotonic() > deadline:

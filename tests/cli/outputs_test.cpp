@@ -38,22 +38,20 @@ protected:
     }
     /// Its recording exists from the first step on.
     void wait_for(const std::string& file) const {
-        for (int i = 0; i < 6000; ++i) {
+        for (;;) { // on a busy machine for long; ctest ends what hangs
             std::error_code none;
             if (std::filesystem::file_size(at(file), none) > 0 && !none) return;
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        FAIL() << file << " did not come";
     }
     /// The name is there before the meshes are written whole; a kill in between leaves no step to read.
     void wait_for_a_step(const std::string& file) const {
         wait_for(file);
-        for (int i = 0; i < 600; ++i) {
+        for (;;) {
             const auto result = run({"replay", file, "--json"});
             if (result.status == 0 && json::parse(result.out)["steps"] > 0) return;
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        FAIL() << file << " has no step";
     }
     /// Of a run that was ended: what it printed.
     static json cut_short(const ProgramResult& result, int status) {
@@ -139,9 +137,6 @@ TEST_F(Outputs, AReplayIsCutShortAlike) {
     StartedProgram program({"replay", "pile.glb", "--caster", "basic", "--method", "standard", "--compare", "standard",
                             "--json", "--out", "out"},
                            folder_.path());
-    for (int i = 0; i < 6000 && !is_there("out/steps.csv.part"); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300)); // it listens from its first step on
     program.send(SIGHUP);
     const auto result = program.wait();
     ASSERT_EQ(result.status, 129) << result.err;

@@ -7,12 +7,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 namespace {
 
@@ -62,7 +65,21 @@ StartedProgram::~StartedProgram() {
     waitpid(process_, nullptr, 0);
 }
 
+bool StartedProgram::listens(int signal) const {
+    // Masks of the signals that are caught and ignored, in hexadecimal; none once it has ended.
+    std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+    std::uint64_t mask = 0;
+    bool ended = !status;
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("State:\tZ")) ended = true;
+        if (line.starts_with("SigCgt:") || line.starts_with("SigIgn:"))
+            mask |= std::stoull(line.substr(8), nullptr, 16);
+    }
+    return ended || signal == SIGKILL || (mask >> (signal - 1) & 1U) != 0;
+}
+
 void StartedProgram::send(int signal) const {
+    while (!listens(signal)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (::kill(process_, signal) != 0) throw std::runtime_error("kill failed");
 }
 

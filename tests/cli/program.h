@@ -26,10 +26,11 @@ public:
     ~StartedProgram();
     StartedProgram(const StartedProgram&) = delete;
     StartedProgram& operator=(const StartedProgram&) = delete;
-    void send(int signal) const;
+    void send(int signal) const; ///< as soon as the program listens to it
     ProgramResult wait();
 
 private:
+    bool listens(int signal) const;
     TemporaryFolder streams_;
     std::string out_file_;
     int process_ = -1;

@@ -41,7 +41,7 @@ TEST_F(RunOwn, MeshesFallOnASlab) {
     EXPECT_EQ(log["flown_off"], 0);
     EXPECT_DOUBLE_EQ(log["depth_limit"].get<double>(), 0.01); // 2 % of the size
     EXPECT_LT(log["median_speed_last_second"].get<double>(), 0.1);
-    for (const char* text : {"cube.obj", "8 vertices and 12 triangles", "wedge.obj", "in turn"})
+    for (const char* text : {"cube.obj", "8 vertices and 12 triangles", "wedge.obj", "4 x"})
         EXPECT_NE(log["mesh_source"].get<std::string>().find(text), std::string::npos) << text;
     EXPECT_EQ(run({"--mesh", "cube.obj", "wedge.obj", "--bodies", "8", "--size", "0.5", "--steps", "240", "--threads",
                    "3"})["hash"],
@@ -73,6 +73,49 @@ TEST_F(RunOwn, ThePlaneStopsThemAndIsNotCounted) {
     const auto replay = run_program({"replay", "fall.glb", "--json"}, folder_.path());
     EXPECT_EQ(replay.status, 0) << replay.err;
     EXPECT_EQ(json::parse(replay.out)["hash_reproduced"], true);
+}
+
+TEST_F(RunOwn, TheSpeedIsTheMedianOfTheLastSecond) {
+    // It falls in the first half of that second and lies in the second.
+    const json log =
+        run({"--mesh", "cube.obj", "--bodies", "1", "--steps", "64", "--out", "out", "--pictures", "none"});
+    std::vector<double> speeds;
+    for (const auto& row : csv_rows(folder_.path() / "out/steps.csv")) speeds.push_back(row.at("median_speed_m_s"));
+    ASSERT_EQ(speeds.size(), 64u);
+    speeds.erase(speeds.begin(), speeds.begin() + 4);
+    std::sort(speeds.begin(), speeds.end());
+    EXPECT_NEAR(log["median_speed_last_second"].get<double>(), (speeds[29] + speeds[30]) / 2, 1e-5);
+    EXPECT_LT(log["median_speed_last_second"].get<double>(), speeds.back() / 2);
+}
+
+TEST_F(RunOwn, WordsAreRightForOne) {
+    const auto one = run_program({"run", "--mesh", "cube.obj", "--bodies", "1", "--steps", "1"}, folder_.path());
+    EXPECT_TRUE(one.out.starts_with("own: 1 body, 1 step, seed 1; cube.obj (8 vertices and 12 triangles)\n"))
+        << one.out;
+    const auto two =
+        run_program({"run", "--mesh", "cube.obj", "wedge.obj", "--bodies", "3", "--steps", "2"}, folder_.path());
+    EXPECT_TRUE(two.out.starts_with("own: 3 bodies, 2 steps, seed 1; 2 x cube.obj (8 vertices and 12 triangles); "
+                                    "1 x wedge.obj (4 vertices and 4 triangles)\n"))
+        << two.out;
+}
+
+TEST_F(RunOwn, PicturesAreAsManyAsAskedFor) {
+    const auto pictures = [&](const std::string& count) {
+        run({"--mesh", "cube.obj", "--bodies", "1", "--steps", "3", "--out", count, "--pictures", count});
+        std::size_t files = 0;
+        if (std::filesystem::exists(folder_.path() / count / "pictures"))
+            for (const auto& file : std::filesystem::directory_iterator(folder_.path() / count / "pictures"))
+                files += file.path().extension() == ".png";
+        EXPECT_TRUE(std::filesystem::exists(folder_.path() / count / "report.html"));
+        return files;
+    };
+    EXPECT_EQ(pictures("none"), 0u);
+    EXPECT_EQ(pictures("1"), 1u);
+    EXPECT_EQ(pictures("2"), 2u);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "none/pictures/film.webp"));
+    for (const char* word : {"0", "-1", "some", ""})
+        refused({"avalanche", "--out", "x", "--pictures", word}, "--pictures");
+    refused({"avalanche", "--pictures", "2"}, "--pictures");
 }
 
 TEST_F(RunOwn, DensityChangesNothingButMass) {

@@ -101,6 +101,46 @@ TEST_F(SceneFile, FieldsDoWhatTheySay) {
     }
 }
 
+// Whatever the ground is, and wherever down is.
+TEST_F(SceneFile, LostBodiesAreCounted) {
+    json scene = one_cube();
+    scene["meshes"]["table"] = {{"file", "cube.obj"}, {"size", 8}};
+    scene["bodies"] = json::array();
+    for (int i = 0; i < 14; ++i)
+        scene["bodies"].push_back({{"mesh", "cube"}, {"position", {1.5 * (i % 5) - 3, 1.5 * (i / 5) - 1.5, 1}}});
+    for (int i = 0; i < 10; ++i) // beside the table, whose edge is at x = 4
+        scene["bodies"].push_back({{"mesh", "cube"}, {"position", {5 + 1.5 * i, 0, 1}}});
+    scene["bodies"].push_back({{"mesh", "table"}, {"static", true}, {"position", {0, 0, -4}}});
+    scene["steps"] = 240;
+    const auto lost = [&](const char* key) { return run(scene)[key]; };
+    scene["ground"] = "none";
+    EXPECT_EQ(lost("below_ground"), 10);
+    EXPECT_EQ(lost("flown_off"), 10);
+    scene["bodies"].erase(24); // nothing to fall from
+    EXPECT_TRUE(lost("below_ground").is_null());
+    EXPECT_TRUE(lost("flown_off").is_null());
+    const auto text = run_program({"run", "scene.json"}, folder_.path()).out;
+    EXPECT_NE(text.find("no ground that bodies could fall from"), std::string::npos) << text;
+    scene["ground"] = {{"slab", 8}};
+    EXPECT_EQ(lost("below_ground"), 10);
+    scene["ground"] = "plane";
+    EXPECT_EQ(lost("below_ground"), 0);
+    scene["gravity"] = {0, 0, 5}; // away from the plane
+    EXPECT_EQ(lost("below_ground"), 24);
+    scene["gravity"] = {0, 0, 0};
+    EXPECT_TRUE(lost("below_ground").is_null());
+}
+
+TEST_F(SceneFile, MeshesAreCountedAsTheyAre) {
+    json scene = one_cube();
+    scene["meshes"]["knot"] = {{"model", "knot"}, {"triangles", 200}};
+    scene["bodies"].push_back({{"mesh", "knot"}, {"position", {3, 0, 3}}});
+    scene["bodies"].push_back({{"mesh", "cube"}, {"static", true}, {"position", {-3, 0, 3}}});
+    EXPECT_EQ(run(scene)["mesh_source"],
+              "1 x cube.obj (8 vertices and 12 triangles); 1 x a procedural trefoil knot of 100 vertices and 200 "
+              "triangles; standing still: 1 x cube.obj (8 vertices and 12 triangles)");
+}
+
 // The file places the mesh's own origin, wherever its centre of mass is.
 TEST_F(SceneFile, PosesAreThoseOfTheMeshFile) {
     std::string moved;

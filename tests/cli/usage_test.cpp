@@ -16,7 +16,7 @@ protected:
 TEST_F(Usage, HelpEverywhere) {
     const auto whole = run({"--help"});
     EXPECT_EQ(whole.status, 0);
-    for (const char* command : {"devices", "mesh", "collide", "run", "replay"}) {
+    for (const char* command : {"devices", "samples", "mesh", "collide", "run", "replay"}) {
         EXPECT_NE(whole.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
         const auto help = run({command, "--help"});
         EXPECT_EQ(help.status, 0) << command;

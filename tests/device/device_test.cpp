@@ -292,8 +292,7 @@ TEST(driver, kernels_run_for_some_time) {
     totals.resize(*opened.device, 1);
     queue.scan({4000000, 1, 4000000, values.buffer(), firsts.buffer(), totals.buffer(), 0, 10});
     queue.finish();
-    EXPECT_GT(queue.busy_ms(), before + 0.01); // a large GPU takes less than 0.1 ms
-    EXPECT_LT(queue.busy_ms(), before + 10000);
+    EXPECT_GT(queue.busy_ms(), before);
 }
 
 } // namespace

@@ -116,10 +116,8 @@ TEST_F(Reproduce, GoesOnAfterItWasKilled) {
               static_cast<char*>(nullptr));
         _exit(127);
     }
-    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     const auto parts = [&] { return fs::exists(killed / "cache") ? times_of(killed / "cache").size() : 0; };
-    while (parts() < 1 && std::chrono::steady_clock::now() < patience)
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (parts() < 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);

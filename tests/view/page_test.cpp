@@ -4,6 +4,7 @@
 
 #include <raycontact/error.h>
 #include <recording/writer.h>
+#include <report/colour.h>
 #include <view/page.h>
 #include <view/view.h>
 
@@ -71,6 +72,40 @@ TEST(Page, HasEveryLayerStepAndCount) {
     EXPECT_GT(contacts, 0u);
     EXPECT_EQ(data["layers"]["pairs"].size(), 10u);
     EXPECT_EQ(data["bodies"].size(), 2u);
+}
+
+TEST(Page, BodiesHaveTheReportsColours) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "a.glb";
+    record(file, "boxes", 10);
+    recording::Reader reader(file);
+    const View view = make_view(reader, {});
+    const nlohmann::json data = data_of(view.html);
+    EXPECT_EQ(view.standing, 1u);
+    EXPECT_EQ(data["standing"], 1);
+    const auto shown = [](report::Float3 colour) {
+        std::uint8_t rgb[3];
+        report::develop(1.5f * colour, rgb);
+        return rgb[0] << 16 | rgb[1] << 8 | rgb[2];
+    };
+    EXPECT_EQ(data["bodies"][0][3], shown(report::resting_colour())); // it never moves
+    EXPECT_EQ(data["bodies"][1][3], shown(report::body_colour(1)));
+    record(file, "boxes", 1); // what stands still cannot be told yet
+    recording::Reader one(file);
+    EXPECT_EQ(data_of(make_view(one, {}).html)["bodies"][0][3], shown(report::body_colour(0)));
+}
+
+TEST(Page, HasTheDeepestContactOfEveryStep) {
+    const TemporaryFolder folder;
+    const std::string file = folder.path() / "a.glb";
+    record(file, "boxes", 10);
+    recording::Reader reader(file);
+    ViewOptions options;
+    options.layer_every = 4;
+    const nlohmann::json layers = data_of(make_view(reader, options).html)["layers"];
+    ASSERT_EQ(layers["depths"].size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(layers["depths"][i].get<double>(), 0.01 + 0.001 * double(i), 1e-6);
+    EXPECT_LT(layers["depth"], layers["depths"][9]); // which has no layers
 }
 
 TEST(Page, WithoutLayersOrSteps) {

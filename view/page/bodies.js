@@ -1,20 +1,11 @@
 // Draws the bodies of a step: instances of each shape's levels of detail.
 const instanceFloats = 10; // place, turn, tint
 
-function bodyTint(body, shape, shapes) {
-  if (shape.radius > 6 * shapes.smallest) return [0.62, 0.64, 0.66]; // the ground
-  const hue = (shapes.indexOf(shape) * 0.382 + 0.57 + 0.1 * ((body * 0.618) % 1)) % 1, light = 0.6 + 0.2 * ((body * 0.755) % 1);
-  const part = k => light * (1 - 0.42 * Math.max(0, Math.min(1, Math.abs((hue * 6 + k) % 6 - 3) - 1)));
-  return [part(0), part(4), part(2)];
-}
-
 class Bodies {
   constructor(gl, shapes, list, motion) {
     this.gl = gl; this.shapes = shapes; this.motion = motion;
     this.shader = compile(gl, bodyVertex, bodyFragment);
-    const radii = shapes.map(s => s.radius).sort((a, b) => a - b);
-    shapes.smallest = radii[0];
-    this.list = list.map(([shape, first, end], body) => ({shape, first, end, tint: bodyTint(body, shapes[shape], shapes)}));
+    this.list = list.map(([shape, first, end, colour]) => ({shape, first, end, tint: [16, 8, 0].map(bits => (colour >> bits & 255) / 255)}));
     this.parts = shapes.map(shape => this.upload(shape));
     this.pose = new Float32Array(7);
     this.triangles = 0; // drawn in the last frame

@@ -9,6 +9,12 @@ const layerNames = {
 const deviceColours = [[0.18, 0.44, 0.85], [0.93, 0.45, 0.13], [0.2, 0.65, 0.35], [0.7, 0.3, 0.75], [0.85, 0.7, 0.1], [0.1, 0.65, 0.7], [0.85, 0.25, 0.35], [0.5, 0.5, 0.5]];
 const depthStops = [[0.1, 0.35, 0.95], [0.1, 0.85, 0.75], [0.98, 0.85, 0.2], [0.95, 0.15, 0.1]];
 
+const beyondColour = [0.45, 0, 0.6]; // deeper than the ramp's end
+const metres = x => {
+  const mm = +(1000 * x).toPrecision(2);
+  return mm < 1000 ? `${mm} mm` : `${+x.toPrecision(3)} m`;
+};
+
 function depthColour(part) {
   const at = Math.max(0, Math.min(0.9999, part)) * (depthStops.length - 1), i = Math.floor(at), f = at - i;
   return depthStops[i].map((c, k) => c + f * (depthStops[i + 1][k] - c));
@@ -24,8 +30,11 @@ class Layers {
     this.shader = compile(gl, layerVertex, layerFragment);
     this.cache = new Map();
     this.buffers = null; this.key = '';
-    // One contact far deeper than the others must not make all others one colour: the ramp ends at a high percentile.
+    // One contact far deeper than the others must not make all others one colour: the ramp ends at a high percentile,
+    // and what lies beyond has a colour of its own. Steps without layers count for the deepest, too.
     this.deepest = layers.depth;
+    this.deepestStep = layers.depths.reduce((best, depth, step) => depth > layers.depths[best] ? step : best, 0);
+    this.most = layers.depths[this.deepestStep];
   }
 
   // The last step with layers that is not after this one.
@@ -54,7 +63,7 @@ class Layers {
   }
 
   colour(segment, by) {
-    return by === 'device' ? deviceColours[segment.device % deviceColours.length] : depthColour(segment.depth / (this.deepest || 1));
+    return by === 'device' ? deviceColours[segment.device % deviceColours.length] : segment.depth > 1.01 * this.deepest ? beyondColour : depthColour(segment.depth / (this.deepest || 1));
   }
 
   // Makes the buffers of what is wanted. shown: names of layers.

@@ -19,8 +19,9 @@ const fit = () => camera.fit(bodies.balls(motion.kept - 1, recording.steps - 1))
 element('frame').onclick = canvas.ondblclick = fit;
 new ResizeObserver(changed).observe(canvas);
 
+const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
 const finest = recording.shapes.reduce((sum, s) => sum + s.triangles, 0);
-element('about').textContent = `${recording.scene}: ${recording.bodies.length} bodies, ${recording.shapes.length} shapes of ${finest} triangles in all, ${recording.steps} steps of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
+element('about').textContent = `${recording.scene}: ${counted(recording.bodies.length - recording.standing, 'moving body', 'moving bodies')}, ${recording.standing} standing still, ${counted(recording.shapes.length, 'shape', 'shapes')} of ${finest} triangles in all, ${counted(recording.steps, 'step', 'steps')} of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
   + (motion.stride > 1 ? ` Every ${motion.stride}th step is here.` : '')
   + (recording.meshSource ? ` Meshes: ${recording.meshSource}` : '');
 
@@ -31,7 +32,12 @@ function legend(names, by) {
   element('legend-bar').hidden = !depth;
   if (depth) {
     element('legend-low').textContent = 'depth 0';
-    element('legend-high').textContent = `${(1000 * layers.deepest).toPrecision(2)} mm`;
+    element('legend-high').textContent = metres(layers.deepest);
+    if (layers.most > 1.01 * layers.deepest) {
+      const dot = document.createElement('b');
+      dot.style.background = css(beyondColour);
+      element('legend-high').append(dot, `deeper, up to ${metres(layers.most)} in step ${layers.deepestStep}`);
+    }
     element('legend-bar').style.background = `linear-gradient(90deg, ${depthStops.map(css).join()})`;
   } else if (device) {
     element('legend-low').textContent = '';

