@@ -140,11 +140,23 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box_of(node, lane).squared_distance(point);
     };
     nearest_first<double>(mesh, farthest, away, [&](const kernels::TriangleBlock& block) {
-        for (const std::uint32_t face : block.triangle) {
-            if (face == NONE) continue;
-            const std::array corners{mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2)};
-            if (box_of(corners).squared_distance(point) > rounding * least2) continue;
-            const Vec3 off = point - nearest_point(point, corners[0], corners[1], corners[2]);
+        // How far the triangles' boxes are, side by side; NaN in empty lanes.
+        Lanes<double> boxes2{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double at = axis(point, k);
+            const auto &p = block.corner[k], &q = block.corner[3 + k], &r = block.corner[6 + k];
+            for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+                const double low = std::min(std::min(p[lane], q[lane]), r[lane]);
+                const double high = std::max(std::max(p[lane], q[lane]), r[lane]);
+                const double off = std::max(std::max(low - at, at - high), 0.0);
+                boxes2[lane] += off * off;
+            }
+        }
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+            if (!(boxes2[lane] <= rounding * least2)) continue;
+            const std::uint32_t face = block.triangle[lane];
+            const Vec3 nearest = nearest_point(point, mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2));
+            const Vec3 off = point - nearest;
             const double distance2 = dot(off, off);
             if (distance2 > least2 || (distance2 == least2 && face >= found.face)) continue;
             least2 = distance2;
