@@ -2,7 +2,7 @@
 #include "coming/coming_contacts.h"
 
 #include "broadphase/sweep_and_prune.h"
-#include "edges/source_mesh.h"
+#include "edges/pair_meshes.h"
 #include "give_back.h"
 #include "mesh/measure.h"
 #include "pairs/displacement.h"

@@ -2,8 +2,10 @@
 #include "edges/edge_stage.h"
 
 #include "give_back.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace raycontact {
@@ -37,14 +39,71 @@ std::uint32_t file_edge(const ShapeData& shape, std::uint32_t edge) {
     return 3 * shape.mesh.triangle_index[edge / 3] + edge % 3;
 }
 
+bool in_box(const ShapeData& mesh, const Vec3& p) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (axis(p, k) < double(mesh.header.low[k]) || axis(p, k) > double(mesh.header.high[k])) return false;
+    return true;
+}
+
+// A cell of the outside grid that holds the point is outside as a whole.
+bool known_outside(const Accelerators* mesh, const Vec3& p) {
+    if (mesh == nullptr || mesh->header.grid_size[0] == 0) return false;
+    const kernels::ShapeHeader& h = mesh->header;
+    std::size_t cell[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double at = (axis(p, k) - double(h.grid_low[k])) * double(h.grid_scale);
+        if (!(at >= 0 && at < double(h.grid_size[k]))) return false;
+        cell[k] = static_cast<std::size_t>(at);
+    }
+    const std::size_t bit = (cell[2] * h.grid_size[1] + cell[1]) * h.grid_size[0] + cell[0];
+    return (mesh->outside_cells[bit >> 5] >> (bit & 31u) & 1u) != 0;
+}
+
+bool is_inside(const SourceMesh& placed, const Vec3& p) {
+    const ShapeData& mesh = placed.target;
+    if (!in_box(mesh, p) || known_outside(placed.target_accelerators, p)) return false;
+    // Any direction serves; this one is related to no axis and no diagonal.
+    const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
+    return hit.face != NONE && hit.from_inside;
+}
+
+// Whether a component of the source lies in the target; needs surfaces that do not cross, and a closed target.
+bool has_part_inside(const SourceMesh& placed) {
+    for (const std::uint32_t v : placed.source.component_vertices)
+        if (is_inside(placed, placed.vertex(v))) return true;
+    return false;
+}
+
+// The contact of a source of which a component lies wholly inside the target: its deepest vertex, the nearest face.
+std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, VertexBody source) {
+    std::optional<FeatureContact> deepest;
+    const ShapeData& target = placed.target;
+    for (std::uint32_t v = 0; v < placed.source.points.size(); ++v) {
+        if (placed.source.vertex_triangle[v] == Shape::no_triangle) continue;
+        const Vec3 p = placed.vertex(v);
+        if (!in_box(target, p)) continue;
+        const NearestFace nearest = nearest_face(target, p, deepest ? deepest->depth : 0);
+        if (deepest && nearest.distance <= deepest->depth) continue;
+        if (!is_inside(placed, p)) continue; // of another component
+        const Vec3 out = nearest_point(p, target.corner(nearest.face, 0), target.corner(nearest.face, 1),
+                                       target.corner(nearest.face, 2))
+                         - p;
+        const double depth = length(out);
+        const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : normal_of(target, nearest.face);
+        if (!(depth > 0)) continue;
+        deepest = {source, Feature::inside, v, nearest.face, p, normal, depth};
+    }
+    return deepest;
+}
+
 // Whether either body has a part inside the other. Of bodies whose surfaces do not cross.
-bool find_inside(const std::array<SourceMesh, 2>& placed, std::vector<FeatureContact>& found) {
+bool find_inside(const PlacedBody& a, const PlacedBody& b, std::vector<FeatureContact>& found) {
     bool any = false;
-    for (std::size_t side = 0; side < 2; ++side) {
-        if (placed[side].target.header.closed == 0 || !has_part_inside(placed[side])) continue;
+    for (const VertexBody side : {VertexBody::a, VertexBody::b}) {
+        const SourceMesh placed = side == VertexBody::a ? SourceMesh(a, b) : SourceMesh(b, a);
+        if (placed.target.header.closed == 0 || !has_part_inside(placed)) continue;
         any = true;
-        if (const auto inside = contact_of_inside(placed[side], static_cast<VertexBody>(side)))
-            found.push_back(*inside);
+        if (const auto inside = contact_of_inside(placed, side)) found.push_back(*inside);
     }
     return any;
 }
@@ -115,12 +174,11 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     const PlacedBody &a = question.update.bodies[pair.first], &b = question.update.bodies[pair.second];
     const std::array vertices{question.local.of(2 * asked.pair), question.local.of(2 * asked.pair + 1)};
     for (const std::span<NearEdge>& near : asked.near) sort(near);
-    const std::array<SourceMesh, 2> placed{SourceMesh(a, b), SourceMesh(b, a)};
     const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     work.found.clear();
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (!work.edges.find(placed, {asked.near[0], asked.near[1]}, vertices, work.found) && !in_contact) {
-        const bool apart = !find_inside(placed, work.found);
+    if (!work.edges.find(PairMeshes(a, b), {asked.near[0], asked.near[1]}, vertices, work.found) && !in_contact) {
+        const bool apart = !find_inside(a, b, work.found);
         if (asked.apart != nullptr) *asked.apart = apart && asked.near[0].empty() && asked.near[1].empty();
     }
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());

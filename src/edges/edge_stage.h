@@ -2,7 +2,6 @@
 #pragma once
 
 #include "contacts/by_pair.h"
-#include "edges/inside.h"
 #include "edges/near_edges.h"
 #include "edges/pair_edges.h"
 #include "pairs/update.h"

@@ -74,14 +74,13 @@ double beyond(const Vec3& direction, const Vec3& n, const Vec3& m) {
 
 } // namespace
 
-bool PairEdges::find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
+bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
                      std::vector<FeatureContact>& found) {
-    const PairMeshes pair(placed);
     follow_loops(pair, near, !vertices[0].empty() || !vertices[1].empty());
     if (crossings().empty()) return false;
     list_vertices(vertices);
-    list_pieces(pair, placed);
+    list_pieces(pair);
     join_regions(pair);
     list_regions(pair);
     pass_edges(pair);
@@ -135,7 +134,7 @@ void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalCon
               [](const VertexContact& p, const VertexContact& q) { return p.vertex < q.vertex; });
 }
 
-void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh, 2>& placed) {
+void PairEdges::list_pieces(const PairMeshes& pair) {
     pieces_.clear();
     piece_vertices_.clear();
     crossed_.clear();
@@ -154,7 +153,7 @@ void PairEdges::list_pieces(const PairMeshes& pair, const std::array<SourceMesh,
         const auto [start, stop] = ends_of(pair.shape(side), edge);
         const std::uint64_t of_side = std::uint64_t{side} << 32;
         crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
-        if (placed[side].target.header.closed == 0) continue; // an open mesh has no inside
+        if (pair.shape(1 - side).header.closed == 0) continue; // an open mesh has no inside
         // The piece before crossing k, if it is inside.
         for (std::size_t k = begin; k <= end; ++k) {
             Piece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}};

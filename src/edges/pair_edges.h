@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/feature_contact.h"
 #include "edges/loops.h"
 #include "mesh/disjoint_sets.h"
 #include "shape/mesh_rays.h"
@@ -15,9 +14,9 @@ namespace raycontact {
 /// The edges' rule for one pair (docs/edges.md). Keeps nothing but memory from one pair to the next.
 class PairEdges {
 public:
-    /// placed: a in b, b in a. near: the edges that could cross. vertices: the vertex contacts of a, of b.
+    /// near: the edges that could cross. vertices: the vertex contacts of a, of b.
     /// Adds contacts in any order; returns whether any edge crosses a face.
-    bool find(const std::array<SourceMesh, 2>& placed, const NearEdges& near,
+    bool find(const PairMeshes& pair, const NearEdges& near,
               const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
               std::vector<FeatureContact>& found);
 
@@ -64,7 +63,7 @@ private:
     };
 
     void list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices);
-    void list_pieces(const PairMeshes& pair, const std::array<SourceMesh, 2>& placed);
+    void list_pieces(const PairMeshes& pair);
     void join_regions(const PairMeshes& pair);
     void join_vertices(const PairMeshes& pair);
     void sort_by_region(std::vector<std::pair<std::uint32_t, Vec3>>& list);

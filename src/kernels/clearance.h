@@ -86,21 +86,3 @@ DEVICE float least_of_sixteen(const float* values) {
         for (int k = 0; k < left; ++k) least[k] = least[k] < least[k + left] ? least[k] : least[k + left];
     return least[0];
 }
-
-// A safe distance for all vertices of a block, from only the ball around its box.
-DEVICE float safe_block(READS(DirectedPair) pair, READS(SourceTree) source, READS(ClusterBlock) clusters,
-                        uint vertex_block, READS(ShapeHeader) target, READS(uint) clearances) {
-    const uint own = vertex_block - source->block_first, lane = own % VERTEX_LANES;
-    READS(ClusterBlock) box = clusters + source->cluster_first[0] + own / VERTEX_LANES;
-    READS(float) r = pair->rotation;
-    const float x = box->centre[0][lane], y = box->centre[1][lane], z = box->centre[2][lane];
-    const float hx = box->half_size[0][lane], hy = box->half_size[1][lane], hz = box->half_size[2][lane];
-    const Clearance grid = clearance_of(target);
-    // UNBOUNDED, since the reach of the block's rays is not known: only a middle that is outside gives a bound. Poses
-    // are rigid only to 1e-4 each and may stretch the box by more than the margin, hence the half thousandth.
-    return safe_distance(grid, clearances + target->clearance_first,
-                         ((r[0] * x + r[1] * y) + r[2] * z) + pair->translation[0],
-                         ((r[3] * x + r[4] * y) + r[5] * z) + pair->translation[1],
-                         ((r[6] * x + r[7] * y) + r[8] * z) + pair->translation[2], UNBOUNDED)
-           - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-}

@@ -82,8 +82,10 @@ STRUCT(Search) {
     float least_safe; // of the boxes left out
 };
 
-// Child boxes with a point that could be in contact before it has moved by `horizon`: see safe_block(). A point outside
-// the bounds cannot be in contact before it reaches them.
+// Child boxes with a point that could be in contact before it has moved by `horizon`, by the balls around the boxes: of
+// vertices only a middle that is outside gives a bound. A point outside the bounds cannot be in contact before it
+// reaches them. Poses are rigid only to 1e-4 each and may stretch a box by more than the margin, hence the half
+// thousandth.
 DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     READS(DirectedPair) pair = search->pair;
     READS(ShapeHeader) target = search->target;

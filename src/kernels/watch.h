@@ -6,20 +6,14 @@
 #define AWAKE (-1.0f)              // Watch.wake of a block to be tested in the next step
 #define REFRESH_TOLERANCES 8192.0f // some hundredth of the box diagonal
 
-// Begins a new list. Blocks that are clearly outside sleep at once, the others are tested in the step that made the
-// list. places, margins: by pair.
-KERNEL void begin_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes, READS(ClusterBlock) boxes,
-                          READS(uint) clearances, READS(float) margins, READS(PairBlock) near_blocks,
-                          READS(uint) firsts, READS(uint) places, WRITES(Watch) watches) {
+// Begins a new list, whose blocks are tested in the step that made it. places: by pair.
+KERNEL void begin_watches(COUNT(count), READS(PairBlock) near_blocks, READS(uint) firsts, READS(uint) places,
+                          WRITES(Watch) watches) {
     FOR_EACH(i, count) {
         const PairBlock found = near_blocks[i];
-        READS(DirectedPair) pair = pairs + found.pair;
-        const float safe = safe_block(pair, &shapes[pair->source].vertices, boxes, found.vertex_block,
-                                      shapes + pair->target, clearances)
-                           - margins[found.pair];
         Watch watch;
         watch.vertex_block = found.vertex_block;
-        watch.wake = safe > 0.0f ? safe : AWAKE;
+        watch.wake = AWAKE;
         watch.lanes = 0u;
         watches[places[found.pair] + (i - firsts[found.pair])] = watch;
     }

@@ -105,13 +105,13 @@ void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
 }
 
 void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<const Vec3> snapped_vertices,
-                   const TriangleBvh& bvh, Executor& executor) {
+                   const MeshTree& tree, Executor& executor) {
     MeshReport& report = prepared.report;
-    report.self_intersecting = bvh.any_pair(executor, [&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
+    report.self_intersecting = tree.any_pair(executor, [&](std::uint32_t i, std::uint32_t k) { // typically O(n log n)
         return triangles_meet(snapped_vertices, prepared.triangles[i], prepared.triangles[k]);
     });
     report.outward =
-        report.closed && report.oriented && !report.self_intersecting && winds_outward(prepared, patches, bvh);
+        report.closed && report.oriented && !report.self_intersecting && winds_outward(prepared, patches, tree);
     report.checked = true;
 }
 

@@ -3,8 +3,8 @@
 
 #include <raycontact/mesh.h>
 
+#include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
-#include "mesh/triangle_bvh.h"
 
 namespace raycontact {
 
@@ -23,7 +23,7 @@ void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges);
 
 /// Fills self_intersecting and outward. After fill_report(). The hierarchy is over snapped vertices.
 void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<const Vec3> snapped_vertices,
-                   const TriangleBvh& bvh, Executor& executor);
+                   const MeshTree& tree, Executor& executor);
 
 /// Whether a closed and oriented mesh does not intersect itself and winds outward. Few triangles: on one thread.
 bool is_outward(const PreparedMesh& mesh, Executor& executor);

@@ -13,10 +13,11 @@ using Item = GltfFile::Item;
 
 enum ComponentType : std::size_t { unsigned_byte = 5121, unsigned_short = 5123, float32 = 5126 };
 
-void check_count(const GltfFile& file, const Item& accessor, std::size_t vertices) {
+void check_count(const GltfFile& file, const Item& accessor, std::size_t vertices, const char* records = "records") {
     const std::size_t count = file.whole(accessor, "count");
     if (count != vertices) {
-        file.fail(accessor, "has " + std::to_string(count) + " records for " + std::to_string(vertices) + " vertices");
+        file.fail(accessor,
+                  "has " + std::to_string(count) + " " + records + " for " + std::to_string(vertices) + " vertices");
     }
 }
 
@@ -72,11 +73,7 @@ void add_morph_targets(const GltfFile& file, const Item& primitive, std::span<co
         const std::optional<Item> position = file.member(target, "POSITION");
         if (!position) continue;
         const Item accessor = file.item("accessors", file.whole(*position));
-        const std::size_t count = file.whole(accessor, "count");
-        if (count != positions.size() / 3) {
-            file.fail(accessor, "has " + std::to_string(count) + " displacements for "
-                                    + std::to_string(positions.size() / 3) + " vertices");
-        }
+        check_count(file, accessor, positions.size() / 3, "displacements");
         // Exporters write a target that moves nothing without any data: zeros.
         if (!file.member(accessor, "bufferView") && !file.member(accessor, "sparse")) continue;
         const std::vector<double> displacements = file.read_accessor(accessor, "VEC3", 3);

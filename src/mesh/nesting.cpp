@@ -49,7 +49,7 @@ int cross_triangle(const Vec3& direction, const Vec3& a, const Vec3& b, const Ve
 
 /// Finds all other triangles that a ray from the middle of a triangle crosses in the space in front of it. Tries
 /// directions until one is clear, by more than rounding, of every edge and of surface at its origin; false if none is.
-bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& bvh, std::vector<Crossing>& crossings) {
+bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const MeshTree& tree, std::vector<Crossing>& crossings) {
     const auto corners = [&](std::uint32_t t) {
         const auto [a, b, c] = mesh.triangles[t];
         return std::array{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
@@ -67,7 +67,7 @@ bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const TriangleBvh& 
         if (direction.x == 0 || direction.y == 0 || direction.z == 0) continue;
         crossings.clear();
         bool clear = true;
-        bvh.along_ray(origin, direction, [&](std::uint32_t t) {
+        tree.along_ray(origin, direction, [&](std::uint32_t t) {
             if (t == from || !clear) return;
             const auto [p, q, r] = corners(t);
             const int sign = cross_triangle(direction, p - origin, q - origin, r - origin, clear);
@@ -106,11 +106,11 @@ std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& 
 /// How many closed patches surround every given triangle of a patch. A patch surrounds a triangle if a ray from there
 /// crosses it an odd number of times.
 std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh,
-                           const Patches& patches, const TriangleBvh& bvh) {
+                           const Patches& patches, const MeshTree& tree) {
     std::vector<std::uint32_t> around;
     std::vector<Crossing> crossings;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        if (!cast_from(from[k], mesh, bvh, crossings)) return 0; // not known: not nested
+        if (!cast_from(from[k], mesh, tree, crossings)) return 0; // not known: not nested
         std::map<std::uint32_t, std::size_t> times;
         for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
         if (k == 0) {
@@ -126,7 +126,7 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
 
 } // namespace
 
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyBvh& bvh,
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
                                   Nesting nesting) {
     const std::size_t count = patches.list.size();
     // About a vertex of its own: seen from afar, the volume of a small patch is lost in the rounding of the sum.
@@ -145,7 +145,7 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
     for (std::uint32_t p = 0; p < count; ++p) {
         const double volume = volumes[p].value();
         if (!patches.list[p].closed || !(std::fabs(volume) > roundings[p].value())) continue;
-        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, bvh()) : 0; };
+        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, tree()) : 0; };
         switch (nesting) {
         case Nesting::as_wound:
             turn[p] = volume < 0 && around() == 0 ? 1 : 0;
@@ -164,7 +164,7 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
 // in front of a patch is connected and crosses no triangle (a patch continues only across edges that have no third
 // triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, represents all space
 // next to the surface; and every region of space is next to some surface.
-bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh) {
+bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshTree& tree) {
     std::vector<std::uint32_t> largest(patches.list.size());
     std::vector<double> area(patches.list.size(), 0);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -178,7 +178,7 @@ bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const Trian
     std::vector<Crossing> crossings;
     for (std::size_t p = 0; p < patches.list.size(); ++p) {
         if (area[p] == 0) continue; // degenerate triangles bound nothing
-        if (!cast_from(largest[p], mesh, bvh, crossings)) return false;
+        if (!cast_from(largest[p], mesh, tree, crossings)) return false;
         int winding = 0;
         for (const Crossing& crossing : crossings) winding += crossing.sign;
         if (winding != 0) return false;

@@ -3,8 +3,8 @@
 
 #include <raycontact/mesh.h>
 
+#include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
-#include "mesh/triangle_bvh.h"
 
 #include <vector>
 
@@ -13,11 +13,11 @@ namespace raycontact {
 /// Whether each patch must be turned, once its windings agree, so that it is as `nesting` has it: an outer surface
 /// encloses a positive volume, a cavity a negative one. Patches that are open, not orientable or without volume stay as
 /// they are.
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyBvh& bvh,
+std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
                                   Nesting nesting);
 
 /// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.
-bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const TriangleBvh& bvh);
+bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshTree& tree);
 
 } // namespace raycontact

@@ -89,7 +89,7 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
 
 /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
 /// whether any triangle was turned.
-bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyBvh& bvh, Nesting nesting) {
+bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTree& tree, Nesting nesting) {
     std::vector<Triangle>& triangles = prepared.triangles;
     const std::vector<Triangle> before(triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -97,7 +97,7 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyBvh
         const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
         if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
     }
-    const std::vector<char> contradicts = patches_to_turn(prepared, patches, bvh, nesting);
+    const std::vector<char> contradicts = patches_to_turn(prepared, patches, tree, nesting);
     std::size_t mended = 0, turned_whole = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const std::uint32_t p = patches.of[i];
@@ -144,20 +144,20 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
-    std::optional<TriangleBvh> made;
-    const auto bvh = [&]() -> const TriangleBvh& {
+    std::optional<MeshTree> made;
+    const auto tree = [&]() -> const MeshTree& {
         return made ? *made : made.emplace(exact, prepared.triangles, with_area, executor);
     };
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
-        if (mend_windings(prepared, patches, bvh, nesting)) edges = sorted_half_edges(prepared.triangles);
+        if (mend_windings(prepared, patches, tree, nesting)) edges = sorted_half_edges(prepared.triangles);
     }
     prepared.report.file_vertices = mesh.vertices.size();
     prepared.report.file_triangles = mesh.triangles.size();
     fill_report(prepared, edges);
     prepared.report.checked = false;
-    if (check == Check::full) check_surface(prepared, patches, exact, bvh(), executor);
+    if (check == Check::full) check_surface(prepared, patches, exact, tree(), executor);
     return prepared;
 }
 
@@ -167,8 +167,8 @@ void check_anew(PreparedMesh& mesh, std::span<const HalfEdge> edges, Executor& e
     const std::vector<Vec3> exact = all_snapped(mesh.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
     if (with_area.empty()) throw InputError("no triangle has an area");
-    const TriangleBvh bvh(exact, mesh.triangles, with_area, executor);
-    check_surface(mesh, find_patches(mesh.triangles, edges), exact, bvh, executor);
+    const MeshTree tree(exact, mesh.triangles, with_area, executor);
+    check_surface(mesh, find_patches(mesh.triangles, edges), exact, tree, executor);
 }
 
 } // namespace

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/triangle_bvh.h"
+#include "mesh/measure.h"
+
+#include <array>
+#include <span>
 
 namespace raycontact {
 

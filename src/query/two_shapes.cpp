@@ -4,11 +4,11 @@
 
 #include "broadphase/sweep_and_prune.h"
 #include "executor/float_environment.h"
-#include "mesh/measure.h"
+#include "mesh/descent.h"
 #include "mesh/predicates.h"
 #include "mesh/self_intersection.h"
 #include "pairs/directed_pairs.h"
-#include "shape/descent.h"
+#include "shape/shape_data.h"
 
 #include <algorithm>
 #include <array>
@@ -153,20 +153,18 @@ std::optional<int> crossing(const Vec3& from, const Vec3& to, const Vec3& a, con
 // Along a segment that ends outside of the mesh's box.
 std::optional<int> winding_along(const ShapeData& shape, const Vec3& from, const Vec3& to) {
     const Box box{least(from, to), most(from, to)};
-    constexpr double never = std::numeric_limits<double>::infinity();
     std::optional<int> winding = 0;
-    const auto farthest = [&] { return winding ? never : 0; };
-    const auto away = [&](const kernels::Node& node, Lanes<double>& lanes) {
-        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box.touches(box_of(node, lane)) ? 0 : never;
-    };
-    nearest_first<double>(shape, farthest, away, [&](const kernels::TriangleBlock& block) {
-        for (const std::uint32_t face : block.triangle) {
-            if (face == NONE || !winding) continue;
-            const auto sign = crossing(from, to, snapped(shape.corner(face, 0)), snapped(shape.corner(face, 1)),
-                                       snapped(shape.corner(face, 2)));
-            winding = sign ? std::optional(*winding + *sign) : std::nullopt;
-        }
-    });
+    visit_blocks(
+        shape, [&](const Box& other) { return other.touches(box); },
+        [&](const kernels::TriangleBlock& block) {
+            for (const std::uint32_t face : block.triangle) {
+                if (face == NONE || !winding) continue;
+                const auto sign = crossing(from, to, snapped(shape.corner(face, 0)), snapped(shape.corner(face, 1)),
+                                           snapped(shape.corner(face, 2)));
+                winding = sign ? std::optional(*winding + *sign) : std::nullopt;
+            }
+            return winding.has_value();
+        });
     return winding;
 }
 

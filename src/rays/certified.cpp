@@ -78,13 +78,11 @@ void CertifiedRays::list_slices() {
 void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale) {
     Device& device = update.device;
     wide_pairs_.resize(device, stale.size());
-    margins_.resize(device, stale.size());
     horizons_.resize(device, stale.size());
     places_.resize(device, stale.size());
     for (std::size_t i = 0; i < stale.size(); ++i) {
         const Due& due = stale[i].due();
         const float horizon = static_cast<float>(due.own->expiry) + due.margin;
-        margins_.in_place()[i] = due.margin;
         horizons_.in_place()[i] = horizon;
         kernels::DirectedPair& wide = wide_pairs_.in_place()[i];
         wide = stale[i].slice->places[stale[i].at];
@@ -106,10 +104,8 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<
         }
     }
     if (near_.blocks().size() == 0) return;
-    const ShapeStore::Arrays& arrays = update.arrays();
     watches_.extend(device, pool_.end());
-    launch<KernelId::begin_watches>(device, near_.blocks().size(), wide_pairs_, arrays.headers, arrays.clusters,
-                                    arrays.clearances, margins_, near_.blocks(), near_.firsts(), places_, watches_);
+    launch<KernelId::begin_watches>(device, near_.blocks().size(), near_.blocks(), near_.firsts(), places_, watches_);
 }
 
 // Places the pairs of the batch: those left to `standard`, then those that are due, with the segments of their blocks.
@@ -284,7 +280,6 @@ void CertifiedRays::give_back() {
     held_ranges_.give_back();
     look_rays_.give_back(segments);
     wide_pairs_.give_back();
-    margins_.give_back();
     horizons_.give_back();
     places_.give_back();
     near_.give_back(near_.blocks().size());

@@ -68,8 +68,8 @@ private:
     Array<kernels::LookResult> looks_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
     Columns look_rays_;
-    Array<kernels::DirectedPair> wide_pairs_; ///< by index of some stale pairs, like the next three
-    Array<float> margins_, horizons_;
+    Array<kernels::DirectedPair> wide_pairs_; ///< by index of some stale pairs, like the next two
+    Array<float> horizons_;
     Array<kernels::uint> places_;
     BlockSearch near_, standard_;
     Array<kernels::Watch> watches_;

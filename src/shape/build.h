@@ -26,11 +26,6 @@ void find_components(ShapeData& shape);
 /// Fills hair_moves; needs the vertices' normals.
 void find_hair_moves(ShapeData& shape);
 
-/// Fills triangle_blocks, nodes and the lanes of faces: a sixteen-wide tree over blocks of sixteen triangles, split by
-/// the surface area heuristic at multiples of a block so that blocks are full. Triangles without area are left out. At
-/// most NODE_LEVELS deep. `grow` (metres) is added around every box for the rounding of ray tests.
-void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor);
-
 /// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
 /// closest face met from inside, without the triangles around the vertex. +inf if there is none, 0 if the ray points
 /// out of the mesh at once. Needs points, vertex_normals, nodes and triangle_blocks. They never change, so the paper's

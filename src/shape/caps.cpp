@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/triangle_distance.h"
-#include "mesh/vector.h"
+#include "mesh/descent.h"
 #include "shape/build.h"
-#include "shape/descent.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -80,8 +79,9 @@ private:
         nearest_first<double>(shape_, farthest, away, [&](const kernels::TriangleBlock& block) {
             for (const uint t : block.triangle) {
                 if (t == NONE || dot(normals_[t], normal) > least_cosine) continue;
-                const Vec3 a = shape_.corner(t, 0), b = shape_.corner(t, 1), c = shape_.corner(t, 2);
-                bound2 = std::min(bound2, squared_distance(from, a, b, c));
+                const Vec3 off =
+                    from - nearest_point(from, shape_.corner(t, 0), shape_.corner(t, 1), shape_.corner(t, 2));
+                bound2 = std::min(bound2, dot(off, off));
             }
         });
         return std::sqrt(bound2);

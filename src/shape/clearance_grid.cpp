@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/triangle_bvh.h"
 #include "shape/build.h"
 #include "shape/cells.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 namespace raycontact {
 
@@ -69,15 +68,7 @@ public:
     // Distances of the middles from the surface, in cells: measured for all middles near it, which are few, farther off
     // for every second, then every fourth along each axis. The others get a lower bound from one that was measured.
     void measure(const ShapeData& shape, Executor& executor, const std::stop_token& stop) {
-        std::vector<Vec3> points;
-        points.reserve(shape.points.size());
-        for (const Point3f& p : shape.points)
-            points.push_back(double(scale_)
-                             * Vec3{double(p.x) - low_[0], double(p.y) - low_[1], double(p.z) - low_[2]});
-        std::vector<std::uint32_t> every(shape.mesh.triangles.size());
-        std::iota(every.begin(), every.end(), 0u);
-        const TriangleBvh tree(points, shape.mesh.triangles, every, executor);
-        distance_[0] = nearest(tree, {0, 0, 0}, 1e6);
+        distance_[0] = nearest(shape, {0, 0, 0}, 1e6);
         for (int stride = 256; stride >= 1; stride /= 2) {
             // Less than for the stride before by over a diagonal, so that a measured distance bounds each search.
             const double near = stride < 4 ? 4 * stride : far;
@@ -86,7 +77,7 @@ public:
             const auto rows_z = static_cast<std::size_t>((cells_.size[2] + stride - 1) / stride);
             run_until(executor, stop, rows_y * rows_z, 16, [&](std::uint32_t begin, std::uint32_t end) {
                 for (std::uint32_t row = begin; row < end; ++row)
-                    measure_row(tree, stride, near, static_cast<int>(row % rows_y) * stride,
+                    measure_row(shape, stride, near, static_cast<int>(row % rows_y) * stride,
                                 static_cast<int>(row / rows_y) * stride);
             });
         }
@@ -129,20 +120,23 @@ public:
     }
 
 private:
-    void measure_row(const TriangleBvh& tree, int stride, double near, int y, int z) {
+    void measure_row(const ShapeData& shape, int stride, double near, int y, int z) {
         for (int x = 0; x < cells_.size[0]; x += stride) {
             const int dx = x % (2 * stride), dy = y % (2 * stride), dz = z % (2 * stride);
             const double off = length({double(dx), double(dy), double(dz)});
             if (off == 0) continue; // measured with a longer stride
             const double known = distance_[cells_.index({x - dx, y - dy, z - dz})];
             distance_[cells_.index({x, y, z})] =
-                known - off > near ? known - off : nearest(tree, {x, y, z}, known + off);
+                known - off > near ? known - off : nearest(shape, {x, y, z}, known + off);
         }
     }
 
-    // The distance of a middle, known to be no more than `bound`.
-    static double nearest(const TriangleBvh& tree, const Cell& cell, double bound) {
-        return std::sqrt(tree.nearest({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, (bound + 1e-3) * (bound + 1e-3)));
+    // The distance of a middle, known to be no more than `bound`; both in cells.
+    double nearest(const ShapeData& shape, const Cell& cell, double bound) const {
+        const double side = 1 / double(scale_);
+        const Vec3 point = Vec3{low_[0], low_[1], low_[2]} + side * Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+        const double most = side * (bound + 1e-3);
+        return std::min(nearest_face(shape, point, 0, most).distance, most) * double(scale_);
     }
 
     // Chooses for each cell, among the empty balls on one side around nearby middles, the one that reaches farthest

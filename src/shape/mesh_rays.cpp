@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/mesh_rays.h"
 
-#include "shape/descent.h"
+#include "mesh/descent.h"
 
 #include <algorithm>
 #include <array>
@@ -112,8 +112,8 @@ MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 n = cross(b - a, c - a);
     const double size2 = dot(n, n);
-    if (size2 > 0 && dot(n, cross(b - a, p - a)) >= 0 && dot(n, cross(c - b, p - b)) >= 0
-        && dot(n, cross(a - c, p - c)) >= 0)
+    if (size2 > 1e-12 * dot(b - a, b - a) * dot(c - a, c - a) && dot(n, cross(b - a, p - a)) >= 0
+        && dot(n, cross(c - b, p - b)) >= 0 && dot(n, cross(a - c, p - c)) >= 0)
         return p - (dot(n, p - a) / size2) * n;
     Vec3 best = a;
     double least = never;
@@ -131,16 +131,30 @@ Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return best;
 }
 
-NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough) {
+NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough, double bound) {
+    constexpr double rounding = 1 + 1e-12;
     NearestFace found;
-    double least2 = never;
+    double least2 = bound * bound;
     const auto farthest = [&] { return found.distance <= enough ? 0.0 : least2; };
     const auto away = [&](const kernels::Node& node, Lanes<double>& lanes) {
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box_of(node, lane).squared_distance(point);
     };
     nearest_first<double>(mesh, farthest, away, [&](const kernels::TriangleBlock& block) {
-        for (const std::uint32_t face : block.triangle) {
-            if (face == NONE) continue;
+        // How far the triangles' boxes are, side by side; NaN in empty lanes.
+        Lanes<double> boxes2{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double at = axis(point, k);
+            const auto &p = block.corner[k], &q = block.corner[3 + k], &r = block.corner[6 + k];
+            for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+                const double low = std::min(std::min(p[lane], q[lane]), r[lane]);
+                const double high = std::max(std::max(p[lane], q[lane]), r[lane]);
+                const double off = std::max(std::max(low - at, at - high), 0.0);
+                boxes2[lane] += off * off;
+            }
+        }
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+            if (!(boxes2[lane] <= rounding * least2)) continue;
+            const std::uint32_t face = block.triangle[lane];
             const Vec3 nearest = nearest_point(point, mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2));
             const Vec3 off = point - nearest;
             const double distance2 = dot(off, off);

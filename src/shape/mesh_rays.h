@@ -32,10 +32,12 @@ struct NearestFace {
     std::uint32_t face = NONE;
 };
 
-/// The nearest face; or, once one is found within `enough`, that one.
-NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough);
+/// The nearest face within `bound`; or, once one is found within `enough`, that one.
+NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough,
+                         double bound = std::numeric_limits<double>::infinity());
 
-/// The point of a triangle that is nearest to p.
+/// The point of a triangle that is nearest to p. Of a needle, whose normal is not accurate to some 1e-10, only the
+/// edges count; so it may be farther than that by a millionth of the needle's length.
 Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 } // namespace raycontact

@@ -43,6 +43,24 @@ void round_vertices(ShapeData& shape) {
     shape.box_max = shape.centre + high;
 }
 
+// Fills the tree, and the lanes of faces in it. Triangles without area are left out.
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor) {
+    std::vector<std::uint32_t> with_area;
+    for (std::uint32_t i = 0; i < normals.size(); ++i)
+        if (normals[i] != Vec3{}) with_area.push_back(i);
+    TreePlan plan{shape.points, shape.mesh.triangles, with_area, grow, false, NODE_LEVELS};
+    if (!build_tree(shape, plan, executor)) {
+        plan.balanced = true;
+        if (!build_tree(shape, plan, executor))
+            throw InputError("mesh '" + shape.mesh.name
+                             + "': more than 16 million triangles; split it into several meshes");
+    }
+    for (std::size_t id = 0; id < shape.triangle_blocks.size(); ++id)
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane)
+            if (const std::uint32_t t = shape.triangle_blocks[id].triangle[lane]; t != NONE)
+                shape.faces[t].triangle_lane = static_cast<std::uint32_t>(TRIANGLE_LANES * id + lane);
+}
+
 } // namespace
 
 Shape::Shape(std::unique_ptr<ShapeData> data)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "device/host_kernels.h"
+#include "mesh/triangle_tree.h"
 
 #include <raycontact/shape.h>
 
@@ -13,7 +13,7 @@ namespace raycontact {
 using Point3f = kernels::Packed3;
 
 /// Everything a shape is made of. The kernel arrays use offsets from their own beginning; ShapeStore shifts them.
-struct ShapeData {
+struct ShapeData : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
     Vec3 centre;
     std::vector<Point3f> points; ///< float32 offsets from centre
@@ -34,8 +34,6 @@ struct ShapeData {
     double grain = 0; ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
     double reach = 0; ///< largest distance of a vertex from centre, metres
 
-    std::vector<kernels::TriangleBlock> triangle_blocks;
-    std::vector<kernels::Node> nodes;
     std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;

@@ -13,7 +13,10 @@ namespace raycontact::cuda {
 class Context {
 public:
     explicit Context(DeviceNumber device);
-    ~Context();
+    ~Context() {
+        when_current([&] { driver().cuStreamDestroy(stream_); });
+        driver().cuDevicePrimaryCtxRelease(device_);
+    }
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
@@ -49,6 +52,18 @@ public:
     Current& operator=(const Current&) = delete;
 };
 
+inline Context::Context(DeviceNumber device) : device_(device) {
+    check(driver().cuDevicePrimaryCtxRetain(&handle_, device), "cuDevicePrimaryCtxRetain");
+    try {
+        constexpr unsigned non_blocking = 1; // does not wait for the streams of others
+        const Current current(*this);
+        check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate");
+    } catch (const DeviceError&) {
+        driver().cuDevicePrimaryCtxRelease(device);
+        throw;
+    }
+}
+
 /// A handle that is released in its context.
 template <typename Handle, Function<Status(Handle)> Driver::*release>
 class Owned {
@@ -75,9 +90,20 @@ using Event = Owned<EventHandle, &Driver::cuEventDestroy>;
 using Module = Owned<ModuleHandle, &Driver::cuModuleUnload>;
 using HostMemory = Owned<void*, &Driver::cuMemFreeHost>; ///< pinned: copies to and from it need not wait
 
-/// What they return lies in the context, which is current.
-Event make_event(const std::shared_ptr<const Context>& context, bool timed);
-HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes);
+// What they return lies in the context, which is current.
+
+inline Event make_event(const std::shared_ptr<const Context>& context, bool timed) {
+    constexpr unsigned default_flags = 0, without_time = 2;
+    EventHandle handle = nullptr;
+    check(driver().cuEventCreate(&handle, timed ? default_flags : without_time), "cuEventCreate");
+    return {context, handle};
+}
+
+inline HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes) {
+    void* memory = nullptr;
+    check(driver().cuMemHostAlloc(&memory, bytes, 0), "pinned host memory of " + std::to_string(bytes) + " bytes");
+    return {context, memory};
+}
 
 class DeviceBuffer : public Buffer {
 public:

@@ -18,6 +18,8 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 #pragma GCC diagnostic pop
+// After CGAL, which has names that are macros in our kernels.
+#include "mesh/mesh_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -91,8 +93,8 @@ bool solid_intersects_by_cgal(const PreparedMesh& mesh) {
 PairSet by_us(const PreparedMesh& mesh) {
     PairSet pairs;
     Executor one_thread(1);
-    const TriangleBvh bvh(mesh.vertices, mesh.triangles, with_area(mesh), one_thread);
-    bvh.any_pair(one_thread, [&](std::uint32_t i, std::uint32_t k) {
+    const MeshTree tree(mesh.vertices, mesh.triangles, with_area(mesh), one_thread);
+    tree.any_pair(one_thread, [&](std::uint32_t i, std::uint32_t k) {
         if (triangles_meet(mesh.vertices, mesh.triangles[i], mesh.triangles[k]))
             pairs.insert(std::minmax<std::size_t>(i, k));
         return false;

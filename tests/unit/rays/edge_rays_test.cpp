@@ -113,7 +113,7 @@ TEST(EdgeRays, FindEveryCrossing) {
         shapes.push_back(subject->shape);
     }
     Pairs all(shapes);
-    for (int i = 0; i < 80; ++i) {
+    for (int i = 0; i < 140; ++i) {
         const Placement placed = random_placement(subjects, random);
         const auto at = [&](const Subject* subject) {
             return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());

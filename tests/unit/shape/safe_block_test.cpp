@@ -66,18 +66,22 @@ TEST(SafeBlock, IsNoSaferThanItsVertices) {
         const double margin = rounding_margin(source, target);
         const reference::Solid solid = reference::make_surface(*target.shape);
         const Pose relative = relative_pose(target.centred, source.centred);
-        for (kernels::uint block = 0; block < from.header.vertices.block_count; ++block) {
-            const float safe = kernels::prototype::safe_block(&pair, &from.header.vertices, from.clusters.data(), block,
-                                                              &to.header, to.clearances.data());
+        const kernels::SourceTree& tree = from.header.vertices;
+        for (kernels::uint block = 0; block < tree.block_count; ++block) {
+            kernels::ClusterBlock alone = from.clusters[tree.cluster_first[0] + block / VERTEX_LANES];
+            for (kernels::uint lane = 0; lane < VERTEX_LANES; ++lane)
+                if (lane != block % VERTEX_LANES) alone.centre[0][lane] = NAN; // an empty lane
+            kernels::prototype::Search search{0,    &pair,     &tree,    &to.header, &alone, to.clearances.data(),
+                                              0.0f, UNBOUNDED, UNBOUNDED};
             ++blocks;
-            if (!(safe > 0)) continue;
+            if (kernels::prototype::near_lanes(&search, &alone) != 0) continue;
             ++asleep;
             for (std::size_t k = 0; k < VERTEX_LANES; ++k) {
                 const Vec3 v{from.vertex_blocks[block].position[0][k], from.vertex_blocks[block].position[1][k],
                              from.vertex_blocks[block].position[2][k]};
                 if (std::isnan(v.x)) continue;
                 const double distance = reference::distance_to_surface(solid, transform_point(relative, v));
-                most_over = std::max(most_over, (double(safe) - distance) / margin);
+                most_over = std::max(most_over, (double(search.least_safe) - distance) / margin);
             }
         }
     }

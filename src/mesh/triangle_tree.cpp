@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "executor/divide.h"
-#include "shape/build.h"
+#include "mesh/triangle_tree.h"
 
-#include <raycontact/error.h>
+#include "executor/divide.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +17,10 @@ using kernels::uint;
 constexpr std::size_t block_size = TRIANGLE_LANES;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-struct Box {
+struct ItemBox {
     std::array<float, 3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
 
-    void add(const Box& other) {
+    void add(const ItemBox& other) {
         for (int i = 0; i < 3; ++i) {
             low[i] = std::min(low[i], other.low[i]);
             high[i] = std::max(high[i], other.high[i]);
@@ -35,7 +34,7 @@ struct Box {
 };
 
 struct Item {
-    Box box;
+    ItemBox box;
     std::array<float, 3> centre; // doubled: only its order matters
     uint triangle;
 };
@@ -59,7 +58,7 @@ struct Way {
 };
 
 struct Branch {
-    Box box;
+    ItemBox box;
     std::size_t left = 0, right = 0;    // 0: a leaf
     uint block = 0;                     // of a leaf
     std::array<Way, NODE_LANES> ways{}; // with up to 1, 2, ... of them
@@ -96,8 +95,12 @@ public:
     std::vector<Branch> branches;
     std::vector<kernels::TriangleBlock> blocks;
 
-    void build(const ShapeData& shape, std::span<Item> items) {
-        shape_ = &shape;
+    void build(const TreePlan& plan, std::span<Item> items) {
+        plan_ = &plan;
+        if (items.size() <= block_size) {
+            add_leaf(items);
+            return;
+        }
         items_ = items;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             // Sorted by copies of their keys: to look at each item would take twice as long.
@@ -125,12 +128,10 @@ private:
         if (last - first <= block_size) {
             leaf_.clear();
             for (std::size_t i = first; i < last; ++i) leaf_.push_back(items_[orders_[0][i]]);
-            const std::size_t id = add_branch(leaf_);
-            branches[id].block = write_block(leaf_);
-            return id;
+            return add_leaf(leaf_);
         }
         Cut best;
-        Box box;
+        ItemBox box;
         for (int axis = 0; axis < 3; ++axis) box = sweep(first, last, axis, best);
         const std::size_t id = branches.size();
         branches.emplace_back().box = box;
@@ -159,16 +160,16 @@ private:
     }
 
     // Returns the box of all.
-    Box sweep(std::size_t first, std::size_t last, int axis, Cut& best) {
+    ItemBox sweep(std::size_t first, std::size_t last, int axis, Cut& best) {
         const std::vector<uint>& order = orders_[axis];
         const std::size_t count = last - first, blocks_here = blocks_of(count);
         right_area_.resize(blocks_here);
-        Box box;
+        ItemBox box;
         for (std::size_t i = count; i-- > block_size;) {
             box.add(items_[order[first + i]].box);
             if (i % block_size == 0) right_area_[i / block_size] = box.area();
         }
-        const Box after_first_block = box;
+        const ItemBox after_first_block = box;
         box = {};
         for (std::size_t i = 0; i < block_size * (blocks_here - 1); ++i) {
             box.add(items_[order[first + i]].box);
@@ -180,9 +181,10 @@ private:
         return box;
     }
 
-    std::size_t add_branch(std::span<const Item> items) {
+    std::size_t add_leaf(std::span<Item> items) {
         Branch& branch = branches.emplace_back();
         for (const Item& item : items) branch.box.add(item.box);
+        branch.block = write_block(items);
         return branches.size() - 1;
     }
 
@@ -195,8 +197,8 @@ private:
             block.cap[lane] = 0;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-                const Point3f p = empty ? Point3f{nan, nan, nan}
-                                        : shape_->points[shape_->mesh.triangles[items[lane].triangle][corner]];
+                const kernels::Packed3 p = empty ? kernels::Packed3{nan, nan, nan}
+                                                 : plan_->points[plan_->triangles[items[lane].triangle][corner]];
                 block.corner[3 * corner + 0][lane] = p.x;
                 block.corner[3 * corner + 1][lane] = p.y;
                 block.corner[3 * corner + 2][lane] = p.z;
@@ -205,7 +207,7 @@ private:
         return static_cast<uint>(blocks.size() - 1);
     }
 
-    const ShapeData* shape_ = nullptr;
+    const TreePlan* plan_ = nullptr;
     std::span<Item> items_;
     std::array<std::vector<uint>, 3> orders_; ///< of the items, along each axis
     std::vector<Key> keys_;                   ///< of the axis that is sorted
@@ -217,17 +219,17 @@ private:
 
 class Builder {
 public:
-    Builder(ShapeData& shape, double grow, bool balanced, Executor& executor)
-        : shape_(shape), grow_(grow), balanced_(balanced), executor_(executor) {}
+    Builder(TriangleTree& tree, const TreePlan& plan, Executor& executor)
+        : tree_(tree), plan_(plan), executor_(executor) {}
 
-    // False when the tree came out too deep for the traversal's trail.
+    // False when the tree came out too deep.
     bool build(std::vector<Item>& items) {
         split(items);
-        for (const bool four_levels : {balanced_, true}) {
+        for (const bool four_levels : {plan_.balanced, true}) {
             weigh(four_levels);
-            shape_.nodes.clear();
+            tree_.nodes.clear();
             if (!collapse(0, 0, 1)) continue;
-            shape_.nodes.shrink_to_fit();
+            tree_.nodes.shrink_to_fit();
             return true;
         }
         return false;
@@ -237,12 +239,12 @@ private:
     struct Part {
         std::size_t branch = 0;          ///< its root
         std::size_t first = 0, last = 0; ///< items
-        Box box;                         ///< of a large one
+        ItemBox box;                     ///< of a large one
     };
 
     // Large parts are split first; then each part grows its own subtree.
     void split(std::vector<Item>& items) {
-        const std::size_t sweep_at_most = balanced_ ? block_size : 1 << 14;
+        const std::size_t sweep_at_most = plan_.balanced ? block_size : 1 << 14;
         branches_.emplace_back();
         const auto items_of = [&](const Part& p) { return std::span(items).subspan(p.first, p.last - p.first); };
         auto parts = divide(
@@ -263,22 +265,18 @@ private:
         std::ranges::sort(parts, {}, &Part::first);
         std::vector<Subtree> subtrees(parts.size());
         for_each_part(executor_, parts, [&](const Part& p) {
-            subtrees[static_cast<std::size_t>(&p - parts.data())].build(shape_, items_of(p));
+            subtrees[static_cast<std::size_t>(&p - parts.data())].build(plan_, items_of(p));
         });
         std::size_t blocks = 0;
         for (const Subtree& subtree : subtrees) blocks += subtree.blocks.size();
-        shape_.triangle_blocks.reserve(blocks);
+        tree_.triangle_blocks.reserve(blocks);
         for (std::size_t i = 0; i < parts.size(); ++i) graft(std::exchange(subtrees[i], {}), parts[i].branch);
-        for (std::size_t id = 0; id < shape_.triangle_blocks.size(); ++id)
-            for (std::size_t lane = 0; lane < block_size; ++lane)
-                if (const uint t = shape_.triangle_blocks[id].triangle[lane]; t != NONE)
-                    shape_.faces[t].triangle_lane = static_cast<uint>(block_size * id + lane);
     }
 
     // The subtree's root takes the place of a branch; the others are appended.
     void graft(const Subtree& subtree, std::size_t at) {
         const std::size_t shift = branches_.size() - 1;
-        const auto first_block = static_cast<uint>(shape_.triangle_blocks.size());
+        const auto first_block = static_cast<uint>(tree_.triangle_blocks.size());
         branches_.reserve(branches_.size() + subtree.branches.size());
         for (std::size_t i = 0; i < subtree.branches.size(); ++i) {
             Branch branch = subtree.branches[i];
@@ -293,7 +291,7 @@ private:
             else
                 branches_.push_back(branch);
         }
-        shape_.triangle_blocks.insert(shape_.triangle_blocks.end(), subtree.blocks.begin(), subtree.blocks.end());
+        tree_.triangle_blocks.insert(tree_.triangle_blocks.end(), subtree.blocks.begin(), subtree.blocks.end());
     }
 
     // Chooses the binary branches that become wide nodes so that the sum of their areas, the expected number of nodes
@@ -328,9 +326,9 @@ private:
     }
 
     bool collapse(std::size_t branch, uint parent, int level) {
-        if (level > NODE_LEVELS) return false;
-        const uint id = static_cast<uint>(shape_.nodes.size());
-        shape_.nodes.emplace_back();
+        if (level > plan_.levels) return false;
+        const uint id = static_cast<uint>(tree_.nodes.size());
+        tree_.nodes.emplace_back();
         std::vector<std::size_t> children;
         cover(branch, NODE_LANES, children);
         kernels::Node node{};
@@ -349,44 +347,39 @@ private:
             if (b.left == 0) {
                 node.child[lane] = LEAF | b.block;
             } else {
-                node.child[lane] = static_cast<uint>(shape_.nodes.size());
+                node.child[lane] = static_cast<uint>(tree_.nodes.size());
                 if (!collapse(children[lane], id, level + 1)) return false;
             }
         }
-        shape_.nodes[id] = node;
+        tree_.nodes[id] = node;
         return true;
     }
 
-    float down(float x) const { return std::nextafter(static_cast<float>(double(x) - grow_), -1e38f); }
-    float up(float x) const { return std::nextafter(static_cast<float>(double(x) + grow_), 1e38f); }
+    float down(float x) const { return std::nextafter(static_cast<float>(double(x) - plan_.grow), -1e38f); }
+    float up(float x) const { return std::nextafter(static_cast<float>(double(x) + plan_.grow), 1e38f); }
 
-    ShapeData& shape_;
-    double grow_;
-    bool balanced_;
+    TriangleTree& tree_;
+    const TreePlan& plan_;
     Executor& executor_;
     std::vector<Branch> branches_;
 };
 
 } // namespace
 
-void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor) {
+bool build_tree(TriangleTree& tree, const TreePlan& plan, Executor& executor) {
     std::vector<Item> items;
-    items.reserve(normals.size());
-    for (uint i = 0; i < shape.mesh.triangles.size(); ++i) {
-        if (normals[i] == Vec3{}) continue;
+    items.reserve(plan.chosen.size());
+    for (const std::uint32_t i : plan.chosen) {
         Item item{{}, {}, i};
-        for (const std::uint32_t v : shape.mesh.triangles[i]) {
-            const Point3f p = shape.points[v];
-            item.box.add({{p.x, p.y, p.z}, {p.x, p.y, p.z}});
+        for (const std::uint32_t v : plan.triangles[i]) {
+            const auto [x, y, z] = plan.points[v];
+            item.box.add({{x, y, z}, {x, y, z}});
         }
         for (int axis = 0; axis < 3; ++axis) item.centre[axis] = item.box.low[axis] + item.box.high[axis];
         items.push_back(item);
     }
-    for (const bool balanced : {false, true}) {
-        shape.triangle_blocks.clear();
-        if (Builder(shape, grow, balanced, executor).build(items)) return;
-    }
-    throw InputError("mesh '" + shape.mesh.name + "': more than 16 million triangles; split it into several meshes");
+    tree.triangle_blocks.clear();
+    return Builder(tree, plan, executor).build(items);
 }
 
 } // namespace raycontact

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "mesh/measure.h"
-#include "shape/shape_data.h"
+#include "mesh/triangle_tree.h"
 
-#include <algorithm>
 #include <array>
-#include <utility>
+#include <limits>
 
 namespace raycontact {
 
@@ -20,25 +19,25 @@ inline Box box_of(const kernels::Node& node, std::size_t lane) {
 template <class Number>
 using Lanes = std::array<Number, NODE_LANES>;
 
-/// Visits the blocks of a shape's tree, those in near boxes first. away(node, lanes) fills in how far the children are,
-/// not above what anything in them is; those as far as farthest(), which may shrink from visit to visit, are left out.
+/// Visits the blocks of a tree, those in near boxes first. away(node, lanes) fills in how far the children are, not
+/// above what anything in them is; those as far as farthest(), which may shrink from visit to visit, are left out.
 template <class Number, class Farthest, class Away, class Visit>
-void nearest_first(const ShapeData& shape, Farthest&& farthest, Away&& away, Visit&& visit) {
+void nearest_first(const TriangleTree& tree, Farthest&& farthest, Away&& away, Visit&& visit) {
     struct Waiting {
         Number away;
         std::uint32_t child;
     };
-    std::array<Waiting, NODE_LEVELS * NODE_LANES> waiting; // each level leaves at most fifteen
+    std::array<Waiting, most_tree_levels * NODE_LANES> waiting; // each level leaves at most fifteen
     std::size_t count = 0;
     waiting[count++] = {0, 0};
     while (count > 0) {
         const Waiting next = waiting[--count];
         if (next.away >= farthest()) continue;
         if ((next.child & LEAF) != 0) {
-            visit(shape.triangle_blocks[next.child & ~LEAF]);
+            visit(tree.triangle_blocks[next.child & ~LEAF]);
             continue;
         }
-        const kernels::Node& node = shape.nodes[next.child];
+        const kernels::Node& node = tree.nodes[next.child];
         const Number most = farthest();
         Lanes<Number> lanes;
         away(node, lanes);
@@ -50,6 +49,20 @@ void nearest_first(const ShapeData& shape, Farthest&& farthest, Away&& away, Vis
             waiting[at] = {lanes[lane], node.child[lane]};
         }
     }
+}
+
+/// Visits the blocks in boxes that meets(box) until visit(block) returns false.
+template <class Meets, class Visit>
+void visit_blocks(const TriangleTree& tree, Meets&& meets, Visit&& visit) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    bool goes_on = true;
+    nearest_first<float>(
+        tree, [&] { return goes_on ? infinite : 0; },
+        [&](const kernels::Node& node, Lanes<float>& lanes) {
+            for (std::size_t lane = 0; lane < NODE_LANES; ++lane)
+                lanes[lane] = meets(box_of(node, lane)) ? 0 : infinite;
+        },
+        [&](const kernels::TriangleBlock& block) { goes_on = goes_on && visit(block); });
 }
 
 } // namespace raycontact

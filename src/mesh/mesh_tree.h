@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/descent.h"
+
+#include <atomic>
+#include <functional>
+
+namespace raycontact {
+
+/// The tree that finds triangles for the checks of a mesh.
+class MeshTree {
+public:
+    /// Over the given triangles only; at least one.
+    MeshTree(std::span<const Vec3> vertices, std::span<const Triangle> triangles, std::span<const std::uint32_t> chosen,
+             Executor& executor);
+
+    /// Calls test(i, k), on several threads at once, for two triangles each whose boxes touch, until it returns true;
+    /// returns whether it did.
+    template <class Test>
+    bool any_pair(Executor& executor, Test&& test) const {
+        std::atomic<bool> found = false;
+        const auto count = static_cast<std::uint32_t>(tree_.triangle_blocks.size());
+        executor.run(count, 16, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end && !found; ++i)
+                if (any_pair_of(tree_.triangle_blocks[i], test)) found = true;
+        });
+        return found;
+    }
+
+    /// Calls visit(i) for every triangle whose box the ray may meet. No component of the direction may be 0.
+    template <class Visit>
+    void along_ray(const Vec3& origin, const Vec3& direction, Visit&& visit) const {
+        visit_blocks(
+            tree_, [&](const Box& box) { return meets(box, origin - middle_, direction); },
+            [&](const kernels::TriangleBlock& block) {
+                for (const std::uint32_t t : block.triangle)
+                    if (t != NONE && meets(boxes_[t], origin, direction)) visit(t);
+                return true;
+            });
+    }
+
+private:
+    static bool meets(const Box& box, const Vec3& origin, const Vec3& direction);
+    Box box_of(const kernels::TriangleBlock& block) const;
+
+    /// A triangle of the block, and one of it or of a later block.
+    template <class Test>
+    bool any_pair_of(const kernels::TriangleBlock& own, Test& test) const {
+        const Box box = box_of(own), near{box.low - middle_, box.high - middle_};
+        bool found = false;
+        visit_blocks(
+            tree_, [&](const Box& other) { return other.touches(near); },
+            [&](const kernels::TriangleBlock& other) {
+                if (&other < &own) return true;
+                for (const std::uint32_t k : other.triangle) {
+                    if (k == NONE || !boxes_[k].touches(box)) continue;
+                    for (const std::uint32_t i : own.triangle) {
+                        if (i == NONE || (&other == &own && i >= k) || !boxes_[i].touches(boxes_[k])) continue;
+                        found = found || test(i, k);
+                    }
+                }
+                return !found;
+            });
+        return found;
+    }
+
+    Vec3 middle_; ///< of the mesh; the tree lies about it, so that float32 is fine enough wherever the mesh is
+    std::vector<Box> boxes_; ///< by triangle, exact
+    TriangleTree tree_;
+};
+
+/// One that is made when it is first asked for: most meshes need none to be mended.
+using LazyTree = std::function<const MeshTree&()>;
+
+} // namespace raycontact
