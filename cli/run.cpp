@@ -185,14 +185,16 @@ RunLog log_of(const Simulation& scene, const std::string& summary_json) {
 }
 
 void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::uint32_t pictures, bool cut_short) {
+    const int before = stop_signal();
     folder.write("steps.csv", steps_csv(log.rows));
     raycontact::report::ReportOptions report{pictures, compare_with_gimpact(log)};
     Progress progress("drawing", work_of(log, report), "");
     report.progress = [&](std::uint32_t done) { progress.show(done); };
-    report.stop = [before = stop_signal()] { return stop_signal() != before; };
+    report.stop = [before] { return stop_signal() != before; };
     raycontact::report::write_report(folder, log, report);
     progress.done();
     folder.keep(cut_short);
+    if (stop_signal() != before) std::cerr << "drawing was ended: the report lacks pictures\n";
     std::cerr << "report: " << folder.kept("report.html").string() << '\n';
 }
 

@@ -60,7 +60,8 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
     motion.bodies = static_cast<std::uint32_t>(bodies.size());
     motion.kept = (reader.steps() + stride - 1) / stride;
     std::vector<Kept> kept(bodies.size() * motion.kept);
-    motion.moves.assign(bodies.size(), false);
+    for (const auto& body : bodies)
+        motion.moves.push_back(std::min(body.end_step, reader.steps()) - body.first_step < 2);
     std::vector<Pose> poses, first(bodies.size());
     std::vector<Pair> pairs;
     constexpr double far = std::numeric_limits<double>::infinity();

@@ -17,7 +17,7 @@ struct Motion {
     std::uint32_t stride = 1;            ///< steps between two that are kept; the first is step 0
     std::uint32_t kept = 0;              ///< steps
     std::uint32_t bodies = 0;            ///< every body there ever was
-    std::vector<bool> moves;             ///< by body: false for one whose pose is the same in all steps
+    std::vector<bool> moves;             ///< by body: false for one whose pose is the same in all of several steps
     std::vector<std::uint16_t> numbers;  ///< [body][number][kept step]; x y z, then the quaternion x y z w
 };
 constexpr std::uint32_t numbers_a_pose = 7;

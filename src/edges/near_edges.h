@@ -17,6 +17,11 @@ using kernels::NearEdge;
 /// An edge is short up to this, in diagonals of the smaller body (docs/edges.md).
 inline constexpr double short_edge = 0.2;
 
+/// Whether edges can be in contact at all: of two open meshes vertices alone decide.
+inline bool asks_edges(const PlacedBody& a, const PlacedBody& b) {
+    return a.shape->has_inside() || b.shape->has_inside();
+}
+
 /// Metres: shorter edges of a pair in contact need not be found. A little less than what the rule leaves out.
 inline double short_length(const PlacedBody& a, const PlacedBody& b) {
     return 0.9999 * short_edge * smaller_size(a, b);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace raycontact {
 
@@ -23,7 +24,8 @@ MeshTree::MeshTree(std::span<const Vec3> vertices, std::span<const Triangle> tri
     }
     // Of the differences in double; that of float32 the builder allows for.
     const double grow = 1e-15 * (length(whole.low) + length(whole.high));
-    build_tree(tree_, {points, triangles, chosen, grow, true, most_tree_levels}, executor);
+    if (!build_tree(tree_, {points, triangles, chosen, grow, true, most_tree_levels}, executor))
+        throw std::logic_error("a balanced tree is too deep");
 }
 
 Box MeshTree::box_of(const kernels::TriangleBlock& block) const {

@@ -31,6 +31,6 @@ constexpr int most_tree_levels = 8;
 
 /// Split by the surface area heuristic at multiples of a block, so that blocks are full, or balanced. Depends on
 /// nothing but the plan. False if it comes out too deep.
-bool build_tree(TriangleTree& tree, const TreePlan& plan, Executor& executor);
+[[nodiscard]] bool build_tree(TriangleTree& tree, const TreePlan& plan, Executor& executor);
 
 } // namespace raycontact

@@ -122,7 +122,7 @@ void Pipeline::list_asked(const Update& update) {
         if (!has_near_ && certified_.is_apart(i) && !in_contact) continue;
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-        if (!a.shape->has_inside() && !b.shape->has_inside()) continue;
+        if (!asks_edges(a, b)) continue;
         if (in_contact && has_short_edges_alone(a, b)) continue;
         AskedPair asked{i, {}};
         if (has_near_)

@@ -51,9 +51,12 @@ public:
     /// Of the last find.
     std::uint64_t bytes() const {
         return std::uint64_t{found_.most} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
-               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong));
+               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong))
+               + safe_distances_.size() * sizeof(float);
     }
 
+    /// Of the last find_now(), how many; of find(): the room.
+    std::size_t found() const { return found_.most; }
     /// As many as find_now() found; of find(): the room.
     const Array<kernels::PairBlock>& blocks() const { return blocks_; }
     /// By pair: where its blocks begin.

@@ -238,7 +238,12 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     });
     wake_up_.run(update, table_);
     list_slices();
-    if (stale_.empty()) near_.rest();
+    if (stale_.empty()) {
+        near_.rest();
+        wide_pairs_.resize(update.device, 0);
+        horizons_.resize(update.device, 0);
+        places_.resize(update.device, 0);
+    }
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);
@@ -282,7 +287,7 @@ void CertifiedRays::give_back() {
     wide_pairs_.give_back();
     horizons_.give_back();
     places_.give_back();
-    near_.give_back(near_.blocks().size());
+    near_.give_back(near_.found());
     standard_.give_back(standard_.blocks().size());
     last_held_.give_back();
 }

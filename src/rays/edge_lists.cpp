@@ -96,7 +96,7 @@ void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedP
 std::uint64_t EdgeLists::bytes() const {
     return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
            + due_.size() * sizeof(Search)
-           + pairs_.size() * (sizeof(kernels::DirectedPair) + sizeof(float) + 2 * sizeof(kernels::uint));
+           + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
 }
 
 void EdgeLists::give_back() {

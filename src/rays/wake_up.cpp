@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/wake_up.h"
 
+#include "edges/near_edges.h"
 #include "give_back.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
@@ -32,10 +33,6 @@ double edge_margin(const KeptEdges& kept, double size, double speed) {
     constexpr double worth = 4; // steps
     const double margin = kept.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : 0.0005 * size;
     return margin > worth * speed ? margin : 0;
-}
-
-bool asks_edges(const PlacedBody& a, const PlacedBody& b) {
-    return a.shape->has_inside() || b.shape->has_inside();
 }
 
 // A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
@@ -121,12 +118,12 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double size = smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         WatchedPair& state = table.state(i);
         Slack& slack = table.hot(i);
-        if (slack.metres > 0 && !slack.casts) {
-            // Its edges alone are due.
-        } else if (!update.settings.displacement_threshold && (speed > fastest * size || state.as_standard > 0)) {
+        const bool edges_alone = slack.metres > 0 && !slack.casts;
+        const bool may_hurry = !update.settings.displacement_threshold;
+        if (!edges_alone && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
-        } else {
+        } else if (!edges_alone) {
             wake_pair(update, table, i, speed, slice);
         }
         if (!edges) return;

@@ -29,7 +29,9 @@ TEST(Serialize, AMeshShapeIsWrittenAsAMeshOfBullets) {
 
     std::vector<char> bytes(static_cast<std::size_t>(shape.calculateSerializeBufferSize()));
     btDefaultSerializer another;
+    another.startSerialization();
     EXPECT_STREQ(shape.serialize(bytes.data(), &another), "btTriangleMeshShapeData");
+    another.finishSerialization(); // frees what was written
     btTriangleMeshShapeData data;
     ASSERT_EQ(bytes.size(), sizeof data);
     std::memcpy(&data, bytes.data(), sizeof data);

@@ -29,6 +29,13 @@ void record(const std::string& file, const std::string& scene, std::uint32_t ste
     writer.finish("0123456789abcdef");
 }
 
+/// A recording of two boxes.
+struct Boxes {
+    explicit Boxes(std::uint32_t steps = 10) { record(file, "boxes", steps); }
+    TemporaryFolder folder;
+    std::string file = folder.path() / "a.glb";
+};
+
 nlohmann::json data_of(const std::string& html) {
     const std::string start = "id=\"recording\">";
     const std::size_t from = html.find(start) + start.size();
@@ -49,10 +56,8 @@ TEST(Page, NeedsNothingElseAndEscapesNames) {
 }
 
 TEST(Page, HasEveryLayerStepAndCount) {
-    const TemporaryFolder folder;
-    const std::string file = folder.path() / "a.glb";
-    record(file, "boxes", 10);
-    recording::Reader reader(file);
+    const Boxes boxes;
+    recording::Reader reader(boxes.file);
     ViewOptions options;
     options.layer_every = 4;
     std::uint32_t told = 0;
@@ -75,10 +80,8 @@ TEST(Page, HasEveryLayerStepAndCount) {
 }
 
 TEST(Page, BodiesHaveTheReportsColours) {
-    const TemporaryFolder folder;
-    const std::string file = folder.path() / "a.glb";
-    record(file, "boxes", 10);
-    recording::Reader reader(file);
+    const Boxes boxes;
+    recording::Reader reader(boxes.file);
     const View view = make_view(reader, {});
     const nlohmann::json data = data_of(view.html);
     EXPECT_EQ(view.standing, 1u);
@@ -90,16 +93,16 @@ TEST(Page, BodiesHaveTheReportsColours) {
     };
     EXPECT_EQ(data["bodies"][0][3], shown(report::resting_colour())); // it never moves
     EXPECT_EQ(data["bodies"][1][3], shown(report::body_colour(1)));
-    record(file, "boxes", 1); // what stands still cannot be told yet
-    recording::Reader one(file);
-    EXPECT_EQ(data_of(make_view(one, {}).html)["bodies"][0][3], shown(report::body_colour(0)));
+    const Boxes once(1); // what stands still cannot be told yet
+    recording::Reader one(once.file);
+    const View short_view = make_view(one, {});
+    EXPECT_EQ(short_view.standing, 0u);
+    EXPECT_EQ(data_of(short_view.html)["bodies"][0][3], shown(report::body_colour(0)));
 }
 
 TEST(Page, HasTheDeepestContactOfEveryStep) {
-    const TemporaryFolder folder;
-    const std::string file = folder.path() / "a.glb";
-    record(file, "boxes", 10);
-    recording::Reader reader(file);
+    const Boxes boxes;
+    recording::Reader reader(boxes.file);
     ViewOptions options;
     options.layer_every = 4;
     const nlohmann::json layers = data_of(make_view(reader, options).html)["layers"];

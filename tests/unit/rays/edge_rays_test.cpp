@@ -43,6 +43,32 @@ public:
         pipeline_.end(update);
         return pipeline_.asked();
     }
+    /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
+    std::vector<double> clear(double ahead, RayBatch& batch, EdgeRays& rays) {
+        const Update update{*opened_.device, *opened_.executor, *store_, bodies, pairs, motion_, settings_};
+        batch.resize(update.device, 0);
+        Array<kernels::DirectedPair> placed;
+        Array<float> beyond;
+        placed.resize(update.device, 2 * pairs.size());
+        beyond.resize(update.device, 2 * pairs.size());
+        for (std::uint32_t d = 0; d < 2 * pairs.size(); ++d) {
+            const auto [source, target] = directed_bodies(bodies, pairs, d);
+            place_source(source, target, placed.in_place()[d]);
+            beyond.in_place()[d] = static_cast<float>(ahead * smaller_size(source, target));
+        }
+        do {
+            rays.cast(update, placed, {{}, beyond, {}}, batch);
+            const Piece pieces[] = {batch.totals.piece(batch.sums), rays.found().piece()};
+            update.device.queue().read(pieces);
+        } while (!rays.had_room(update.device, batch));
+        std::vector<double> clear;
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+            const auto& [a, b] = pairs[i];
+            clear.push_back(std::min(rays.clear(2 * i, bodies[b].shape->data().header.tolerance),
+                                     rays.clear(2 * i + 1, bodies[a].shape->data().header.tolerance)));
+        }
+        return clear;
+    }
 
     std::vector<std::shared_ptr<const Shape>> shapes;
     std::vector<PlacedBody> bodies;
@@ -124,6 +150,54 @@ TEST(EdgeRays, FindEveryCrossing) {
         all.add(at(placed.a), far_a, at(placed.b), far);
     }
     expect_all_found(all, 3000, 0.1);
+}
+
+// Bodies apart, and moved by nearly as much as is clear: nothing crosses that was not found before.
+TEST(EdgeRays, WhatIsClearStaysApart) {
+    Random random(12);
+    const std::vector<const Subject*> subjects = pointers(closed_subjects());
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Subject* subject : subjects) {
+        subject->shape->prepare();
+        shapes.push_back(subject->shape);
+    }
+    Pairs all(shapes);
+    for (int i = 0; i < 120; ++i) {
+        const Placement placed = random_placement(subjects, random);
+        const auto at = [&](const Subject* subject) {
+            return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
+        };
+        Pose away = placed.pose_b;
+        const double size = std::min(placed.a->shape->data().diagonal, placed.b->shape->data().diagonal);
+        away.translation = away.translation + (0.7 * size) * random.direction();
+        all.add(at(placed.a), placed.pose_a, at(placed.b), away);
+    }
+    RayBatch batch;
+    EdgeRays rays;
+    const std::vector<double> clear = all.clear(0.3, batch, rays);
+    std::vector<std::array<Found, 2>> found(all.pairs.size());
+    for (const auto& [edge, face, pair] : rays.found().values()) found[pair / 2][pair % 2].emplace(edge, face);
+    std::size_t moved = 0, touched = 0;
+    for (std::size_t i = 0; i < all.pairs.size(); ++i) {
+        if (!(clear[i] > 0)) continue;
+        const auto [a, b] = all.pairs[i];
+        const double way = std::min(clear[i], 2.0 * all.bodies[b].shape->data().diagonal);
+        moved += way > 0.01 * all.bodies[b].shape->data().diagonal;
+        for (int k = 0; k < 8; ++k) {
+            const Vec3 step =
+                k == 0 ? all.bodies[a].centred.translation - all.bodies[b].centred.translation : random.direction();
+            PlacedBody to = all.bodies[b];
+            to.centred.translation = to.centred.translation + (0.99 * way / length(step)) * step;
+            for (std::size_t side = 0; side < 2; ++side)
+                for (const auto& crossing :
+                     side == 0 ? crossings(all.bodies[a], to, random) : crossings(to, all.bodies[a], random))
+                    EXPECT_TRUE(found[i][side].contains(crossing)) << i << ": clear " << clear[i];
+            to.centred.translation = to.centred.translation + (4 * way / length(step)) * step;
+            touched += k == 0 && !crossings(all.bodies[a], to, random).empty();
+        }
+    }
+    EXPECT_GT(moved, 20u);
+    EXPECT_GT(touched, 4u) << "a few times as far, some cross";
 }
 
 // Faces in one plane, edges along edges.

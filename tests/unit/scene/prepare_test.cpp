@@ -121,24 +121,24 @@ TEST(Prepare, NoContactDependsOnWhen) {
 }
 
 // The scene goes while its shapes are being prepared.
-TEST(Prepare, ASceneThatGoesDoesNotWaitLong) {
-    const auto shape = Shape::make(scenes::scene_model("sphere", 60000).mesh);
-    const auto start = std::chrono::steady_clock::now();
-    {
-        Settings settings;
-        settings.features = Features::vertices;
-        Scene scene(settings);
-        scene.add(shape);
-        scene.add(shape, {.translation = {0.99 * (shape->box_max().x - shape->box_min().x), 0, 0}});
-        for (int i = 0; i < 3; ++i) scene.step();
+TEST(Prepare, ASceneThatGoesDoesNotWait) {
+    // On a busy machine a shape may be prepared before the scene goes: then another is tried.
+    bool waited = true;
+    for (std::uint32_t i = 0; i < 5 && waited; ++i) {
+        const auto shape = Shape::make(scenes::scene_model("sphere", 60000 + 200 * i).mesh);
+        {
+            Settings settings;
+            settings.features = Features::vertices;
+            Scene scene(settings);
+            scene.add(shape);
+            scene.add(shape, {.translation = {0.99 * (shape->box_max().x - shape->box_min().x), 0, 0}});
+            for (int k = 0; k < 3; ++k) scene.step();
+        }
+        waited = shape->is_prepared();
+        shape->prepare();
+        EXPECT_TRUE(shape->is_prepared());
     }
-    const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
-    const auto again = std::chrono::steady_clock::now();
-    shape->prepare();
-    const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - again;
-    std::printf("[ counts   ] three steps and the end of the scene %.3f s, preparing %.3f s\n", gone.count(),
-                whole.count());
-    EXPECT_TRUE(shape->is_prepared());
+    EXPECT_FALSE(waited);
 }
 
 } // namespace

@@ -37,7 +37,7 @@ const ShapeData& accelerated_once(const Shape& shape) {
 
 // A whole block is said to be safe by the ball around its box alone: no vertex of it may be nearer, also where the
 // rotation stretches by what pose checks accept.
-TEST(SafeBlock, IsNoSaferThanItsVertices) {
+TEST(NearClusters, IsNoSaferThanItsVertices) {
     reference::Random random(2);
     const auto slab = Shape::make(reference::box_mesh({21, 21, 1}));
     std::vector<std::shared_ptr<const Shape>> shapes = reference::crowd_shapes(reference::Kind::sizes, 0.1);
