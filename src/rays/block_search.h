@@ -51,8 +51,7 @@ public:
     /// Of the last find.
     std::uint64_t bytes() const {
         return std::uint64_t{found_.most} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
-               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong))
-               + safe_distances_.size() * sizeof(float);
+               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong) + sizeof(float));
     }
 
     /// Of the last find_now(), how many; of find(): the room.
