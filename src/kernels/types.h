@@ -94,18 +94,14 @@ STRUCT(SourceTree) {
 };
 WIRE_SIZE(SourceTree, 44);
 
-// Where a shape's arrays are, and the rounding it allows for. A PLACE is an address where the host's memory is shared;
-// else the array is so many ulongs behind the beginning of the buffer that holds all shapes. AT() gives the array.
+// Where a shape's arrays are, in ulongs behind the buffer that holds all shapes, or behind address 0 where the host's
+// memory is shared; AT() gives the array. And the rounding it allows for.
 STRUCT(ShapeHeader) {
-    PLACE(Node) nodes;
-    PLACE(TriangleBlock) triangle_blocks;
-    PLACE(Face) faces;           // by triangle
-    PLACE(Packed3) face_normals; // by triangle; outward
-    PLACE(VertexBlock) vertex_blocks;
-    PLACE(ClusterBlock) clusters;
-    PLACE(uint) outside_cells; // a bit for each cell, x fastest
-    PLACE(uint) clearances;    // x fastest
-    PLACE(uint) caps;          // by triangle_lane (cap.h); only where the host's memory is shared
+    ulong nodes, triangle_blocks, vertex_blocks, clusters;
+    ulong faces, face_normals; // by triangle; outward
+    ulong outside_cells;       // a bit for each cell, x fastest
+    ulong clearances;          // x fastest
+    ulong caps;                // by triangle_lane (cap.h); only where the host's memory is shared
     uint triangle_block_count;
     SourceTree vertices, edges;
     uint closed;

@@ -24,9 +24,9 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     build_clearance_grid(shape, *made, executor, stop);
     build_caps(shape, *made, executor, stop);
     if (stop.stop_requested()) return nullptr;
-    made->header.outside_cells = made->outside_cells.data();
-    made->header.clearances = made->clearances.data();
-    made->header.caps = made->caps.data();
+    made->header.outside_cells = place_of(made->outside_cells);
+    made->header.clearances = place_of(made->clearances);
+    made->header.caps = place_of(made->caps);
     return made;
 }
 

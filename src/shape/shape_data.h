@@ -12,6 +12,12 @@ namespace raycontact {
 /// A vertex or box corner as the kernels see it: float32, relative to the shape's centre.
 using Point3f = kernels::Packed3;
 
+/// Where an array is, for AT() without a buffer (kernels/types.h).
+template <class T>
+kernels::ulong place_of(const std::vector<T>& values) {
+    return reinterpret_cast<std::uintptr_t>(values.data()) / sizeof(kernels::ulong);
+}
+
 /// Everything a shape is made of. The kernel arrays use offsets from their own beginning.
 struct ShapeData : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
@@ -44,13 +50,13 @@ struct ShapeData : TriangleTree {
 
     /// Enters where the kernel arrays are, once they are all there.
     void set_places() {
-        header.nodes = nodes.data();
-        header.triangle_blocks = triangle_blocks.data();
-        header.faces = faces.data();
-        header.face_normals = face_normals.data();
-        header.vertex_blocks = vertex_blocks.data();
-        header.clusters = clusters.data();
-        header.clearances = clearances.data();
+        header.nodes = place_of(nodes);
+        header.triangle_blocks = place_of(triangle_blocks);
+        header.faces = place_of(faces);
+        header.face_normals = place_of(face_normals);
+        header.vertex_blocks = place_of(vertex_blocks);
+        header.clusters = place_of(clusters);
+        header.clearances = place_of(clearances);
     }
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }

@@ -4,19 +4,18 @@
 #include "shape/accelerators.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace raycontact {
 
 // What is copied begins in a line of its own.
 template <class T>
-void ShapeStore::copy(const std::vector<T>& values, const T*& place) {
+void ShapeStore::copy(const std::vector<T>& values, kernels::ulong& place) {
     constexpr std::size_t line = 64;
     const std::size_t first = arrays_.memory.size(), bytes = values.size() * sizeof(T);
     arrays_.memory.extend(device_, first + (bytes + line - 1) / line * (line / sizeof(kernels::ulong)));
     if (bytes > 0)
         device_.queue().write(*arrays_.memory.buffer(), first * sizeof(kernels::ulong), values.data(), bytes);
-    place = std::bit_cast<const T*>(std::uint64_t{first});
+    place = first;
 }
 
 void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {

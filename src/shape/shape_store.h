@@ -48,7 +48,7 @@ private:
     bool upload(Entry& entry); ///< returns whether it has accelerators
     void upload_accelerators(Entry& entry, const Accelerators& more);
     template <class T>
-    void copy(const std::vector<T>& values, const T*& place);
+    void copy(const std::vector<T>& values, kernels::ulong& place);
     void note_plain(const Entry& entry);
     void no_longer_plain(kernels::uint index, const Shape* shape);
 

@@ -61,7 +61,7 @@ if(WAY STREQUAL "install")
         "-DCMAKE_CXX_FLAGS=${CXX_FLAGS} -D_GLIBCXX_DEBUG" OUTPUT_QUIET)
     execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/debug --target consumer
         RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
-    string(REGEX MATCHALL "undefined [^\n]*" lines "${said}")
+    string(REGEX MATCHALL "undefined (reference|symbol)[^\n]*" lines "${said}")
     list(LENGTH lines count)
     if(status EQUAL 0 OR NOT count EQUAL 1 OR NOT said MATCHES "library_built_with_GLIBCXX_DEBUG")
         message(FATAL_ERROR "_GLIBCXX_DEBUG against a library without is not refused by one line: ${said}")

@@ -7,6 +7,7 @@
 #include "reference/meshes.h"
 #include "reference/random.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -118,7 +119,8 @@ std::vector<Way> cpu_ways() {
 
 Outcome run_work(OpenDevice opened, const Work& work, const std::vector<Way>& ways) {
     auto trace = std::make_shared<Trace>();
-    opened.device = std::make_unique<TracingDevice>(std::move(opened.device), trace);
+    const bool shares = std::ranges::any_of(ways, [](const Way& way) { return way.method == Method::certified; });
+    opened.device = std::make_unique<TracingDevice>(std::move(opened.device), trace, shares);
     Part part(std::move(opened));
     Outcome outcome = run_part(part, work, ways);
     outcome.trace = std::move(*trace);

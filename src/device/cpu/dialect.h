@@ -37,8 +37,7 @@ struct Range {
 #define DEVICE_CALL DEVICE // not inlined where that takes a compiler minutes (NVRTC)
 #define GLOBAL
 #define IN_LINES alignas(64)
-#define PLACE(type) const type*
-#define AT(memory, type, place) ((void)(memory), (place))
+#define AT(memory, type, place) at_place<type>(memory, place)
 #define RESTRICT __restrict
 #define COUNT(n) [[maybe_unused]] Range range, [[maybe_unused]] uint n
 #define ALL(n) (n)
@@ -62,6 +61,11 @@ struct Range {
 #endif
 
 namespace raycontact::kernels {
+template <class T>
+DEVICE const T* at_place(const ulong* memory, ulong place) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): `memory` may be null, and an offset from that is none
+    return reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(memory) + sizeof(ulong) * place);
+}
 #if defined(__GNUC__) || defined(__clang__)
 DEVICE uint lowest_bit(uint bits) {
     return static_cast<uint>(__builtin_ctz(bits));

@@ -9,7 +9,6 @@ typedef unsigned long long ulong;
 #define DEVICE_BATCH DEVICE
 #define GLOBAL
 #define IN_LINES
-#define PLACE(type) ulong
 #define AT(memory, type, place) ((GLOBAL const type*)((memory) + (place)))
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) ((void)(index))

@@ -8,7 +8,6 @@
 #define DEVICE_BATCH DEVICE
 #define GLOBAL __global
 #define IN_LINES
-#define PLACE(type) ulong
 #define AT(memory, type, place) ((GLOBAL const type*)((memory) + (place)))
 #define RESTRICT restrict
 #define PREFETCH(array, index) ((void)(index))

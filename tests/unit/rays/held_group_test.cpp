@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Held rays asked sixteen at a time say what the ray test says of each alone, bit for bit: in groups of every kind of
 // ray, filled again and again, and whatever the floats.
-#include "device/host_kernels.h"
 #include "reference/random.h"
+#include "shape/shape_data.h"
 
 #include <bit>
 #include <cmath>
@@ -44,8 +44,10 @@ Ground any_ground(Floats kind, Random& random) {
     ground.normals.reserve(std::size_t{3} * blocks_of_shape * TRIANGLE_LANES);
     for (std::uint32_t s = 0; s < 3; ++s) {
         kernels::ShapeHeader shape{};
-        shape.triangle_blocks = ground.blocks.data() + std::size_t{blocks_of_shape} * s;
-        shape.face_normals = ground.normals.data() + std::size_t{blocks_of_shape} * TRIANGLE_LANES * s;
+        shape.triangle_blocks =
+            place_of(ground.blocks) + sizeof(kernels::TriangleBlock) / sizeof(kernels::ulong) * blocks_of_shape * s;
+        shape.face_normals = place_of(ground.normals)
+                             + sizeof(kernels::Packed3) * TRIANGLE_LANES / sizeof(kernels::ulong) * blocks_of_shape * s;
         shape.closed = random.below(2);
         shape.tolerance = static_cast<float>(std::pow(10.0, random.uniform(-7, -4)));
         ground.shapes.push_back(shape);
@@ -115,7 +117,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     Closest closest = nothing_hit(asked.ray.reach, shape.tolerance);
     const RayFrame frame = frame_ray(asked.ray.position, asked.ray.direction, false);
     if (held.triangle != NONE)
-        hit_lane(&closest, &frame, &shape.triangle_blocks[held.triangle / TRIANGLE_LANES],
+        hit_lane(&closest, &frame, &ground.blocks[blocks_of_shape * asked.target + held.triangle / TRIANGLE_LANES],
                  held.triangle % TRIANGLE_LANES, shape.tolerance, false);
     double start = 0, end = 0;
     for (std::uint32_t i = 0; i < 3; ++i) {
