@@ -109,8 +109,9 @@ public:
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
-    /// Called at the end of the dispatch or query that found a fault, once for each; it may throw. At first it prints a
-    /// line on stderr; an empty function says nothing.
+    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts. It may
+    /// throw (the others are told next time) and put another in its place. At first it prints a line on stderr; an
+    /// empty function says nothing.
     void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a
