@@ -15,10 +15,10 @@ Stretch inverse(const Stretch& stretch);
 
 /// A transform of Bullet's as RayContact takes it: x_world = pose * (stretch * x_body).
 struct Placement {
-    btTransform pose; ///< rigid; the transform itself, to the bit, where that is rigid to 1e-5
-    Stretch stretch = no_stretch;  ///< rounded
+    btTransform pose;               ///< rigid; the transform itself, to the bit, where that is rigid to 1e-5
+    Stretch stretch = no_stretch;   ///< rounded
     Stretch unrounded = no_stretch; ///< for planes, of which no mesh is made
-    bool drifted = false; ///< the transform is not rigid, but to 1e-3, which is dropped
+    bool drifted = false;           ///< the transform is not rigid, but to 1e-3, which is dropped
 };
 
 /// Beyond 1e-3 what is not rigid is scale: the stretch holds it, in steps of about 1e-3 in each direction, so that a
