@@ -42,11 +42,11 @@ std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pai
 
 // Contacts found; the transform of the vertex is part of the work, as it is of ours.
 std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::DirectedPair>& pairs,
-                 const std::vector<rk::VertexBlock>& blocks, const std::vector<rk::Ray>& rays) {
+                 const rk::ShapeHeader& shape, const std::vector<rk::Ray>& rays) {
     std::size_t contacts = 0;
     for (const rk::Ray& ray : rays) {
         const rk::prototype::SourceRay source =
-            rk::prototype::source_ray(&pairs[ray.pair], blocks.data(), ray.vertex_lane);
+            rk::prototype::source_ray(&pairs[ray.pair], &shape, nullptr, ray.vertex_lane);
         RTCRayHit hit;
         if (scene.cast(source.position, source.direction, source.reach, hit)) ++contacts;
     }
@@ -175,7 +175,7 @@ int main(int argc, char** argv) try {
     const rc::bench::EmbreeScene embree(embree_device, *shape);
     std::vector<double> embree_ms;
     std::size_t embree_contacts = 0;
-    const auto cast_theirs = [&] { embree_contacts = cast(embree, ordered, shape->data().vertex_blocks, rays); };
+    const auto cast_theirs = [&] { embree_contacts = cast(embree, ordered, shape->data().header, rays); };
     cast_theirs(); // to warm up; ours have done so
     for (int run = 0; run < runs; ++run) {
         for (const auto& c : contenders) c->run_bvh();

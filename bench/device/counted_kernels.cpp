@@ -14,6 +14,10 @@
 #define DEVICE_BATCH DEVICE
 #define GLOBAL
 #define RESTRICT
+#define IN_LINES alignas(64)
+#define PLACE(type) const type*
+#define AT(memory, type, place)                                                                                        \
+    ((void)(memory), model.load(&(place), sizeof(place)), reinterpret_cast<const type*>(place))
 #define PREFETCH(array, index) ((void)(index))
 #define COUNT(n) [[maybe_unused]] Range range, [[maybe_unused]] uint n
 #define ALL(n) (n)

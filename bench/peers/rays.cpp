@@ -112,8 +112,6 @@ public:
     explicit EmbreeRays(const Work& work) : RayPeer(work), scenes_(work.shapes.size()) {
         for (const auto& shape : work.shapes)
             scenes_[shapes_.index_of(shape.get())] = std::make_unique<EmbreeScene>(device_, *shape);
-        blocks_.resize(shapes_.arrays().vertex_blocks.size());
-        shapes_.arrays().vertex_blocks.read(*opened_.device, blocks_);
     }
 
     void prepare(const WorkStep& step) override {
@@ -130,7 +128,7 @@ public:
         for (const kernels::Ray& ray : rays_) {
             // The vertex's way into the target's frame is part of the work, as it is of ours.
             const kernels::prototype::SourceRay source =
-                kernels::prototype::source_ray(&ordered_[ray.pair], blocks_.data(), ray.vertex_lane);
+                kernels::prototype::source_ray(&ordered_[ray.pair], shapes_.headers().data(), nullptr, ray.vertex_lane);
             RTCRayHit hit;
             if (!scenes_[ordered_[ray.pair].target]->cast(source.position, source.direction, source.reach, hit))
                 continue;
@@ -145,7 +143,6 @@ public:
 private:
     EmbreeDevice device_;
     std::vector<std::unique_ptr<EmbreeScene>> scenes_; ///< by index in the store
-    std::vector<kernels::VertexBlock> blocks_;
     std::vector<kernels::Ray> rays_;
     std::vector<kernels::DirectedPair> ordered_;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Caps (docs/certified.md): each triangle of a closed, outward mesh has balls around its centre in which all normals
 // are within an angle of its own. A ray that begins in such a ball and runs along these normals leaves the mesh at most
-// once. Rays that no tube decides are tested against the caps of their triangles, as a group, and go on to neighbours.
+// once. ShapeHeader.caps: the radii of two such balls, for a narrow angle in the lower half; 0: none. Rays that no tube
+// decides are tested against the caps of their triangles, as a group, and go on to neighbours.
 
 #define CAP_UNIT_TOLERANCES 2.0f // a step of the stored radii
 // The two angles: 30 and 55 degrees.
@@ -31,9 +32,9 @@ DEVICE float facing_in_cap(uint cap, float tolerance, float margin, float far2, 
 }
 
 // Whether the cap of the triangle that a ray met can decide the ray in later steps.
-DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape,
-                      READS(TriangleBlock) blocks, uint triangle_lane) {
-    READS(TriangleBlock) block = blocks + shape->triangle_block_first + triangle_lane / TRIANGLE_LANES;
+DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(ShapeHeader) shape, READS(ulong) memory,
+                      uint triangle_lane) {
+    READS(TriangleBlock) block = AT(memory, TriangleBlock, shape->triangle_blocks) + triangle_lane / TRIANGLE_LANES;
     const uint lane = triangle_lane % TRIANGLE_LANES;
     float far2 = 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -41,7 +42,8 @@ DEVICE bool is_in_cap(const SourceRay* ray, float facing, float margin, READS(Sh
         const float off = middle * (1.0f / 3.0f) - ray->position[i];
         far2 += off * off;
     }
-    return facing_in_cap(block->cap[lane], shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
+    const uint cap = AT(memory, uint, shape->caps)[triangle_lane];
+    return facing_in_cap(cap, shape->tolerance, margin, far2, facing) >= CAP_LEAST_FACING;
 }
 
 // Called after test_held(). A ray that begins in the triangle's cap and passes well inside its edges leaves the mesh
@@ -80,11 +82,11 @@ DEVICE void test_caps(HeldGroup* group) {
 }
 
 // Rays that missed their triangle go on to the neighbour across the edge `beyond`. Returns how many did.
-DEVICE uint step_over(const RayArrays* arrays, READS(Face) faces, HeldGroup* group) {
+DEVICE uint step_over(const RayArrays* arrays, HeldGroup* group) {
     uint stepped = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) {
         if (group->beyond[r] == 0u) continue;
-        READS(Face) own = faces + arrays->shapes[group->rays.target[r]].face_first;
+        READS(Face) own = AT(arrays->memory, Face, group->rays.shape[r]->faces);
         const uint next = own[group->triangle[r]].neighbour[group->beyond[r] - 1u];
         const uint triangle_lane = next != NONE ? own[next].triangle_lane : NONE;
         if (triangle_lane == NONE) continue;
@@ -97,13 +99,13 @@ DEVICE uint step_over(const RayArrays* arrays, READS(Face) faces, HeldGroup* gro
 }
 
 // Decides rays by their tubes, and the others by their caps.
-DEVICE void test_tubes_and_caps(const RayArrays* arrays, READS(Face) faces, HeldGroup* group) {
+DEVICE void test_tubes_and_caps(const RayArrays* arrays, HeldGroup* group) {
     test_held(group);
     uint undecided = 0u;
     for (uint r = 0u; r < group->rays.count; ++r) undecided |= group->tests_cap[r] & (group->is_known[r] ^ 1u);
     if (undecided == 0u) return;
     test_caps(group);
-    for (uint step = 0u; step < MOST_STEPS && step_over(arrays, faces, group) != 0u; ++step) {
+    for (uint step = 0u; step < MOST_STEPS && step_over(arrays, group) != 0u; ++step) {
         test_held(group);
         test_caps(group);
     }

@@ -13,13 +13,11 @@ DEVICE int verdict(const Closest* closest, float reach, float tolerance) {
     return closest->back + tolerance < closest->front ? 1 : 0;
 }
 
-// The shape arrays that casting kernels read, and the results that they write. Columns of outcomes: the ray is a
+// The shapes that casting kernels read, and the results that they write. Columns of outcomes: the ray is a
 // contact; its side tests; it was cast in full.
 STRUCT(RayArrays) {
     READS(ShapeHeader) shapes;
-    READS(Node) nodes;
-    READS(TriangleBlock) blocks;
-    READS(Packed3) normals;
+    READS(ulong) memory;
     uint stride; // of outcomes
     WRITES(Hit) hits;
     WRITES(uint) outcomes;
@@ -27,9 +25,9 @@ STRUCT(RayArrays) {
 
 DEVICE Closest traverse(const RayArrays* arrays, const uint caster, const RayFrame* ray, float reach,
                         READS(ShapeHeader) shape) {
-    if (caster == CASTER_BVH) return traverse_bvh(*ray, reach, shape, arrays->nodes, arrays->blocks);
+    if (caster == CASTER_BVH) return traverse_bvh(*ray, reach, shape, arrays->memory);
     Closest closest = nothing_hit(reach, shape->tolerance);
-    traverse_basic(&closest, ray, 1u, shape, arrays->blocks);
+    traverse_basic(&closest, ray, 1u, shape, arrays->memory);
     return closest;
 }
 
@@ -37,12 +35,12 @@ DEVICE Closest traverse(const RayArrays* arrays, const uint caster, const RayFra
 // each as far as its `length`; a hit so near is the closest of all. The other rays are cast one by one.
 DEVICE void find_group(const RayArrays* arrays, Closest* own, RayGroup* group, const bool opposite) {
     frame_group(group, opposite);
-    const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->nodes, arrays->blocks) : 1u;
+    const uint alone = RAYS_IN_GROUP > 1 ? traverse_group(own, group, arrays->memory) : 1u;
     for (uint r = 0u; r < group->count; ++r) {
         const float length = group->length[r], reach = group->reach[r];
         if (((alone >> r) & 1u) == 0u && (length >= reach || own[r].back <= length || own[r].front <= length)) continue;
         const RayFrame frame = frame_of(group, r);
-        own[r] = traverse(arrays, CASTER_BVH, &frame, reach, arrays->shapes + group->target[r]);
+        own[r] = traverse(arrays, CASTER_BVH, &frame, reach, group->shape[r]);
     }
 }
 
@@ -54,7 +52,7 @@ DEVICE Hit no_contact(uint sides) {
 // The hit of a ray that meets the triangle from inside.
 DEVICE Hit hit_of(const RayArrays* arrays, const SourceRay* ray, READS(ShapeHeader) shape, uint triangle,
                   float distance, uint sides) {
-    const Packed3 n = arrays->normals[shape->normal_first + triangle];
+    const Packed3 n = AT(arrays->memory, Packed3, shape->face_normals)[triangle];
     const float facing = (ray->direction[0] * n.x + ray->direction[1] * n.y) + ray->direction[2] * n.z;
     const Hit hit = {triangle, distance, facing, sides};
     return hit;
@@ -100,31 +98,29 @@ DEVICE Hit decide(const RayArrays* arrays, const uint caster, const SourceRay* r
 
 // Casts the rays of a group, decides each of them and records its hit.
 DEVICE void cast_group(const RayArrays* arrays, Closest* own, RayGroup* group) {
-    READS(ShapeHeader) shapes = arrays->shapes;
     find_group(arrays, own, group, false);
     for (uint r = 0u; r < group->count; ++r)
         if (own[r].back < UNBOUNDED)
-            PREFETCH(arrays->normals, shapes[group->target[r]].normal_first + own[r].back_triangle);
+            PREFETCH(AT(arrays->memory, Packed3, group->shape[r]->face_normals), own[r].back_triangle);
     for (uint r = 0u; r < group->count; ++r) {
         const SourceRay ray = ray_of(group, r);
-        record_hit(arrays, group->at[r], decide(arrays, CASTER_BVH, &ray, own + r, shapes + group->target[r]), 1u);
+        record_hit(arrays, group->at[r], decide(arrays, CASTER_BVH, &ray, own + r, group->shape[r]), 1u);
     }
 }
 
 // All vertices are inside the bounds.
 KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
-                          READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
-                          READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
-    const RayArrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+                          READS(ulong) memory, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
+    const RayArrays arrays = {shapes, memory, stride, hits, outcomes};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         RayGroup group;
         Closest own[RAYS_IN_GROUP];
         clear_group(&group);
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
-            const uint target = pairs[ray.pair].target;
-            const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.vertex_lane);
-            add_ray(&group, i + r, &source, source.reach, ray.pair, target, shapes);
+            READS(DirectedPair) pair = pairs + ray.pair;
+            const SourceRay source = source_ray(pair, shapes, memory, ray.vertex_lane);
+            add_ray(&group, i + r, &source, source.reach, ray.pair, shapes + pair->target);
         }
         cast_group(&arrays, own, &group);
     }
@@ -132,9 +128,8 @@ KERNEL void cast_rays_bvh(COUNT(count), uint stride, READS(DirectedPair) pairs, 
 
 // A vertex that has left the bounds is no contact, whatever its ray meets.
 KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
-                            READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
-                            READS(Packed3) normals, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
-    const RayArrays arrays = {shapes, nodes, blocks, normals, stride, hits, outcomes};
+                            READS(ulong) memory, READS(Ray) rays, WRITES(Hit) hits, WRITES(uint) outcomes) {
+    const RayArrays arrays = {shapes, memory, stride, hits, outcomes};
     FOR_EACH_FEW(i, few, RAYS_AT_ONCE, count) {
         SourceRay source[RAYS_AT_ONCE];
         RayFrame frame[RAYS_AT_ONCE];
@@ -142,14 +137,14 @@ KERNEL void cast_rays_basic(COUNT(count), uint stride, READS(DirectedPair) pairs
         for (uint r = 0u; r < few; ++r) {
             const Ray ray = rays[i + r];
             READS(DirectedPair) pair = pairs + ray.pair;
-            source[r] = source_ray(pair, vertices, ray.vertex_lane);
+            source[r] = source_ray(pair, shapes, memory, ray.vertex_lane);
             frame[r] = frame_ray(source[r].position, source[r].direction, false);
             own[r] = nothing_hit(source[r].reach, shapes[pair->target].tolerance);
         }
         for (uint r = 0u, same = 1u; r < few; r += same, same = 1u) {
             const uint target = pairs[rays[i + r].pair].target;
             while (r + same < few && pairs[rays[i + r + same].pair].target == target) ++same;
-            traverse_basic(own + r, frame + r, same, shapes + target, blocks);
+            traverse_basic(own + r, frame + r, same, shapes + target, memory);
         }
         for (uint r = 0u; r < few; ++r) {
             READS(DirectedPair) pair = pairs + rays[i + r].pair;

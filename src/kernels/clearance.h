@@ -65,11 +65,11 @@ DEVICE float bounds_gap(const float* b, float x, float y, float z) {
 
 // safe: metres that each vertex from `first` on can move before it could be in contact; may be negative.
 DEVICE void safe_lanes(float* safe, const InsideLanes* placed, READS(DirectedPair) pair, READS(VertexBlock) block,
-                       uint first, READS(ShapeHeader) target, READS(uint) clearances) {
+                       uint first, READS(ShapeHeader) target, READS(ulong) memory) {
     float b[6];
     for (int i = 0; i < 6; ++i) b[i] = pair->bounds[i];
     const Clearance grid = clearance_of(target);
-    READS(uint) balls = clearances + target->clearance_first;
+    READS(uint) balls = AT(memory, uint, target->clearances);
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float x = placed->x[k], y = placed->y[k], z = placed->z[k];
         const float clear = safe_distance(grid, balls, x, y, z, block->exit[first + k]);

@@ -75,8 +75,8 @@ STRUCT(Search) {
     READS(DirectedPair) pair;
     READS(SourceTree) source;
     READS(ShapeHeader) target;
-    READS(ClusterBlock) clusters;
-    READS(uint) clearances;
+    READS(ClusterBlock) clusters; // of the source
+    READS(uint) balls;            // of the target
     float horizon;
     float reach;      // of the sources' rays, as safe_distance() takes it; not known of vertices
     float least_safe; // of the boxes left out
@@ -90,7 +90,6 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     READS(DirectedPair) pair = search->pair;
     READS(ShapeHeader) target = search->target;
     const Clearance grid = clearance_of(target);
-    READS(uint) balls = search->clearances + target->clearance_first;
     float r[9], t[3], b[6];
     for (int i = 0; i < 9; ++i) r[i] = pair->rotation[i];
     for (int i = 0; i < 3; ++i) t[i] = pair->translation[i];
@@ -103,7 +102,7 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
         const float x = ((r[0] * cx + r[1] * cy) + r[2] * cz) + t[0];
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
-        const float free = safe_distance(grid, balls, x, y, z, search->reach), gap = bounds_gap(b, x, y, z);
+        const float free = safe_distance(grid, search->balls, x, y, z, search->reach), gap = bounds_gap(b, x, y, z);
         const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
         const uint reached = (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
@@ -122,15 +121,16 @@ DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) sh
 
 // Without horizons the horizon is negative.
 DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(float) horizons, READS(ShapeHeader) shapes,
-                        READS(ClusterBlock) clusters, READS(uint) clearances) {
+                        READS(ulong) memory) {
     READS(DirectedPair) pair = pairs + p;
     READS(ShapeHeader) source = shapes + pair->source;
+    READS(ShapeHeader) target = shapes + pair->target;
     const Search search = {p,
                            pair,
                            edges != 0u ? &source->edges : &source->vertices,
-                           shapes + pair->target,
-                           clusters,
-                           clearances,
+                           target,
+                           AT(memory, ClusterBlock, source->clusters),
+                           AT(memory, uint, target->clearances),
                            horizons ? horizons[p] : -1.0f,
                            edges != 0u ? 0.0f : UNBOUNDED,
                            UNBOUNDED};
@@ -239,14 +239,14 @@ DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* 
 // blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges: 1: of
 // the edges, which are in contact where they cross the surface.
 KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
-                           READS(ShapeHeader) shapes, READS(ClusterBlock) clusters, READS(uint) clearances,
-                           WRITES(uint) counts, WRITES(float) safe_distances, WRITES(ulong) block_masks) {
+                           READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(uint) counts,
+                           WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
         if (!is_asked(edges, pairs + p, shapes)) {
             counts[p] = 0u;
             continue;
         }
-        Search search = search_of(p, edges, pairs, horizons, shapes, clusters, clearances);
+        Search search = search_of(p, edges, pairs, horizons, shapes, memory);
         counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + MASK_WORDS * p)
                                           : count_reached(&search, true, block_masks + MASK_WORDS * p);
         if (horizons) safe_distances[p] = search.least_safe;
@@ -254,12 +254,11 @@ KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, 
 }
 
 KERNEL void write_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
-                           READS(ShapeHeader) shapes, READS(ClusterBlock) clusters, READS(uint) clearances,
-                           READS(ulong) block_masks, READS(uint) firsts, WRITES(PairBlock) blocks, uint stride,
-                           WRITES(uint) ray_counts) {
+                           READS(ShapeHeader) shapes, READS(ulong) memory, READS(ulong) block_masks, READS(uint) firsts,
+                           WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {
         if (!is_asked(edges, pairs + p, shapes)) continue;
-        Search search = search_of(p, edges, pairs, horizons, shapes, clusters, clearances);
+        Search search = search_of(p, edges, pairs, horizons, shapes, memory);
         // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
         const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride, (GLOBAL ulong*)0};
         write_reached(&search, block_masks + MASK_WORDS * p, &found);

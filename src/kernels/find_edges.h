@@ -43,11 +43,11 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) m
 // be far from the surface: it does not enter the balls around their halves. clears: 1: it tells, too, how far the
 // others stay away.
 KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
-                        READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(uint) clearances,
-                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
+                        READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(PairBlock) found_blocks,
+                        WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
-        READS(VertexBlock) block = vertices + found_blocks[i].vertex_block;
+        READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
         const float margin = margins[found_blocks[i].pair];
         const float half_least = least ? 0.5f * least[found_blocks[i].pair] : 0.0f;
         float r[9], t[3], b[6];
@@ -83,7 +83,7 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
         if (clears == 0u && pack_vertices(found.inside) == 0u) continue;
         READS(ShapeHeader) target = shapes + pair->target;
         const Clearance grid = clearance_of(target);
-        READS(uint) balls = clearances + target->clearance_first;
+        READS(uint) balls = AT(memory, uint, target->clearances);
         float beyond[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float qx = quarter[0][k], qy = quarter[1][k], qz = quarter[2][k];
@@ -124,9 +124,7 @@ STRUCT(EdgeArrays) {
     READS(DirectedPair) pairs;
     READS(float) margins; // by pair
     READS(ShapeHeader) shapes;
-    READS(VertexBlock) vertices;
-    READS(Node) nodes;
-    READS(TriangleBlock) blocks;
+    READS(ulong) memory;
     READS(Ray) rays;
     WRITES(EdgeHits) hits;
     WRITES(NearEdge) near;
@@ -205,7 +203,7 @@ DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
 }
 
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
-    const SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->vertices, ray.vertex_lane);
+    const SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
     const float margin = arrays->margins[ray.pair];
     for (int i = 0; i < 3; ++i) {
         const float reach = magnitude_of(edge.direction[i]) + margin;
@@ -237,7 +235,8 @@ DEVICE void box_of_edges(float* box, const EdgeGroup* group, uint own) {
 // tree, whatever other edges are cast beside.
 DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint own, uint first) {
     READS(ShapeHeader) shape = arrays->shapes + arrays->pairs[group->pair[lowest_bit(own)]].target;
-    READS(Node) tree = arrays->nodes + shape->node_first;
+    READS(Node) tree = AT(arrays->memory, Node, shape->nodes);
+    READS(TriangleBlock) blocks = AT(arrays->memory, TriangleBlock, shape->triangle_blocks);
     float box[6];
     box_of_edges(box, group, own);
     uint written = 0u;
@@ -250,7 +249,7 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
                 go_down(&way, child, children_in(box, tree + child));
                 continue;
             }
-            READS(TriangleBlock) block = arrays->blocks + shape->triangle_block_first + (child & ~LEAF);
+            READS(TriangleBlock) block = blocks + (child & ~LEAF);
             for (uint edges = edges_in_lane(group, tree + way.at, leaf_lane) & own; edges != 0u; edges &= edges - 1u) {
                 const uint r = lowest_bit(edges), boxed = triangles_in(group, r, block);
                 uint lanes = boxed != 0u ? triangles_near(group, r, block, boxed) : 0u;
@@ -273,10 +272,9 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
 }
 
 KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
-                       READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
-                       WRITES(EdgeHits) hits, WRITES(uint) counts) {
+                       READS(ulong) memory, READS(Ray) rays, WRITES(EdgeHits) hits, WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-    const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, hits, (GLOBAL NearEdge*)0};
+    const EdgeArrays arrays = {pairs, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -295,17 +293,18 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
 
 // Edges with more faces than EdgeHits holds are cast again.
 KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
-                        READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks, READS(Ray) rays,
-                        READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
+                        READS(ulong) memory, READS(Ray) rays, READS(EdgeHits) hits, READS(uint) firsts,
+                        WRITES(NearEdge) near) {
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
         const Ray ray = rays[i];
-        const uint edge = vertices[ray.vertex_lane / VERTEX_LANES].vertex[ray.vertex_lane % VERTEX_LANES];
+        const uint edge = source_block(pairs + ray.pair, shapes, memory, ray.vertex_lane / VERTEX_LANES)
+                              ->vertex[ray.vertex_lane % VERTEX_LANES];
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
-            const EdgeArrays arrays = {pairs, margins, shapes, vertices, nodes, blocks, rays, none, near + firsts[i]};
+            const EdgeArrays arrays = {pairs, margins, shapes, memory, rays, none, near + firsts[i]};
             EdgeGroup group;
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
             cast_together(&arrays, &group, 1u, i);

@@ -5,11 +5,11 @@
 #define LEAST_DEPTH_IN_BALL 0.01f // of a cell: far more than rounding could hide
 
 // Vertices whose cell lies outside a closed mesh need no ray: it would meet the first face from outside.
-DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) outside_cells) {
+DEVICE uint outside_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(ulong) memory) {
     const float scale = target->grid_scale;
     const float low_x = target->grid_low[0], low_y = target->grid_low[1], low_z = target->grid_low[2];
     const uint size_x = target->grid_size[0], size_y = target->grid_size[1];
-    READS(uint) words = outside_cells + target->grid_first;
+    READS(uint) words = AT(memory, uint, target->outside_cells);
     int outside[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const bool known = found->inside[k] != 0;
@@ -36,9 +36,9 @@ DEVICE bool in_bounds(READS(DirectedPair) pair, const float* p) {
 
 // Vertices in a ball of the clearance grid that is outside. The outside grid marks whole cells only: about half of the
 // vertices that it leaves are outside, too, and their rays are the longest.
-DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(uint) clearances) {
+DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, READS(ulong) memory) {
     const Clearance grid = clearance_of(target);
-    READS(uint) balls = clearances + target->clearance_first;
+    READS(uint) balls = AT(memory, uint, target->clearances);
     int in_ball[VERTICES_AT_ONCE];
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float safe = safe_distance(grid, balls, found->x[k], found->y[k], found->z[k], UNBOUNDED);
@@ -50,17 +50,17 @@ DEVICE uint in_ball_lanes(const InsideLanes* found, READS(ShapeHeader) target, R
 // Adds to column 0 of counts the vertices whose rays must be cast, to column 1 all vertices inside the bounds: by the
 // paper's rule each of them has a ray.
 KERNEL void count_rays(COUNT(count), uint use_grid, uint stride, READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
-                       READS(VertexBlock) vertices, READS(uint) outside_cells, READS(uint) clearances,
-                       WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
+                       READS(ulong) memory, WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
-        const InsideLanes found = inside_lanes(pair, vertices + found_blocks[i].vertex_block, first);
+        const InsideLanes found =
+            inside_lanes(pair, source_block(pair, shapes, memory, found_blocks[i].vertex_block), first);
         READS(ShapeHeader) target = shapes + pair->target;
         const uint inside_mask = pack_vertices(found.inside);
         if (inside_mask == 0u) continue;
         uint lanes = inside_mask;
-        if (use_grid != 0u && target->grid_size[0] != 0u) lanes &= ~outside_lanes(&found, target, outside_cells);
-        if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~in_ball_lanes(&found, target, clearances);
+        if (use_grid != 0u && target->grid_size[0] != 0u) lanes &= ~outside_lanes(&found, target, memory);
+        if (lanes != 0u && use_grid != 0u && target->outward != 0u) lanes &= ~in_ball_lanes(&found, target, memory);
         ADD_TO(&found_blocks[i].lanes, lanes << first);
         ADD_TO(counts + i, bit_count(lanes));
         ADD_TO(counts + stride + i, bit_count(inside_mask));

@@ -20,10 +20,8 @@ STRUCT(Outcome) {
 // The arguments of a kernel that follows rays.
 STRUCT(Follow) {
     RayArrays all;
-    READS(Face) faces;
     READS(DirectedPair) pairs;
     READS(float) cullings; // by pair, metres; below 0: no predictive rays
-    READS(VertexBlock) vertices;
     READS(Ray) rays;
     READS(uint) starts;
     WRITES(uint) nexts; // this and hows: see Outcome
@@ -33,8 +31,9 @@ STRUCT(Follow) {
 
 STRUCT(FollowedRay) {
     SourceRay own;
-    uint pair, target, start;
-    uint inside; // the bounds, and not AHEAD_ONLY: it may be in contact
+    uint pair, start;
+    READS(ShapeHeader) shape; // the target's
+    uint inside;              // the bounds, and not AHEAD_ONLY: it may be in contact
     float culling;
 };
 
@@ -42,9 +41,9 @@ DEVICE FollowedRay followed_ray(const Follow* follow, uint i) {
     const Ray ray = follow->rays[i];
     READS(DirectedPair) pair = follow->pairs + ray.pair;
     FollowedRay followed;
-    followed.own = source_ray(pair, follow->vertices, ray.vertex_lane);
+    followed.own = source_ray(pair, follow->all.shapes, follow->all.memory, ray.vertex_lane);
     followed.pair = ray.pair;
-    followed.target = pair->target;
+    followed.shape = follow->all.shapes + pair->target;
     followed.start = follow->starts[i];
     followed.inside = (uint)in_bounds(pair, followed.own.position) & (uint)(followed.start != AHEAD_ONLY);
     followed.culling = follow->cullings[ray.pair];
@@ -66,15 +65,15 @@ DEVICE uint predicted(const Closest* ahead, float culling) {
 // Casts the ray in full with the basic caster and, if it is no contact, predicts the face ahead.
 DEVICE Outcome cast_basic(const Follow* follow, const FollowedRay* followed) {
     const SourceRay* ray = &followed->own;
-    READS(ShapeHeader) shape = follow->all.shapes + followed->target;
+    READS(ShapeHeader) shape = followed->shape;
     const RayFrame frame = frame_ray(ray->position, ray->direction, false);
     Closest closest = nothing_hit(ray->reach, shape->tolerance);
     Closest ahead = nothing_hit(followed->culling, shape->tolerance);
     if (follow->predictive != 0u && followed->culling >= 0.0f) {
         const RayFrame opposite = frame_ray(ray->position, ray->direction, true);
-        traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, follow->all.blocks);
+        traverse_basic_line(&closest, &frame, &ahead, &opposite, shape, follow->all.memory);
     } else if (followed->inside != 0u) {
-        traverse_basic(&closest, &frame, 1u, shape, follow->all.blocks);
+        traverse_basic(&closest, &frame, 1u, shape, follow->all.memory);
     }
     const Hit hit = followed->inside != 0u ? decide(&follow->all, CASTER_BASIC, ray, &closest, shape) : no_contact(0u);
     const Outcome end = {hit, hit.triangle != NONE ? hit.triangle : predicted(&ahead, followed->culling), CAST};
@@ -118,15 +117,16 @@ DEVICE Passage pass_triangle(const RayFrame* ray, READS(TriangleBlock) block, ui
 // the ray must be cast in full, since no walk begins or, with cast_lost, since the walk is lost.
 DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
     const SourceRay* ray = &followed->own;
-    READS(ShapeHeader) shape = follow->all.shapes + followed->target;
-    READS(TriangleBlock) blocks = follow->all.blocks + shape->triangle_block_first;
+    READS(ShapeHeader) shape = followed->shape;
+    READS(TriangleBlock) blocks = AT(follow->all.memory, TriangleBlock, shape->triangle_blocks);
+    READS(Face) faces = AT(follow->all.memory, Face, shape->faces);
     Outcome end = {no_contact(0u), NONE, CAST};
     if (followed->start >= AHEAD_ONLY) return end;
     end.how = WALKED | LOST | (follow->cast_lost != 0u ? CAST : 0u);
     const RayFrame frame = frame_ray(ray->position, ray->direction, false);
     uint at = followed->start, came_from = NONE;
     for (uint i = 0u; i < follow->max_iterations; ++i) {
-        const Face face = follow->faces[shape->face_first + at];
+        const Face face = faces[at];
         if (face.triangle_lane == NONE) return end;
         uint came_by = NONE;
         for (uint e = 0u; e < 3u; ++e)
@@ -155,16 +155,16 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
 // the bounds of the look. By pair: `reach`: that distance; `margins`: with at most this safe distance a vertex could be
 // in contact. The upper half of PairBlock.lanes marks vertices whose own ray must be cast. counts: see count_rays().
 KERNEL void count_near_rays(COUNT(count), uint stride, READS(DirectedPair) wide, READS(float) reach,
-                            READS(float) margins, READS(ShapeHeader) shapes, READS(VertexBlock) vertices,
-                            READS(uint) clearances, WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
+                            READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
+                            WRITES(PairBlock) near_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = wide + near_blocks[i].pair;
         READS(ShapeHeader) target = shapes + pair->target;
         const float near = reach[near_blocks[i].pair], margin = margins[near_blocks[i].pair];
-        READS(VertexBlock) block = vertices + near_blocks[i].vertex_block;
+        READS(VertexBlock) block = source_block(pair, shapes, memory, near_blocks[i].vertex_block);
         const InsideLanes held = inside_lanes(pair, block, first);
         float safe[VERTICES_AT_ONCE];
-        safe_lanes(safe, &held, pair, block, first, target, clearances);
+        safe_lanes(safe, &held, pair, block, first, target, memory);
         int close[VERTICES_AT_ONCE], unsafe[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
             close[k] = -(int)!(safe[k] > near);
@@ -226,7 +226,7 @@ DEVICE_BATCH void cast_group_in_full(const Follow* follow, RayGroup* casting, Ra
         follow->nexts[at] = follow->all.hits[at].triangle;
         if (follow->predictive == 0u || follow->nexts[at] != NONE || culling < 0.0f) continue;
         const SourceRay source = ray_of(casting, r);
-        add_ray(ahead, at, &source, culling, pair, casting->target[r], follow->all.shapes);
+        add_ray(ahead, at, &source, culling, pair, casting->shape[r]);
         if (is_full(ahead)) cast_ahead(follow, ahead);
     }
     casting->count = 0u;
@@ -234,12 +234,18 @@ DEVICE_BATCH void cast_group_in_full(const Follow* follow, RayGroup* casting, Ra
 
 KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
                             READS(DirectedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
-                            READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
-                            READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
-                            WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
-    const RayArrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
-    const Follow follow = {all,    faces, pairs, cullings,       vertices,   rays,
-                           starts, nexts, hows,  max_iterations, predictive, cast_lost};
+                            READS(ulong) memory, READS(Ray) rays, READS(uint) starts, WRITES(Hit) hits,
+                            WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
+    const Follow follow = {{shapes, memory, stride, hits, outcomes},
+                           pairs,
+                           cullings,
+                           rays,
+                           starts,
+                           nexts,
+                           hows,
+                           max_iterations,
+                           predictive,
+                           cast_lost};
     RayGroup casting, ahead;
     clear_group(&casting);
     clear_group(&ahead);
@@ -249,10 +255,10 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
         record_outcome(&follow, i, end);
         if ((end.how & CAST) == 0u) continue;
         if (ray.inside != 0u) {
-            add_ray(&casting, i, &ray.own, ray.own.reach, ray.pair, ray.target, shapes);
+            add_ray(&casting, i, &ray.own, ray.own.reach, ray.pair, ray.shape);
             if (is_full(&casting)) cast_group_in_full(&follow, &casting, &ahead);
         } else if (predictive != 0u && end.next == NONE && ray.culling >= 0.0f) {
-            add_ray(&ahead, i, &ray.own, ray.culling, ray.pair, ray.target, shapes);
+            add_ray(&ahead, i, &ray.own, ray.culling, ray.pair, ray.shape);
             if (is_full(&ahead)) cast_ahead(&follow, &ahead);
         }
     }
@@ -264,12 +270,18 @@ KERNEL void follow_rays_bvh(COUNT(count), uint max_iterations, uint predictive, 
 
 KERNEL void follow_rays_basic(COUNT(count), uint max_iterations, uint predictive, uint cast_lost, uint stride,
                               READS(DirectedPair) pairs, READS(float) cullings, READS(ShapeHeader) shapes,
-                              READS(VertexBlock) vertices, READS(Node) nodes, READS(TriangleBlock) blocks,
-                              READS(Face) faces, READS(Packed3) normals, READS(Ray) rays, READS(uint) starts,
-                              WRITES(Hit) hits, WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
-    const RayArrays all = {shapes, nodes, blocks, normals, stride, hits, outcomes};
-    const Follow follow = {all,    faces, pairs, cullings,       vertices,   rays,
-                           starts, nexts, hows,  max_iterations, predictive, cast_lost};
+                              READS(ulong) memory, READS(Ray) rays, READS(uint) starts, WRITES(Hit) hits,
+                              WRITES(uint) outcomes, WRITES(uint) nexts, WRITES(uint) hows) {
+    const Follow follow = {{shapes, memory, stride, hits, outcomes},
+                           pairs,
+                           cullings,
+                           rays,
+                           starts,
+                           nexts,
+                           hows,
+                           max_iterations,
+                           predictive,
+                           cast_lost};
     FOR_EACH(i, count) {
         const FollowedRay ray = followed_ray(&follow, i);
         Outcome end = follow_ray(&follow, &ray);

@@ -33,9 +33,9 @@ DEVICE void prefetch_triangle(READS(TriangleBlock) block, uint lane) {
 }
 
 DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const SourceRay* ray, const Held* held,
-                     READS(HeldRange) held_range, uint pair, uint target) {
+                     READS(HeldRange) held_range, uint pair, READS(ShapeHeader) shape) {
     const uint r = group->rays.count;
-    add_ray(&group->rays, at, ray, ray->reach, pair, target, arrays->shapes);
+    add_ray(&group->rays, at, ray, ray->reach, pair, shape);
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = held->position[i];
         group->direction[i][r] = held->direction[i];
@@ -47,18 +47,20 @@ DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const S
     group->triangle_lane[r] = held->triangle;
     group->cap[r] = 0u;
     if (held->triangle == NONE) return;
-    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + held->triangle / TRIANGLE_LANES;
-    prefetch_triangle(block, held->triangle % TRIANGLE_LANES);
-    if (held_range->tests_caps != 0u) PREFETCH(block->cap, held->triangle % TRIANGLE_LANES);
+    READS(TriangleBlock) blocks = AT(arrays->memory, TriangleBlock, shape->triangle_blocks);
+    prefetch_triangle(blocks + held->triangle / TRIANGLE_LANES, held->triangle % TRIANGLE_LANES);
+    if (held_range->tests_caps != 0u) PREFETCH(AT(arrays->memory, uint, shape->caps), held->triangle);
 }
 
 DEVICE void fetch_triangle(const RayArrays* arrays, HeldGroup* group, uint r) {
     const uint triangle_lane = group->triangle_lane[r], lane = triangle_lane % TRIANGLE_LANES;
-    READS(TriangleBlock) block = arrays->blocks + group->rays.block_first[r] + triangle_lane / TRIANGLE_LANES;
+    READS(ShapeHeader) shape = group->rays.shape[r];
+    READS(TriangleBlock)
+    block = AT(arrays->memory, TriangleBlock, shape->triangle_blocks) + triangle_lane / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
-    group->cap[r] = group->tests_cap[r] != 0u ? block->cap[lane] : 0u;
-    PREFETCH(arrays->normals, arrays->shapes[group->rays.target[r]].normal_first + group->triangle[r]);
+    group->cap[r] = group->tests_cap[r] != 0u ? AT(arrays->memory, uint, shape->caps)[triangle_lane] : 0u;
+    PREFETCH(AT(arrays->memory, Packed3, shape->face_normals), group->triangle[r]);
 }
 
 // Loads what add_held() has prefetched.
@@ -132,7 +134,7 @@ DEVICE void test_held(HeldGroup* group) {
 // The result of decide(). A single triangle cannot be confused with another, so no other direction is cast.
 DEVICE Hit held_hit(const RayArrays* arrays, const HeldGroup* group, uint r) {
     const SourceRay ray = ray_of(&group->rays, r);
-    return group->is_hit[r] != 0u ? hit_of(arrays, &ray, arrays->shapes + group->rays.target[r], group->triangle[r],
-                                           group->distance[r], 0u)
-                                  : no_contact(0u);
+    return group->is_hit[r] != 0u
+               ? hit_of(arrays, &ray, group->rays.shape[r], group->triangle[r], group->distance[r], 0u)
+               : no_contact(0u);
 }

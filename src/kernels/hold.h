@@ -42,7 +42,7 @@ DEVICE_BATCH Held seek_tube(const RayArrays* arrays, const SourceRay* ray, const
     const float end = met + held_range->radius < ray->reach ? met + held_range->radius : ray->reach;
     if (held_range->radius <= 0.0f || end >= UNBOUNDED) return held;
     const Tube tube = tube_of(ray, end, held_range->radius);
-    const Neighbours found = search_tube(&tube, shape, arrays->nodes, arrays->blocks);
+    const Neighbours found = search_tube(&tube, shape, arrays->memory);
     const float safe = found.second - held_range->margin;
     if (safe > WORTH_HOLDING * held_range->radius) {
         held.safe = safe;
@@ -57,7 +57,6 @@ DEVICE_BATCH Held seek_tube(const RayArrays* arrays, const SourceRay* ray, const
 // before, after: what was kept of rays in the last step, and what is kept in this one; not written for idle pairs.
 STRUCT(Holding) {
     RayArrays all;
-    READS(Face) faces;
     READS(HeldRange) held_ranges; // by pair
     READS(Held) before;
     WRITES(Held) after;
@@ -74,19 +73,19 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
         const uint at = waiting->at[r];
         const SourceRay source = ray_of(waiting, r);
         const Hit hit = hold->all.hits[at];
-        READS(ShapeHeader) shape = hold->all.shapes + waiting->target[r];
+        READS(ShapeHeader) shape = waiting->shape[r];
         Held held = hold->after[at];
         const uint vertex_lane = held.vertex_lane;
         const bool had_tube = held.safe > 0.0f;
         const float waits = had_tube ? 0.0f : held.limit - 1.0f;
         held.limit = waits;
         const bool met = hit.triangle != NONE && held_range->tests_caps != 0u;
-        const uint lane_met = met ? hold->faces[shape->face_first + hit.triangle].triangle_lane : NONE;
+        const uint lane_met = met ? AT(hold->all.memory, Face, shape->faces)[hit.triangle].triangle_lane : NONE;
         // The cap of the triangle that the ray meets was tested and did not decide: an edge or the surface is near. A
         // tube may.
         const bool cap_failed = !had_tube && held.triangle == lane_met;
         if (lane_met != NONE && !cap_failed
-            && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.blocks, lane_met)) {
+            && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.memory, lane_met)) {
             held = nothing_held(vertex_lane);
             held.triangle = lane_met;
         } else if (!(waits > 0.0f)) {
@@ -99,8 +98,9 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
 }
 
 // Does not test the outside grid: most such rays would wait for a cell that decides nothing.
-DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const SourceRay* ray, uint pair, uint target) {
-    add_ray(waiting, at, ray, ray->reach, pair, target, hold->all.shapes);
+DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const SourceRay* ray, uint pair,
+                       READS(ShapeHeader) shape) {
+    add_ray(waiting, at, ray, ray->reach, pair, shape);
     if (is_full(waiting)) cast_waiting(hold, waiting);
 }
 
@@ -108,12 +108,12 @@ DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const So
 DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* waiting) {
     const RayGroup* rays = &group->rays;
     fetch_triangles(&hold->all, group);
-    test_tubes_and_caps(&hold->all, hold->faces, group);
+    test_tubes_and_caps(&hold->all, group);
     for (uint r = 0u; r < rays->count; ++r) {
         const uint at = rays->at[r];
         if (group->is_known[r] == 0u) {
             const SourceRay source = ray_of(rays, r);
-            cast_later(hold, waiting, at, &source, rays->pair[r], rays->target[r]);
+            cast_later(hold, waiting, at, &source, rays->pair[r], rays->shape[r]);
             continue;
         }
         record_hit(&hold->all, at, held_hit(&hold->all, group, r), 0u);
@@ -128,7 +128,7 @@ DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* w
 
 // Adds a ray inside the bounds to the group if a tube or a cap may decide it. Returns whether it did.
 DEVICE bool add_if_kept(const Holding* hold, HeldGroup* group, uint at, const Ray ray, const SourceRay* source,
-                        uint target, bool inside) {
+                        READS(ShapeHeader) shape, bool inside) {
     READS(HeldRange) held_range = hold->held_ranges + ray.pair;
     if (is_idle(held_range)) return false;
     READS(Held) own = hold->before + held_range->first;
@@ -142,16 +142,15 @@ DEVICE bool add_if_kept(const Holding* hold, HeldGroup* group, uint at, const Ra
     if (capped && known.safe <= 0.0f && known.triangle == NONE)
         known.triangle = triangle_nearby(own, held_range->count, place);
     if (!inside || !(known.safe > 0.0f || (capped && known.triangle != NONE))) return false;
-    add_held(&hold->all, group, at, source, &known, held_range, ray.pair, target);
+    add_held(&hold->all, group, at, source, &known, held_range, ray.pair, shape);
     return true;
 }
 
 // Gives the hits of cast_rays_bvh, bit for bit; vertices outside the bounds have none.
 KERNEL void hold_rays(COUNT(count), uint stride, READS(DirectedPair) pairs, READS(HeldRange) held_ranges,
-                      READS(ShapeHeader) shapes, READS(VertexBlock) vertices, READS(Node) nodes,
-                      READS(TriangleBlock) blocks, READS(Face) faces, READS(Packed3) normals, READS(Ray) rays,
-                      READS(Held) before, WRITES(Held) after, WRITES(Hit) hits, WRITES(uint) outcomes) {
-    const Holding hold = {{shapes, nodes, blocks, normals, stride, hits, outcomes}, faces, held_ranges, before, after};
+                      READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays, READS(Held) before,
+                      WRITES(Held) after, WRITES(Hit) hits, WRITES(uint) outcomes) {
+    const Holding hold = {{shapes, memory, stride, hits, outcomes}, held_ranges, before, after};
     RayGroup waiting;
     HeldGroup group{};
     clear_group(&waiting);
@@ -161,13 +160,13 @@ KERNEL void hold_rays(COUNT(count), uint stride, READS(DirectedPair) pairs, READ
             PREFETCH(pairs, rays[i + 8u].pair);
             PREFETCH(held_ranges, rays[i + 8u].pair);
         }
-        const uint target = pairs[ray.pair].target;
-        const SourceRay source = source_ray(pairs + ray.pair, vertices, ray.vertex_lane);
+        READS(ShapeHeader) shape = shapes + pairs[ray.pair].target;
+        const SourceRay source = source_ray(pairs + ray.pair, shapes, memory, ray.vertex_lane);
         const bool inside = in_bounds(pairs + ray.pair, source.position);
-        if (add_if_kept(&hold, &group, i, ray, &source, target, inside)) {
+        if (add_if_kept(&hold, &group, i, ray, &source, shape, inside)) {
             if (is_full(&group.rays)) decide_held(&hold, &group, &waiting);
         } else if (inside) {
-            cast_later(&hold, &waiting, i, &source, ray.pair, target);
+            cast_later(&hold, &waiting, i, &source, ray.pair, shape);
         } else {
             record_hit(&hold.all, i, no_contact(0u), 0u);
         }

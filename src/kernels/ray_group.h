@@ -10,9 +10,9 @@ STRUCT(RayGroup) {
     uint axis[3][RAYS_IN_GROUP];
     float reach[RAYS_IN_GROUP];
     float length[RAYS_IN_GROUP], tolerance[RAYS_IN_GROUP]; // metres; the group is cast no farther than `length`
-    uint pair[RAYS_IN_GROUP], target[RAYS_IN_GROUP];
-    uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
-    uint at[RAYS_IN_GROUP]; // index of the ray
+    uint pair[RAYS_IN_GROUP];
+    READS(ShapeHeader) shape[RAYS_IN_GROUP]; // the target's
+    uint at[RAYS_IN_GROUP];                  // index of the ray
     uint count;
 };
 
@@ -24,10 +24,8 @@ DEVICE void clear_group(RayGroup* group) {
 }
 
 // at: index of the ray.
-DEVICE void add_ray(RayGroup* group, uint at, const SourceRay* ray, float reach, uint pair, uint target,
-                    READS(ShapeHeader) shapes) {
+DEVICE void add_ray(RayGroup* group, uint at, const SourceRay* ray, float reach, uint pair, READS(ShapeHeader) shape) {
     const uint r = group->count;
-    READS(ShapeHeader) shape = shapes + target;
     for (int i = 0; i < 3; ++i) {
         group->position[i][r] = ray->position[i];
         group->direction[i][r] = ray->direction[i];
@@ -36,9 +34,7 @@ DEVICE void add_ray(RayGroup* group, uint at, const SourceRay* ray, float reach,
     group->length[r] = reach < UNBOUNDED ? reach : ENDLESS_TOLERANCES * shape->tolerance;
     group->tolerance[r] = shape->tolerance;
     group->pair[r] = pair;
-    group->target[r] = target;
-    group->node_first[r] = shape->node_first;
-    group->block_first[r] = shape->triangle_block_first;
+    group->shape[r] = shape;
     group->at[r] = at;
     group->count = r + 1u;
 }

@@ -7,10 +7,16 @@ STRUCT(SourceRay) {
     float reach;
 };
 
-// vertex_lane: of the vertex, absolute: VERTEX_LANES * vertex block + lane.
-DEVICE SourceRay source_ray(READS(DirectedPair) pair, READS(VertexBlock) vertices, uint vertex_lane) {
+DEVICE GLOBAL const VertexBlock* source_block(READS(DirectedPair) pair, READS(ShapeHeader) shapes, READS(ulong) memory,
+                                              uint vertex_block) {
+    return AT(memory, VertexBlock, shapes[pair->source].vertex_blocks) + vertex_block;
+}
+
+// vertex_lane: VERTEX_LANES * vertex block + lane.
+DEVICE SourceRay source_ray(READS(DirectedPair) pair, READS(ShapeHeader) shapes, READS(ulong) memory,
+                            uint vertex_lane) {
     SourceRay ray;
-    READS(VertexBlock) block = vertices + vertex_lane / VERTEX_LANES;
+    READS(VertexBlock) block = source_block(pair, shapes, memory, vertex_lane / VERTEX_LANES);
     const uint lane = vertex_lane % VERTEX_LANES;
     READS(float) r = pair->rotation;
     const float x = block->position[0][lane], y = block->position[1][lane], z = block->position[2][lane];

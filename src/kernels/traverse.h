@@ -18,9 +18,9 @@ DEVICE void hit_lanes(Closest* closest, const RayFrame* ray, READS(TriangleBlock
 // All rays against the same shape. Lanes that pass are stored without a branch, since a misprediction would discard the
 // tests already begun; each ray still takes them in their order.
 DEVICE void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_count, READS(ShapeHeader) shape,
-                           READS(TriangleBlock) blocks) {
+                           READS(ulong) memory) {
     for (uint first = 0u; first < shape->triangle_block_count; first += BLOCKS_AHEAD) {
-        READS(TriangleBlock) ahead = blocks + shape->triangle_block_first + first;
+        READS(TriangleBlock) ahead = AT(memory, TriangleBlock, shape->triangle_blocks) + first;
         const uint left = shape->triangle_block_count - first;
         const uint block_count = left < BLOCKS_AHEAD ? left : BLOCKS_AHEAD;
         uint waiting[RAYS_AT_ONCE];
@@ -46,9 +46,9 @@ DEVICE void traverse_basic(Closest* closest, const RayFrame* rays, uint ray_coun
 // A ray and its opposite in one pass (paper section 5.3): the block test covers the line in both directions, so the
 // second ray costs only its exact tests.
 DEVICE void traverse_basic_line(Closest* closest, const RayFrame* ray, Closest* ahead, const RayFrame* opposite,
-                                READS(ShapeHeader) shape, READS(TriangleBlock) blocks) {
+                                READS(ShapeHeader) shape, READS(ulong) memory) {
     for (uint b = 0u; b < shape->triangle_block_count; ++b) {
-        READS(TriangleBlock) block = blocks + shape->triangle_block_first + b;
+        READS(TriangleBlock) block = AT(memory, TriangleBlock, shape->triangle_blocks) + b;
         const uint lanes = hit_block(closest, ray, block, shape->tolerance, false);
         if (lanes != 0u) {
             hit_lanes(closest, ray, block, lanes, shape->tolerance, false);
@@ -127,17 +127,17 @@ DEVICE void go_up(Descent* way, READS(Node) tree) {
 }
 
 // By value: the address of a caller's struct would be one in local memory on a GPU.
-DEVICE_CALL Closest traverse_bvh(const RayFrame given, float reach, READS(ShapeHeader) shape, READS(Node) nodes,
-                                 READS(TriangleBlock) blocks) {
+DEVICE_CALL Closest traverse_bvh(const RayFrame given, float reach, READS(ShapeHeader) shape, READS(ulong) memory) {
     const RayFrame* ray = &given;
     Closest closest = nothing_hit(reach, shape->tolerance);
-    READS(Node) tree = nodes + shape->node_first;
+    READS(Node) tree = AT(memory, Node, shape->nodes);
+    READS(TriangleBlock) blocks = AT(memory, TriangleBlock, shape->triangle_blocks);
     Descent way = {0u, 0u, hit_children(ray, tree, closest.limit, shape->tolerance)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
-                READS(TriangleBlock) block = blocks + shape->triangle_block_first + (child & ~LEAF);
+                READS(TriangleBlock) block = blocks + (child & ~LEAF);
                 const uint lanes = hit_block(&closest, ray, block, shape->tolerance, true);
                 hit_lanes(&closest, ray, block, lanes, shape->tolerance, true);
             } else {

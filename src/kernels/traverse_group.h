@@ -10,7 +10,8 @@
 STRUCT(Runs) {
     float box[RAYS_IN_GROUP][6]; // lower x y z, upper x y z
     uint rays[RAYS_IN_GROUP];    // a bit each
-    uint node_first[RAYS_IN_GROUP], block_first[RAYS_IN_GROUP];
+    READS(Node) tree[RAYS_IN_GROUP];
+    READS(TriangleBlock) blocks[RAYS_IN_GROUP];
     uint count;
 };
 
@@ -28,7 +29,7 @@ STRUCT(NearLeaves) {
 };
 
 // The box of a run contains its rays up to their lengths, and as far beyond either end as they are tested.
-DEVICE void find_runs(Runs* runs, const RayGroup* group) {
+DEVICE void find_runs(Runs* runs, const RayGroup* group, READS(ulong) memory) {
     float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(r, RAYS_IN_GROUP) {
@@ -44,8 +45,8 @@ DEVICE void find_runs(Runs* runs, const RayGroup* group) {
         if (begins) {
             ++run;
             runs->rays[run] = 0u;
-            runs->node_first[run] = group->node_first[r];
-            runs->block_first[run] = group->block_first[r];
+            runs->tree[run] = AT(memory, Node, group->shape[r]->nodes);
+            runs->blocks[run] = AT(memory, TriangleBlock, group->shape[r]->triangle_blocks);
         }
         float* box = runs->box[run];
         for (int i = 0; i < 3; ++i) {
@@ -66,7 +67,7 @@ DEVICE ulong four_sixteens(const uint* masks, uint first, uint count) {
 }
 
 // Traverses the trees, all runs a level at a time. Returns a bit for each run whose leaves are not all found.
-DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) nodes) {
+DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
     Visits levels[2];
     uint near[GROUP_VISITS];
     uint full = 0u, level = 0u;
@@ -74,7 +75,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
     levels[0].count = runs->count;
     for (uint i = 0u; i < runs->count; ++i) {
         levels[0].who[i] = i;
-        levels[0].at[i] = runs->node_first[i];
+        levels[0].at[i] = 0u;
     }
     while (levels[level].count != 0u) {
         const Visits* visits = levels + level;
@@ -84,7 +85,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
         for (uint i = 0u; i < visits->count; ++i)
             near[i] = ((full >> visits->who[i]) & 1u) != 0u
                           ? 0u // it would take the room of others
-                          : children_in(runs->box[visits->who[i]], nodes + visits->at[i]);
+                          : children_in(runs->box[visits->who[i]], runs->tree[visits->who[i]] + visits->at[i]);
         for (uint i = 0u; i < visits->count; i += 4u) {
             ulong left = four_sixteens(near, i, visits->count);
             const uint most = bit_count_of_long(left);
@@ -97,14 +98,14 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs, READS(Node) n
             for (; left != 0u; left &= left - 1u) {
                 const uint bit = lowest_bit_of_long(left), j = i + bit / 16u, lane = bit % 16u;
                 const uint run = visits->who[j], node = visits->at[j];
-                const uint child = nodes[node].child[lane], leaf = (uint)((child & LEAF) != 0u);
+                const uint child = runs->tree[run][node].child[lane], leaf = (uint)((child & LEAF) != 0u);
                 leaves->run[leaves->count] = run;
                 leaves->node[leaves->count] = node;
                 leaves->lane[leaves->count] = lane;
-                leaves->block[leaves->count] = runs->block_first[run] + (child & ~LEAF);
+                leaves->block[leaves->count] = child & ~LEAF;
                 leaves->count += leaf;
                 below->who[below->count] = run;
-                below->at[below->count] = runs->node_first[run] + child;
+                below->at[below->count] = child;
                 below->count += 1u - leaf;
             }
         }
@@ -133,27 +134,27 @@ DEVICE uint rays_that_meet(const RayGroup* group, READS(Node) node, uint lane) {
 
 // The closest hits of a framed group, not farther than each ray's length. Returns a bit for each ray that must be cast
 // by itself, because there was no room for its leaves.
-DEVICE uint traverse_group(Closest* closest, const RayGroup* group, READS(Node) nodes, READS(TriangleBlock) blocks) {
+DEVICE uint traverse_group(Closest* closest, const RayGroup* group, READS(ulong) memory) {
     Runs runs;
     NearLeaves near;
     uint full = 0u;
     for (uint r = 0u; r < group->count; ++r) closest[r] = nothing_hit(group->length[r], group->tolerance[r]);
-    find_runs(&runs, group);
-    for (uint lost = find_near_leaves(&near, &runs, nodes); lost != 0u; lost &= lost - 1u)
-        full |= runs.rays[lowest_bit(lost)];
+    find_runs(&runs, group, memory);
+    for (uint lost = find_near_leaves(&near, &runs); lost != 0u; lost &= lost - 1u) full |= runs.rays[lowest_bit(lost)];
     for (uint i = 0u; i < near.count; ++i) {
-        const uint meets = rays_that_meet(group, nodes + near.node[i], near.lane[i]);
+        const uint meets = rays_that_meet(group, runs.tree[near.run[i]] + near.node[i], near.lane[i]);
         near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
     }
     // The leaves of a fine mesh do not fit the caches.
     for (uint i = 0u; i < near.count; ++i) {
         if (near.meets[i] == 0u) continue;
-        for (uint j = 0u; j < 9u; ++j) PREFETCH((GLOBAL const float*)(blocks + near.block[i]), TRIANGLE_LANES * j);
+        for (uint j = 0u; j < 9u; ++j)
+            PREFETCH((GLOBAL const float*)(runs.blocks[near.run[i]] + near.block[i]), TRIANGLE_LANES * j);
     }
     for (uint i = 0u; i < near.count; i += 4u) {
         for (ulong left = four_sixteens(near.meets, i, near.count); left != 0u; left &= left - 1u) {
-            const uint bit = lowest_bit_of_long(left), r = bit % 16u;
-            READS(TriangleBlock) block = blocks + near.block[i + bit / 16u];
+            const uint bit = lowest_bit_of_long(left), r = bit % 16u, leaf = i + bit / 16u;
+            READS(TriangleBlock) block = runs.blocks[near.run[leaf]] + near.block[leaf];
             const RayFrame frame = frame_of(group, r);
             const uint lanes = hit_block(closest + r, &frame, block, group->tolerance[r], true);
             hit_lanes(closest + r, &frame, block, lanes, group->tolerance[r], true);

@@ -134,19 +134,19 @@ DEVICE uint children_in_tube(const Tube* tube, READS(Node) node) {
 }
 
 // Searches all triangles in the tube.
-DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(Node) nodes,
-                                   READS(TriangleBlock) blocks) {
+DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(ulong) memory) {
     Neighbours found;
     found.least = found.second = tube->radius;
     found.triangle_lane = NONE;
-    READS(Node) tree = nodes + shape->node_first;
+    READS(Node) tree = AT(memory, Node, shape->nodes);
+    READS(TriangleBlock) blocks = AT(memory, TriangleBlock, shape->triangle_blocks);
     Descent way = {0u, 0u, children_in_tube(tube, tree)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
                 const uint index = child & ~LEAF;
-                nearest_lanes(&found, tube, blocks + shape->triangle_block_first + index, index);
+                nearest_lanes(&found, tube, blocks + index, index);
             } else {
                 go_down(&way, child, children_in_tube(tube, tree + child));
             }

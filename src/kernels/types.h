@@ -8,6 +8,10 @@
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \
     struct name
+// Rows of lanes, each of a cache line.
+#define STRUCT_OF_ROWS(name)                                                                                           \
+    typedef struct name name;                                                                                          \
+    struct IN_LINES name
 
 #define TRIANGLE_LANES 16
 #define NODE_LANES 16
@@ -33,18 +37,16 @@
 #define WIRE_SIZE(type, bytes) typedef char wire_size_of_##type[sizeof(type) == (bytes) ? 1 : -1]
 
 // Sixteen triangles, structure of arrays; corner[3 * corner + axis][lane]. Empty lanes hold NaN, which fails every
-// test. cap: radii of the two balls in which all normals are close to the triangle's (cap.h), the narrow angle's in the
-// lower half; 0: none.
-STRUCT(TriangleBlock) {
+// test.
+STRUCT_OF_ROWS(TriangleBlock) {
     float corner[9][TRIANGLE_LANES];
     uint triangle[TRIANGLE_LANES];
-    uint cap[TRIANGLE_LANES];
 };
-WIRE_SIZE(TriangleBlock, 704);
+WIRE_SIZE(TriangleBlock, 640);
 
 // Sixteen child boxes, grown by the rounding error of a ray test (docs/design.md). bounds[axis] are the lower planes,
 // bounds[3 + axis] the upper ones. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
-STRUCT(Node) {
+STRUCT_OF_ROWS(Node) {
     float bounds[6][NODE_LANES];
     uint child[NODE_LANES];
     uint parent;
@@ -55,7 +57,7 @@ WIRE_SIZE(Node, 512);
 // Sixteen vertices that cast rays. direction: the inward normal. exit: distance at which the ray leaves its own mesh.
 // Or sixteen edges. position: the middle. direction: from there to the end. exit: its length. vertex: 3 x the edge's
 // lowest triangle + its first corner.
-STRUCT(VertexBlock) {
+STRUCT_OF_ROWS(VertexBlock) {
     float position[3][VERTEX_LANES];
     float direction[3][VERTEX_LANES];
     float exit[VERTEX_LANES];
@@ -64,11 +66,24 @@ STRUCT(VertexBlock) {
 WIRE_SIZE(VertexBlock, 512);
 
 // Boxes of sixteen blocks of the level below: centre and half size. Empty lanes hold NaN.
-STRUCT(ClusterBlock) {
+STRUCT_OF_ROWS(ClusterBlock) {
     float centre[3][VERTEX_LANES];
     float half_size[3][VERTEX_LANES];
 };
 WIRE_SIZE(ClusterBlock, 384);
+
+// Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
+// its edges 0-1, 1-2, 2-0 (NONE at a border).
+STRUCT(Face) {
+    uint triangle_lane;
+    uint neighbour[3];
+};
+WIRE_SIZE(Face, 16);
+
+STRUCT(Packed3) {
+    float x, y, z;
+};
+WIRE_SIZE(Packed3, 12);
 
 // The vertices, or the edges, of a shape as sources: their blocks, and the tree of clusters above these.
 STRUCT(SourceTree) {
@@ -79,22 +94,26 @@ STRUCT(SourceTree) {
 };
 WIRE_SIZE(SourceTree, 44);
 
-// Where a shape's arrays begin in the device's buffers, and the rounding it allows for.
+// Where a shape's arrays are, and the rounding it allows for. A PLACE is an address where the host's memory is shared;
+// else the array is so many ulongs behind the beginning of the buffer that holds all shapes. AT() gives the array.
 STRUCT(ShapeHeader) {
-    uint node_first;
-    uint triangle_block_first;
+    PLACE(Node) nodes;
+    PLACE(TriangleBlock) triangle_blocks;
+    PLACE(Face) faces;           // by triangle
+    PLACE(Packed3) face_normals; // by triangle; outward
+    PLACE(VertexBlock) vertex_blocks;
+    PLACE(ClusterBlock) clusters;
+    PLACE(uint) outside_cells; // a bit for each cell, x fastest
+    PLACE(uint) clearances;    // x fastest
+    PLACE(uint) caps;          // by triangle_lane (cap.h); only where the host's memory is shared
     uint triangle_block_count;
     SourceTree vertices, edges;
-    uint normal_first;
     uint closed;
     uint outward;      // closed, winding number 1 inside, 0 outside: a vertex outside cannot touch
     float tolerance;   // metres: distances of two hits closer than this are not told apart
-    uint grid_first;   // words of outside_cells, a bit for each cell, x fastest
-    uint grid_size[3]; // cells; 0: no grid
+    uint grid_size[3]; // of outside_cells, cells; 0: no grid
     float grid_low[3];
-    float grid_scale; // cells a metre
-    uint face_first;
-    uint clearance_first;                      // words of clearances, x fastest
+    float grid_scale;                          // cells a metre
     uint clearance_size[3];                    // cells
     float clearance_low[3], clearance_high[3]; // a box around that of the shape
     float clearance_scale;                     // cells a metre
@@ -104,7 +123,7 @@ STRUCT(ShapeHeader) {
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
 };
-WIRE_SIZE(ShapeHeader, 236);
+WIRE_SIZE(ShapeHeader, 288);
 
 #include "kernels/body_place.h"
 
@@ -134,19 +153,11 @@ WIRE_SIZE(DirectedPair, 80);
 // A block of vertices or edges that may reach into its pair's target.
 STRUCT(PairBlock) {
     uint pair;
-    uint vertex_block; // absolute
+    uint vertex_block; // of the source
     uint lanes;        // a bit for each vertex or edge that is cast
     uint clear;        // of edges that are not: how far they stay so, in tolerances of the target (count_edges)
 };
 WIRE_SIZE(PairBlock, 16);
-
-// Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
-// its edges 0-1, 1-2, 2-0 (NONE at a border).
-STRUCT(Face) {
-    uint triangle_lane;
-    uint neighbour[3];
-};
-WIRE_SIZE(Face, 16);
 
 // A ray that is followed from step to step: its vertex, and the triangle it met last.
 STRUCT(Candidate) {
@@ -169,7 +180,7 @@ WIRE_SIZE(Followed, 20);
 // A vertex block that its pair watches. lanes: vertices that could be in contact; their rays are decided in each step.
 // The others cannot be in contact before the pair's clock exceeds `wake`.
 STRUCT(Watch) {
-    uint vertex_block; // absolute
+    uint vertex_block; // of the source
     float wake;        // metres
     uint lanes;
 };
@@ -245,11 +256,6 @@ STRUCT(Totals) {
     uint sums[MOST_COLUMNS];
 };
 WIRE_SIZE(Totals, 24);
-
-STRUCT(Packed3) {
-    float x, y, z;
-};
-WIRE_SIZE(Packed3, 12);
 
 STRUCT(LocalContact) {
     uint pair;

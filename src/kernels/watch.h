@@ -23,8 +23,7 @@ KERNEL void begin_watches(COUNT(count), READS(PairBlock) near_blocks, READS(uint
 STRUCT(Looking) {
     READS(DirectedPair) pairs;
     READS(ShapeHeader) shapes;
-    READS(VertexBlock) vertices;
-    READS(uint) clearances;
+    READS(ulong) memory;
     WRITES(Watch) watches;
 };
 
@@ -48,10 +47,10 @@ DEVICE_BATCH LookResult look_at_block(const Looking* in, const Segment segment, 
     WRITES(Watch) watch = in->watches + at;
     READS(DirectedPair) pair = in->pairs + segment.pair;
     READS(ShapeHeader) target = in->shapes + pair->target;
-    READS(VertexBlock) block = in->vertices + watch->vertex_block;
+    READS(VertexBlock) block = source_block(pair, in->shapes, in->memory, watch->vertex_block);
     const InsideLanes placed = inside_lanes(pair, block, 0u);
     float free[VERTEX_LANES];
-    safe_lanes(free, &placed, pair, block, 0u, target, in->clearances);
+    safe_lanes(free, &placed, pair, block, 0u, target, in->memory);
     int unsafe[VERTEX_LANES];
     float others[VERTEX_LANES];
     FOR_LANES(k, VERTEX_LANES) {
@@ -70,10 +69,10 @@ DEVICE_BATCH LookResult look_at_block(const Looking* in, const Segment segment, 
     return look_of(lanes, watch->wake, at - segment.first, 1u);
 }
 
-KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes,
-                            READS(VertexBlock) vertices, READS(uint) clearances, READS(Segment) segments,
-                            WRITES(Watch) watches, WRITES(LookResult) looks, WRITES(uint) rays) {
-    const Looking in = {pairs, shapes, vertices, clearances, watches};
+KERNEL void look_at_watches(COUNT(count), READS(DirectedPair) pairs, READS(ShapeHeader) shapes, READS(ulong) memory,
+                            READS(Segment) segments, WRITES(Watch) watches, WRITES(LookResult) looks,
+                            WRITES(uint) rays) {
+    const Looking in = {pairs, shapes, memory, watches};
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint line = 0u; line < 3u && s + 4u < count; ++line) PREFETCH(watches, segments[s + 4u].first + 5u * line);

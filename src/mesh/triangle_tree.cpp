@@ -193,7 +193,6 @@ private:
         for (std::size_t lane = 0; lane < block_size; ++lane) {
             const bool empty = lane >= items.size();
             block.triangle[lane] = empty ? NONE : items[lane].triangle;
-            block.cap[lane] = 0;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
                 const kernels::Packed3 p = empty ? kernels::Packed3{nan, nan, nan}

@@ -60,8 +60,8 @@ void Pipeline::gather(const Update& update) {
     const Array<kernels::LocalContact>& contacts = found_.room(update.device);
     batch_.outcomes.scan(update.device, batch_.count, batch_.totals, RayBatch::contact_sum, contacts.size());
     launch<KernelId::write_contacts>(update.device, items_of(batch_.totals, RayBatch::contact_sum, batch_.count.most),
-                                     *batch_.pairs, arrays.headers, arrays.vertex_blocks, arrays.face_normals,
-                                     batch_.rays, batch_.hits, batch_.outcomes.firsts(), contacts);
+                                     *batch_.pairs, arrays.headers, arrays.memory, batch_.rays, batch_.hits,
+                                     batch_.outcomes.firsts(), contacts);
 }
 
 // Waits for all launches, then reads the sums, the contacts and the near edges. False if the contacts had too little
@@ -136,16 +136,15 @@ void Pipeline::list_asked(const Update& update) {
 
 std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {
     if (finds(last) != Finds::coherent) return {};
-    return coherent_.take_out(last.device, last.shapes, last.bodies, pairs);
+    return coherent_.take_out(last.device, pairs);
 }
 
 void Pipeline::put_in(const Update& last, std::span<const std::byte> bytes) {
-    if (!bytes.empty()) coherent_.put_in(last.device, last.shapes, last.bodies, bytes);
+    if (!bytes.empty()) coherent_.put_in(last.device, bytes);
 }
 
 void Pipeline::list_kept_rays(const Update& last, std::vector<KeptRay>& rays) {
-    if (finds(last) == Finds::coherent)
-        coherent_.list_kept_rays(last.device, last.shapes, last.bodies, last.pairs, rays);
+    if (finds(last) == Finds::coherent) coherent_.list_kept_rays(last.device, last.bodies, last.pairs, rays);
 }
 
 void Pipeline::count(const Update& last, StepStats& stats) const {

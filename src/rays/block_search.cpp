@@ -29,8 +29,7 @@ void BlockSearch::count(const Update& update, const Array<kernels::DirectedPair>
     block_masks_.resize(update.device, MASK_WORDS * pair_count);
     safe_distances_.resize(update.device, horizons.size());
     launch<KernelId::count_clusters>(update.device, pair_count, static_cast<kernels::uint>(sources_), pairs, horizons,
-                                     arrays.headers, arrays.clusters, arrays.clearances, counts_.values(),
-                                     safe_distances_, block_masks_);
+                                     arrays.headers, arrays.memory, counts_.values(), safe_distances_, block_masks_);
     counts_.scan(update.device, pair_count, totals, at, room);
 }
 
@@ -38,8 +37,8 @@ void BlockSearch::write(const Update& update, const Array<kernels::DirectedPair>
                         const Array<float>& horizons) const {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::write_clusters>(update.device, items, static_cast<kernels::uint>(sources_), pairs, horizons,
-                                     arrays.headers, arrays.clusters, arrays.clearances, block_masks_, counts_.firsts(),
-                                     blocks_, ray_counts_.stride(), ray_counts_.values());
+                                     arrays.headers, arrays.memory, block_masks_, counts_.firsts(), blocks_,
+                                     ray_counts_.stride(), ray_counts_.values());
 }
 
 void BlockSearch::find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
@@ -88,8 +87,7 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::count_rays>(update.device, found_, use_grid ? 1u : 0u, ray_counts_.stride(), pairs, arrays.headers,
-                                 arrays.vertex_blocks, arrays.outside_cells, arrays.clearances, blocks_,
-                                 ray_counts_.values());
+                                 arrays.memory, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 
@@ -98,7 +96,7 @@ void BlockSearch::count_edges(const Update& update, const Array<kernels::Directe
                               const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::count_edges>(update.device, found_, clears ? 1u : 0u, pairs, margins, least, arrays.headers,
-                                  arrays.vertex_blocks, arrays.clearances, blocks_, ray_counts_.values());
+                                  arrays.memory, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 

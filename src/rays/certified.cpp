@@ -152,8 +152,8 @@ void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
     const std::size_t count = segments_.size();
     looks_.resize(update.device, count);
     look_rays_.resize(update.device, 1, count);
-    launch<KernelId::look_at_watches>(update.device, count, pairs_, arrays.headers, arrays.vertex_blocks,
-                                      arrays.clearances, segments_, watches_, looks_, look_rays_.values());
+    launch<KernelId::look_at_watches>(update.device, count, pairs_, arrays.headers, arrays.memory, segments_, watches_,
+                                      looks_, look_rays_.values());
     look_rays_.scan(update.device, count, batch.totals, RayBatch::method_sum, NONE - 1);
 }
 
@@ -219,14 +219,10 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     std::swap(held_, last_held_);
     held_.resize(device, batch.count.value);
     launch<KernelId::hold_rays>(device, batch.count, batch.outcomes.stride(), pairs_, held_ranges_, arrays.headers,
-                                arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.faces,
-                                arrays.face_normals, batch.rays, last_held_, held_, batch.hits,
-                                batch.outcomes.values());
+                                arrays.memory, batch.rays, last_held_, held_, batch.hits, batch.outcomes.values());
 }
 
 void CertifiedRays::cast(const Update& update, RayBatch& batch) {
-    if (packed_ != update.shapes.packed()) clear(); // lists name vertex blocks by their place
-    packed_ = update.shapes.packed();
     open_pairs_ = update.pairs.size();
     batch.resize(update.device, 0);
     // What the few that are left know is worth less than the memory: they are looked at anew.

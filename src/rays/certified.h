@@ -61,7 +61,6 @@ private:
     std::size_t standard_count_ = 0;      ///< of directed_
     kernels::Totals standard_sums_{};     ///< of pairs left to `standard`: rays cast, rays of the rule
     std::size_t open_pairs_ = 0;
-    std::uint64_t packed_ = 0;
 
     Array<kernels::DirectedPair> pairs_; ///< of directed_
     Array<kernels::Segment> segments_;

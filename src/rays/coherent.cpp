@@ -36,11 +36,6 @@ T take_bytes(std::span<const std::byte>& bytes) {
     return value;
 }
 
-// The lane of the body's first vertex in the shape store of a device.
-kernels::uint first_vertex(const ShapeStore& shapes, std::span<const PlacedBody> bodies, BodySlot body) {
-    return VERTEX_LANES * shapes.headers()[bodies[body].shape_index].vertices.block_first;
-}
-
 // Cost of a full look that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
 // ratio.
 constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
@@ -193,8 +188,8 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     full_rays_ = 0;
     if (blocks.size() > 0) {
         launch<KernelId::count_near_rays>(device, blocks.size(), near_.ray_counts().stride(), device_wide_,
-                                          device_reaches_, device_margins_, arrays.headers, arrays.vertex_blocks,
-                                          arrays.clearances, blocks, near_.ray_counts().values());
+                                          device_reaches_, device_margins_, arrays.headers, arrays.memory, blocks,
+                                          near_.ray_counts().values());
         near_.ray_counts().scan(device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
         kernels::Totals sum;
         const Piece piece = batch.totals.piece({&sum, 1}, RayBatch::ray_sum);
@@ -234,9 +229,8 @@ void CoherentRays::follow(const Update& update, RayBatch& batch) {
     const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
     const auto run = [&]<KernelId kernel>() {
         launch<kernel>(update.device, batch.count, settings.max_iterations, predictive, cast_lost,
-                       batch.outcomes.stride(), device_pairs_, device_cullings_, arrays.headers, arrays.vertex_blocks,
-                       arrays.nodes, arrays.triangle_blocks, arrays.faces, arrays.face_normals, batch.rays, starts_,
-                       batch.hits, batch.outcomes.values(), nexts_, hows_);
+                       batch.outcomes.stride(), device_pairs_, device_cullings_, arrays.headers, arrays.memory,
+                       batch.rays, starts_, batch.hits, batch.outcomes.values(), nexts_, hows_);
     };
     if (settings.caster == Caster::basic)
         run.operator()<KernelId::follow_rays_basic>();
@@ -286,8 +280,6 @@ void CoherentRays::keep(const Update& update) {
 }
 
 void CoherentRays::cast(const Update& update, RayBatch& batch) {
-    if (packed_ != update.shapes.packed()) clear(); // candidates name vertices by their place
-    packed_ = update.shapes.packed();
     sums_ = {};
     ++step_;
     open_pairs_ = update.pairs.size();
@@ -314,29 +306,23 @@ std::span<const kernels::Candidate> CoherentRays::candidates_of(const Kept& own,
     return own.count > 0 ? all.subspan(own.first, own.count) : all.first(0);
 }
 
-void CoherentRays::list_kept_rays(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                                  std::span<const SlotPair> pairs, std::vector<KeptRay>& rays) {
+void CoherentRays::list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+                                  std::vector<KeptRay>& rays) {
     const std::vector<kernels::Candidate> candidates = read_candidates(device);
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
         for (std::uint32_t d = 0; place && d < 2; ++d) {
             const Kept& own = table_.hot(*place).kept[d];
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
-            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
             const auto& blocks = source.shape->data().vertex_blocks;
-            for (const auto& candidate : candidates_of(own, candidates)) {
-                const kernels::uint lane = candidate.vertex_lane - first;
-                rays.push_back(
-                    {pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], candidate.triangle});
-            }
+            for (const auto& [lane, triangle] : candidates_of(own, candidates))
+                rays.push_back({pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], triangle});
         }
     }
 }
 
-std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& shapes,
-                                              std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
+std::vector<std::byte> CoherentRays::take_out(Device& device, std::span<const SlotPair> pairs) {
     std::vector<std::byte> bytes;
-    if (packed_ != shapes.packed()) return bytes;
     const std::vector<kernels::Candidate> candidates = read_candidates(device);
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
@@ -344,35 +330,21 @@ std::vector<std::byte> CoherentRays::take_out(Device& device, const ShapeStore& 
         Moving moving{pair.first, pair.second, table_.state(*place), table_.hot(*place)};
         moving.state.looked = step_ - moving.state.looked; // as long ago; every device counts its own steps
         put_bytes(bytes, moving);
-        for (std::uint32_t d = 0; d < 2; ++d) {
-            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? pair.first : pair.second);
-            const Kept& own = moving.hot.kept[d];
-            for (kernels::Candidate candidate : candidates_of(own, candidates)) {
-                candidate.vertex_lane -= first;
-                put_bytes(bytes, candidate);
-            }
-        }
+        for (const Kept& own : moving.hot.kept)
+            for (const kernels::Candidate& candidate : candidates_of(own, candidates)) put_bytes(bytes, candidate);
     }
     return bytes;
 }
 
-void CoherentRays::put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                          std::span<const std::byte> bytes) {
-    if (packed_ != shapes.packed()) clear();
-    packed_ = shapes.packed();
+void CoherentRays::put_in(Device& device, std::span<const std::byte> bytes) {
     candidates_.extend(device, candidates_kept_);
     std::vector<kernels::Candidate> candidates;
     while (!bytes.empty()) {
         auto moving = take_bytes<Moving>(bytes);
         moving.state.looked = step_ - moving.state.looked;
-        for (std::uint32_t d = 0; d < 2; ++d) {
-            const kernels::uint first = first_vertex(shapes, bodies, d == 0 ? moving.first : moving.second);
-            Kept& own = moving.hot.kept[d];
+        for (Kept& own : moving.hot.kept) {
             own.first = static_cast<std::uint32_t>(candidates_kept_ + candidates.size());
-            for (std::uint32_t i = 0; i < own.count; ++i) {
-                candidates.push_back(take_bytes<kernels::Candidate>(bytes));
-                candidates.back().vertex_lane += first;
-            }
+            for (std::uint32_t i = 0; i < own.count; ++i) candidates.push_back(take_bytes<kernels::Candidate>(bytes));
         }
         table_.put_in({moving.first, moving.second}, moving.state, moving.hot);
     }

@@ -24,17 +24,14 @@ public:
     void keep(const Update& update);
     void clear() { table_.clear(); }
 
-    /// The state kept for some pairs of the last step, for another part to go on with. Between two steps; bodies as in
-    /// the last step.
-    std::vector<std::byte> take_out(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                                    std::span<const SlotPair> pairs);
-    /// Adds such state, before the step that first has these pairs; bodies as in that step.
-    void put_in(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                std::span<const std::byte> bytes);
+    /// The state kept for some pairs of the last step, for another part to go on with. Between two steps.
+    std::vector<std::byte> take_out(Device& device, std::span<const SlotPair> pairs);
+    /// Adds such state, before the step that first has these pairs.
+    void put_in(Device& device, std::span<const std::byte> bytes);
 
     /// Adds what is kept for some pairs of the last step; bodies as in it.
-    void list_kept_rays(Device& device, const ShapeStore& shapes, std::span<const PlacedBody> bodies,
-                        std::span<const SlotPair> pairs, std::vector<KeptRay>& rays);
+    void list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+                        std::vector<KeptRay>& rays);
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
@@ -85,7 +82,7 @@ private:
     std::vector<kernels::Followed> host_followed_;
     StepStats sums_;
     std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
-    std::uint64_t packed_ = 0, step_ = 0;
+    std::uint64_t step_ = 0;
 
     Array<kernels::DirectedPair> device_pairs_, device_wide_;
     Array<float> device_cullings_, device_reaches_, device_margins_;

@@ -31,13 +31,12 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
                         room);
     search_.write_rays(update, totals, RayBatch::edge_ray_sum, 0, rays_);
     const Count count = results_of(totals, RayBatch::edge_ray_sum, room);
-    launch<KernelId::cast_edges>(device, count, pairs, margins_, arrays.headers, arrays.vertex_blocks, arrays.nodes,
-                                 arrays.triangle_blocks, rays_, hits_, counts_.values());
+    launch<KernelId::cast_edges>(device, count, pairs, margins_, arrays.headers, arrays.memory, rays_, hits_,
+                                 counts_.values());
     const Array<kernels::NearEdge>& found = found_.room(device);
     counts_.scan(device, count, totals, RayBatch::edge_sum, found.size());
     launch<KernelId::write_edges>(device, items_of(totals, RayBatch::edge_sum, room), pairs, margins_, arrays.headers,
-                                  arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, rays_, hits_,
-                                  counts_.firsts(), found);
+                                  arrays.memory, rays_, hits_, counts_.firsts(), found);
 }
 
 bool EdgeRays::had_room(Device& device, const RayBatch& batch) {

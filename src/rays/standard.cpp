@@ -16,9 +16,8 @@ constexpr std::size_t least_room = 4096; // rays
 void cast_in_full(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     const auto run = [&]<KernelId kernel>() {
-        launch<kernel>(update.device, batch.count, batch.outcomes.stride(), *batch.pairs, arrays.headers,
-                       arrays.vertex_blocks, arrays.nodes, arrays.triangle_blocks, arrays.face_normals, batch.rays,
-                       batch.hits, batch.outcomes.values());
+        launch<kernel>(update.device, batch.count, batch.outcomes.stride(), *batch.pairs, arrays.headers, arrays.memory,
+                       batch.rays, batch.hits, batch.outcomes.values());
     };
     if (update.settings.caster == Caster::basic)
         run.operator()<KernelId::cast_rays_basic>();

@@ -24,6 +24,9 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     build_clearance_grid(shape, *made, executor, stop);
     build_caps(shape, *made, executor, stop);
     if (stop.stop_requested()) return nullptr;
+    made->header.outside_cells = made->outside_cells.data();
+    made->header.clearances = made->clearances.data();
+    made->header.caps = made->caps.data();
     return made;
 }
 

@@ -119,6 +119,7 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     normals = {}; // here the most memory is in use
     build_clusters(shape, executor);
     set_box_clearance(shape.header);
+    shape.set_places();
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));
 }
 

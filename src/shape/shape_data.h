@@ -12,7 +12,7 @@ namespace raycontact {
 /// A vertex or box corner as the kernels see it: float32, relative to the shape's centre.
 using Point3f = kernels::Packed3;
 
-/// Everything a shape is made of. The kernel arrays use offsets from their own beginning; ShapeStore shifts them.
+/// Everything a shape is made of. The kernel arrays use offsets from their own beginning.
 struct ShapeData : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
     Vec3 centre;
@@ -41,6 +41,17 @@ struct ShapeData : TriangleTree {
     /// Of a clearance grid of one cell, until there are Accelerators: all that is known is outside of the box.
     std::vector<kernels::uint> clearances{0};
     kernels::ShapeHeader header{};
+
+    /// Enters where the kernel arrays are, once they are all there.
+    void set_places() {
+        header.nodes = nodes.data();
+        header.triangle_blocks = triangle_blocks.data();
+        header.faces = faces.data();
+        header.face_normals = face_normals.data();
+        header.vertex_blocks = vertex_blocks.data();
+        header.clusters = clusters.data();
+        header.clearances = clearances.data();
+    }
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }
     Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }

@@ -4,34 +4,20 @@
 #include "shape/accelerators.h"
 
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
+#include <bit>
 
 namespace raycontact {
 
-namespace {
-
-std::vector<kernels::TriangleBlock> with_caps(std::vector<kernels::TriangleBlock> blocks,
-                                              std::span<const kernels::uint> caps) {
-    for (std::size_t i = 0; i < caps.size(); ++i) blocks[i / TRIANGLE_LANES].cap[i % TRIANGLE_LANES] = caps[i];
-    return blocks;
-}
-
-// Appends to an array and returns the place; kernels count in 32 bits.
+// What is copied begins in a line of its own.
 template <class T>
-bool has_room(const Array<T>& array, const std::vector<T>& more) {
-    return array.size() + more.size() < std::numeric_limits<kernels::uint>::max() / VERTEX_LANES;
+void ShapeStore::copy(const std::vector<T>& values, const T*& place) {
+    constexpr std::size_t line = 64;
+    const std::size_t first = arrays_.memory.size(), bytes = values.size() * sizeof(T);
+    arrays_.memory.extend(device_, first + (bytes + line - 1) / line * (line / sizeof(kernels::ulong)));
+    if (bytes > 0)
+        device_.queue().write(*arrays_.memory.buffer(), first * sizeof(kernels::ulong), values.data(), bytes);
+    place = std::bit_cast<const T*>(std::uint64_t{first});
 }
-template <class T>
-kernels::uint append(Device& device, Array<T>& array, const std::vector<T>& more) {
-    const std::size_t first = array.size();
-    if (!has_room(array, more))
-        throw std::length_error("the shapes of this scene hold more than 2^28 vertices or triangles");
-    array.append(device, std::span(more));
-    return static_cast<kernels::uint>(first);
-}
-
-} // namespace
 
 void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
     if (const auto found = entries_.find(shape.get()); found != entries_.end()) {
@@ -58,7 +44,6 @@ void ShapeStore::remove(const Shape* shape) {
 
 bool ShapeStore::pack() {
     if (whole_ && 2 * bytes_dropped_ <= bytes_used_) return false;
-    ++packed_;
     arrays_ = {};
     headers_.clear();
     plain_shapes_.clear();
@@ -77,19 +62,15 @@ bool ShapeStore::upload(Entry& entry) {
     const ShapeData& data = entry.shape->data();
     const Accelerators* more = entry.shape->accelerators();
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
-    header.node_first = append(device_, arrays_.nodes, data.nodes);
-    header.triangle_block_first = append(
-        device_, arrays_.triangle_blocks,
-        more != nullptr && !more->caps.empty() ? with_caps(data.triangle_blocks, more->caps) : data.triangle_blocks);
-    const kernels::uint block_first = append(device_, arrays_.vertex_blocks, data.vertex_blocks);
-    header.normal_first = append(device_, arrays_.face_normals, data.face_normals);
-    header.face_first = append(device_, arrays_.faces, data.faces);
-    header.clearance_first = append(device_, arrays_.clearances, more != nullptr ? more->clearances : data.clearances);
-    if (more != nullptr) header.grid_first = append(device_, arrays_.outside_cells, more->outside_cells);
-    const kernels::uint cluster_first = append(device_, arrays_.clusters, data.clusters);
-    for (kernels::SourceTree* tree : {&header.vertices, &header.edges}) {
-        tree->block_first += block_first;
-        for (kernels::uint& first : tree->cluster_first) first += cluster_first;
+    if (!device_.traits().shares_memory) {
+        copy(data.nodes, header.nodes);
+        copy(data.triangle_blocks, header.triangle_blocks);
+        copy(data.faces, header.faces);
+        copy(data.face_normals, header.face_normals);
+        copy(data.vertex_blocks, header.vertex_blocks);
+        copy(data.clusters, header.clusters);
+        copy(more != nullptr ? more->clearances : data.clearances, header.clearances);
+        if (more != nullptr) copy(more->outside_cells, header.outside_cells);
     }
     headers_.reserve(headers_.size() + 1);
     plain_shapes_.resize(headers_.size() + 1, nullptr);
@@ -123,27 +104,21 @@ void ShapeStore::no_longer_plain(kernels::uint index, const Shape* shape) {
     --plain_;
 }
 
-// The grids go to the ends of their arrays; the word of the grid of one cell stays, unused.
+// What was copied stays; the word of the grid of one cell is unused from now on.
 void ShapeStore::upload_accelerators(Entry& entry, const Accelerators& more) {
-    if (!has_room(arrays_.clearances, more.clearances) || !has_room(arrays_.outside_cells, more.outside_cells)) return;
-    const kernels::ShapeHeader before = headers_[entry.index];
     kernels::ShapeHeader header = more.header;
-    header.node_first = before.node_first;
-    header.triangle_block_first = before.triangle_block_first;
-    header.vertices = before.vertices;
-    header.edges = before.edges;
-    header.normal_first = before.normal_first;
-    header.face_first = before.face_first;
-    header.clearance_first = append(device_, arrays_.clearances, more.clearances);
-    header.grid_first = append(device_, arrays_.outside_cells, more.outside_cells);
-    const auto write = [&](auto& array, std::size_t first, const auto* values, std::size_t count) {
-        device_.queue().write(*array.buffer(), first * sizeof *values, values, count * sizeof *values);
-    };
-    if (!more.caps.empty()) {
-        const auto blocks = with_caps(entry.shape->data().triangle_blocks, more.caps);
-        write(arrays_.triangle_blocks, header.triangle_block_first, blocks.data(), blocks.size());
+    if (!device_.traits().shares_memory) {
+        const kernels::ShapeHeader& before = headers_[entry.index];
+        header.nodes = before.nodes;
+        header.triangle_blocks = before.triangle_blocks;
+        header.faces = before.faces;
+        header.face_normals = before.face_normals;
+        header.vertex_blocks = before.vertex_blocks;
+        header.clusters = before.clusters;
+        copy(more.clearances, header.clearances);
+        copy(more.outside_cells, header.outside_cells);
     }
-    write(arrays_.headers, entry.index, &header, 1);
+    device_.queue().write(*arrays_.headers.buffer(), entry.index * sizeof header, &header, sizeof header);
     headers_[entry.index] = header;
     bytes_used_ += more.bytes();
     entry.bytes += more.bytes();

@@ -10,20 +10,14 @@
 
 namespace raycontact {
 
-/// The shapes in use by one scene, concatenated in one device's memory. Counts the users of each; a shape without users
-/// is dropped when the store is next packed.
+/// The shapes in use by one scene. A device that shares the host's memory reads their own arrays; for another they are
+/// copied, one after the other. Counts the users of each; a shape without users is dropped when the store is next
+/// packed.
 class ShapeStore {
 public:
     struct Arrays {
         Array<kernels::ShapeHeader> headers;
-        Array<kernels::TriangleBlock> triangle_blocks;
-        Array<kernels::Node> nodes;
-        Array<kernels::Face> faces;
-        Array<kernels::VertexBlock> vertex_blocks;
-        Array<kernels::ClusterBlock> clusters;
-        Array<kernels::Packed3> face_normals;
-        Array<kernels::uint> outside_cells;
-        Array<kernels::uint> clearances;
+        Array<kernels::ulong> memory; ///< the shapes' arrays, where they are copied
     };
 
     explicit ShapeStore(Device& device) : device_(device) {}
@@ -40,8 +34,6 @@ public:
     /// How many shapes have no accelerators here, and whether that one has none, by its index.
     std::size_t plain() const { return plain_; }
     bool is_plain(kernels::uint index) const { return plain_shapes_[index] != nullptr; }
-    /// Counts the times that indices changed.
-    std::uint64_t packed() const { return packed_; }
     const Arrays& arrays() const { return arrays_; }
     /// The host's copy of arrays().headers.
     std::span<const kernels::ShapeHeader> headers() const { return headers_; }
@@ -55,6 +47,8 @@ private:
     };
     bool upload(Entry& entry); ///< returns whether it has accelerators
     void upload_accelerators(Entry& entry, const Accelerators& more);
+    template <class T>
+    void copy(const std::vector<T>& values, const T*& place);
     void note_plain(const Entry& entry);
     void no_longer_plain(kernels::uint index, const Shape* shape);
 
@@ -64,7 +58,6 @@ private:
     Arrays arrays_;
     std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
-    std::uint64_t packed_ = 0;
     std::vector<const Shape*> plain_shapes_; ///< by index; null: accelerated, or dropped
     std::size_t plain_ = 0;                  ///< of them
     bool whole_ = true;                      ///< all shapes of order_ are in the arrays

@@ -36,6 +36,9 @@ struct Range {
 #endif
 #define DEVICE_CALL DEVICE // not inlined where that takes a compiler minutes (NVRTC)
 #define GLOBAL
+#define IN_LINES alignas(64)
+#define PLACE(type) const type*
+#define AT(memory, type, place) ((void)(memory), (place))
 #define RESTRICT __restrict
 #define COUNT(n) [[maybe_unused]] Range range, [[maybe_unused]] uint n
 #define ALL(n) (n)

@@ -8,6 +8,9 @@ typedef unsigned long long ulong;
 #define DEVICE_CALL static __noinline__ __device__
 #define DEVICE_BATCH DEVICE
 #define GLOBAL
+#define IN_LINES
+#define PLACE(type) ulong
+#define AT(memory, type, place) ((GLOBAL const type*)((memory) + (place)))
 #define RESTRICT __restrict__
 #define PREFETCH(array, index) ((void)(index))
 #define COUNT(n) const uint *RESTRICT n##_counts, uint n##_value

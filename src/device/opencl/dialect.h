@@ -7,6 +7,9 @@
 #define DEVICE_CALL DEVICE
 #define DEVICE_BATCH DEVICE
 #define GLOBAL __global
+#define IN_LINES
+#define PLACE(type) ulong
+#define AT(memory, type, place) ((GLOBAL const type*)((memory) + (place)))
 #define RESTRICT restrict
 #define PREFETCH(array, index) ((void)(index))
 #define COUNT(n) GLOBAL const uint *RESTRICT n##_counts, uint n##_value

@@ -22,7 +22,7 @@ struct AimedRay {
 
 /// The triangle's two radii, of the narrow angle and of the wide one, metres.
 inline std::array<double, 2> cap_radii(const ShapeData& shape, std::uint32_t triangle_lane) {
-    const std::uint32_t cap = shape.triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
+    const std::uint32_t cap = shape.header.caps[triangle_lane];
     const double unit = double(CAP_UNIT_TOLERANCES) * double(shape.header.tolerance);
     return {double(cap & 0xffffu) * unit, double(cap >> 16) * unit};
 }

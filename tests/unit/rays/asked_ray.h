@@ -53,9 +53,6 @@ struct Said {
 inline kernels::prototype::RayArrays arrays_of(const ShapeData& shape) {
     kernels::prototype::RayArrays arrays{};
     arrays.shapes = &shape.header;
-    arrays.nodes = shape.nodes.data();
-    arrays.blocks = shape.triangle_blocks.data();
-    arrays.normals = shape.face_normals.data();
     return arrays;
 }
 
@@ -72,16 +69,16 @@ inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const
     using namespace kernels::prototype;
     const RayArrays arrays = arrays_of(target);
     HeldGroup group{};
-    for (std::uint32_t i = 0; i <= lane; ++i) add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, 0);
+    for (std::uint32_t i = 0; i <= lane; ++i)
+        add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, &target.header);
     fetch_triangles(&arrays, &group);
-    test_tubes_and_caps(&arrays, target.faces.data(), &group);
+    test_tubes_and_caps(&arrays, &group);
     return said_of(arrays, group, lane);
 }
 
 inline kernels::prototype::Closest closest(const kernels::prototype::SourceRay& ray, const ShapeData& target) {
     const kernels::prototype::RayFrame frame = kernels::prototype::frame_ray(ray.position, ray.direction, false);
-    return kernels::prototype::traverse_bvh(frame, ray.reach, &target.header, target.nodes.data(),
-                                            target.triangle_blocks.data());
+    return kernels::prototype::traverse_bvh(frame, ray.reach, &target.header, nullptr);
 }
 
 inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeData& target) {

@@ -21,14 +21,6 @@ using reference::Random;
 constexpr std::uint32_t blocks_of_shape = 3;
 
 struct Ground {
-    RayArrays arrays() const {
-        RayArrays arrays{};
-        arrays.shapes = shapes.data();
-        arrays.blocks = blocks.data();
-        arrays.normals = normals.data();
-        return arrays;
-    }
-
     std::vector<kernels::ShapeHeader> shapes;
     std::vector<kernels::TriangleBlock> blocks;
     std::vector<kernels::Packed3> normals;
@@ -48,10 +40,12 @@ float any_float(Floats kind, Random& random) {
 
 Ground any_ground(Floats kind, Random& random) {
     Ground ground;
+    ground.blocks.reserve(std::size_t{3} * blocks_of_shape);
+    ground.normals.reserve(std::size_t{3} * blocks_of_shape * TRIANGLE_LANES);
     for (std::uint32_t s = 0; s < 3; ++s) {
         kernels::ShapeHeader shape{};
-        shape.triangle_block_first = blocks_of_shape * s;
-        shape.normal_first = blocks_of_shape * TRIANGLE_LANES * s;
+        shape.triangle_blocks = ground.blocks.data() + std::size_t{blocks_of_shape} * s;
+        shape.face_normals = ground.normals.data() + std::size_t{blocks_of_shape} * TRIANGLE_LANES * s;
         shape.closed = random.below(2);
         shape.tolerance = static_cast<float>(std::pow(10.0, random.uniform(-7, -4)));
         ground.shapes.push_back(shape);
@@ -59,7 +53,6 @@ Ground any_ground(Floats kind, Random& random) {
             kernels::TriangleBlock& block = ground.blocks.emplace_back();
             for (std::uint32_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
                 block.triangle[lane] = random.below(blocks_of_shape * TRIANGLE_LANES);
-                block.cap[lane] = random.below(2) * static_cast<std::uint32_t>(random.bits());
                 for (auto& row : block.corner) row[lane] = any_float(kind, random);
             }
         }
@@ -122,7 +115,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     Closest closest = nothing_hit(asked.ray.reach, shape.tolerance);
     const RayFrame frame = frame_ray(asked.ray.position, asked.ray.direction, false);
     if (held.triangle != NONE)
-        hit_lane(&closest, &frame, &ground.blocks[shape.triangle_block_first + held.triangle / TRIANGLE_LANES],
+        hit_lane(&closest, &frame, &shape.triangle_blocks[held.triangle / TRIANGLE_LANES],
                  held.triangle % TRIANGLE_LANES, shape.tolerance, false);
     double start = 0, end = 0;
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -142,7 +135,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
     if (!known) return;
     ++counts.known;
     // Of one triangle there is nothing to tell apart: decide() casts no other ray, and needs no tree.
-    const RayArrays arrays = ground.arrays();
+    const RayArrays arrays{};
     const kernels::Hit truth = decide(&arrays, CASTER_BVH, &asked.ray, &closest, &shape);
     const kernels::Hit said = held_hit(&arrays, &group, lane);
     counts.hits += truth.triangle != NONE;
@@ -161,13 +154,13 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
         HeldGroup group{};
         for (int round = 0; round < 12000; ++round) {
             const Ground ground = any_ground(kind, random);
-            const RayArrays arrays = ground.arrays();
+            const RayArrays arrays{};
             for (int again = 0; again < 4; ++again) {
                 const std::uint32_t count = 1 + random.below(RAYS_IN_GROUP);
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_caps, 0, asked.target);
+                    add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_caps, 0, &ground.shapes[asked.target]);
                 }
                 fetch_triangles(&arrays, &group);
                 test_held(&group);

@@ -43,8 +43,7 @@ void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts
         const std::uint32_t t = triangles < count ? random.below(count) : i;
         const std::uint32_t triangle_lane = data.faces[t].triangle_lane;
         if (triangle_lane == NONE) continue;
-        const std::uint32_t cap =
-            data.triangle_blocks[triangle_lane / TRIANGLE_LANES].cap[triangle_lane % TRIANGLE_LANES];
+        const std::uint32_t cap = data.header.caps[triangle_lane];
         const Vec3 centre = (1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2)), n = normal(t);
         ++counts.triangles;
         counts.narrow += (cap & 0xffffu) != 0;

@@ -40,7 +40,7 @@ Lookup look_up(const ShapeData& target, const Point3f (&points)[VERTEX_LANES]) {
     Lookup found{};
     const auto seen = kernels::prototype::inside_lanes(&pair, &block, 0);
     const auto find_safe = [&](float* safe) {
-        kernels::prototype::safe_lanes(safe, &seen, &pair, &block, 0, &target.header, target.clearances.data());
+        kernels::prototype::safe_lanes(safe, &seen, &pair, &block, 0, &target.header, nullptr);
     };
     float near[VERTEX_LANES], endless[VERTEX_LANES];
     find_safe(near);

@@ -4,8 +4,11 @@
 #include "device/forwarding.h"
 
 #include "scenes/models/model.h"
+#include "shape/accelerators.h"
 #include "shape/shape_data.h"
 
+#include <bit>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <new>
 #include <stdexcept>
@@ -32,41 +35,66 @@ TEST(ShapeStore, SharesPacksAndFindsAgain) {
 
     std::vector<kernels::ShapeHeader> headers(2);
     store.arrays().headers.read(*opened.device, headers);
-    std::vector<kernels::TriangleBlock> blocks(store.arrays().triangle_blocks.size());
-    store.arrays().triangle_blocks.read(*opened.device, blocks);
     for (const auto& shape : {shapes[0], shapes[2]}) {
         const kernels::ShapeHeader& header = headers[store.index_of(shape.get())];
         EXPECT_EQ(header.triangle_block_count, shape->data().triangle_blocks.size());
-        EXPECT_EQ(blocks[header.triangle_block_first].triangle[0], shape->data().triangle_blocks[0].triangle[0]);
+        EXPECT_EQ(header.triangle_blocks, shape->data().triangle_blocks.data()) << "it is not copied";
     }
 }
 
-// A device whose memory runs out after so many buffers.
+// A device with memory of its own, which runs out after so many buffers.
 class ScarceDevice : public ForwardingDevice {
 public:
     ScarceDevice(std::unique_ptr<Device> real, int buffers) : ForwardingDevice(std::move(real)), left(buffers) {}
+    const DeviceTraits& traits() const override { return traits_; }
     std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
         if (left-- == 0) throw std::bad_alloc();
         return ForwardingDevice::make_buffer(bytes);
     }
     int left;
+
+private:
+    DeviceTraits traits_{.has_double = true, .shares_memory = false};
 };
 
-TEST(ShapeStore, ShapeThatDidNotFitLeavesNothingBehind) {
+template <class T>
+void expect_copied(std::span<const kernels::ulong> memory, const T* place, const std::vector<T>& values) {
+    const auto first = std::bit_cast<std::uint64_t>(place);
+    EXPECT_EQ(first % 8, 0u) << "a line of 64 bytes";
+    ASSERT_LE(first * sizeof(kernels::ulong) + values.size() * sizeof(T), memory.size_bytes());
+    EXPECT_EQ(std::memcmp(memory.data() + first, values.data(), values.size() * sizeof(T)), 0);
+}
+
+TEST(ShapeStore, CopiesToADeviceWithMemoryOfItsOwn) {
     OpenDevice opened = open_device("cpu", 1);
-    ScarceDevice scarce(std::move(opened.device), 3);
+    ScarceDevice scarce(std::move(opened.device), 1);
     ShapeStore store(scarce);
     const auto shape = Shape::make(scenes::scene_model("gear", 80).mesh);
+    const auto other = Shape::make(scenes::scene_model("sphere", 300).mesh);
     EXPECT_THROW(store.add(shape), std::bad_alloc);
-    EXPECT_THROW(store.index_of(shape.get()), std::out_of_range);
+    EXPECT_THROW(store.index_of(shape.get()), std::out_of_range) << "a shape that did not fit leaves nothing behind";
 
     scarce.left = 100;
     store.add(shape);
-    std::vector<kernels::ShapeHeader> headers(store.arrays().headers.size());
-    store.arrays().headers.read(scarce, headers);
-    const kernels::ShapeHeader& header = headers[store.index_of(shape.get())];
-    EXPECT_EQ(header.edges.block_first + header.edges.block_count, store.arrays().vertex_blocks.size());
-    EXPECT_EQ(header.node_first + shape->data().nodes.size(), store.arrays().nodes.size());
+    store.add(other);
+    shape->prepare();
+    store.accelerate();
+    std::vector<kernels::ulong> memory(store.arrays().memory.size());
+    store.arrays().memory.read(scarce, memory);
+    for (const auto& one : {shape, other}) {
+        const ShapeData& data = one->data();
+        const kernels::ShapeHeader& header = store.headers()[store.index_of(one.get())];
+        expect_copied(memory, header.nodes, data.nodes);
+        expect_copied(memory, header.triangle_blocks, data.triangle_blocks);
+        expect_copied(memory, header.faces, data.faces);
+        expect_copied(memory, header.face_normals, data.face_normals);
+        expect_copied(memory, header.vertex_blocks, data.vertex_blocks);
+        expect_copied(memory, header.clusters, data.clusters);
+        const Accelerators* more = one->accelerators();
+        expect_copied(memory, header.clearances, more != nullptr ? more->clearances : data.clearances);
+        if (more != nullptr) expect_copied(memory, header.outside_cells, more->outside_cells);
+    }
+    store.remove(other.get());
     store.remove(shape.get());
     EXPECT_TRUE(store.pack());
     EXPECT_EQ(store.arrays().headers.size(), 0u);
