@@ -3,6 +3,7 @@
 
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
+#include <raycontact/bullet/recommend.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 #include <scenes/region.h>
@@ -21,9 +22,9 @@ namespace raycontact::scenes {
 struct Response {
     bullet::ManifoldSettings manifolds;
     double friction = 0.6;
-    int iterations = 20;          ///< of the solver
-    double slop = 0.005;          ///< metres a contact may stay deep, so that bodies can rest there
-    double erp = 0.3;             ///< part of the depth beyond that undone a step, by positions alone
+    int iterations = bullet::SolverSettings{}.iterations;
+    double slop = 0.005; ///< of bodies of 1 m, with which figures and hashes were made; recommend() takes less
+    double erp = bullet::SolverSettings{}.erp;
     bool bullet_defaults = false; ///< the solver as Bullet sets it up; iterations, slop and erp above do not apply
     double linear_damping = 0, angular_damping = 0; ///< part of the speed lost in a second, 0 to 1
 };

@@ -24,7 +24,7 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
     scenes::Random random(4);
     int over = 0, found_of_all = 0;
     for (const auto& shape : {table(), torus()}) {
-        const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(*shape)};
+        const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(shape)};
         for (int i = 0; i < 1500; ++i) {
             const auto number = [&](double size) { return btScalar(size * random.symmetric()); };
             const auto turn = [&] {
@@ -74,7 +74,7 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
 TEST(BoxFace, RimsAndMiddleAreTheBatchs) {
     const btBoxShape box(btVector3(2, 2, btScalar(0.5)));
     const auto shape = Shape::make(box_mesh(1, 1, 1));
-    const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(*shape)};
+    const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(shape)};
     const auto face = [&](double x, double y, double z) {
         return bullet::only_face(mesh, at(x, y, z), box, at(0, 0, 0));
     };

@@ -105,7 +105,7 @@ TEST(Continuous, BodiesBounceAsWithoutIt) {
             const double without = bounce(false, restitution, speed), with = bounce(true, restitution, speed);
             EXPECT_NEAR(with, restitution, 0.07) << speed;
             if (restitution > 0) {
-                EXPECT_NEAR(without, restitution, 0.4) << speed;
+                EXPECT_NEAR(without, restitution, 0.07) << speed;
             }
         }
     }

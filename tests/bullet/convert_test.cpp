@@ -14,6 +14,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <vector>
+
 namespace raycontact::test {
 namespace {
 
@@ -140,6 +144,23 @@ TEST(Convert, ScaledMeshShapeKeepsItsFilesIndices) {
     EXPECT_THROW(shape.setLocalScaling(btVector3(0, 1, 1)), InputError);
     shape.setLocalScaling(btVector3(1, 1, 1));
     EXPECT_EQ(shape.shape(), table());
+}
+
+TEST(Convert, AScaleThatChangesForEverKeepsFewMeshes) {
+    bullet::ShapeCache cache(1);
+    const bullet::Converted original{table(), std::make_shared<bullet::MeshTree>(table())};
+    const bullet::Stretch held{3, 0, 0, 0, 3, 0, 0, 0, 3};
+    const bullet::Converted in_use = cache.stretched(original, held);
+    std::vector<std::weak_ptr<const Shape>> made;
+    for (int i = 0; i < 200; ++i) {
+        cache.sweep(); // a dispatch
+        const double scale = 1.01 + 0.01 * i;
+        made.push_back(cache.stretched(original, {scale, 0, 0, 0, scale, 0, 0, 0, 1}).shape);
+    }
+    EXPECT_LE(std::ranges::count_if(made, [](const auto& shape) { return !shape.expired(); }), 16);
+    const std::uint64_t before = cache.made();
+    EXPECT_EQ(cache.stretched(original, held).shape, in_use.shape);
+    EXPECT_EQ(cache.made(), before);
 }
 
 /// How many shapes the dispatches made while a table fell on a static mesh of Bullet's.

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test_world.h"
 
+#include <box_face.h>
 #include <mesh_tree.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <new>
 #include <set>
+#include <vector>
 
 namespace raycontact::test {
 namespace {
@@ -77,10 +81,56 @@ TEST(MeshShape, TheBoxOfABodyThatStandsStillIsMadeOnce) {
     for (const auto& body : bodies) w.world.removeRigidBody(body.get());
 }
 
+// Their addresses are given to others: what was kept for them would drive out the boxes of bodies.
+TEST(MeshShape, NoBoxIsKeptForATransformThatIsGoneSoon) {
+    struct Any : btCollisionWorld::ContactResultCallback {
+        btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                                 const btCollisionObjectWrapper*, int, int) override {
+            return 0;
+        }
+    };
+    TestWorld w;
+    auto& shape = w.keep(std::make_unique<bullet::MeshShape>(torus()));
+    auto pair = std::make_unique<btCompoundShape>(false);
+    for (const double x : {0.0, 3.0}) pair->addChildShape(at(x, 0, 0), &shape);
+    btRigidBody& object = w.add(std::move(pair), 0, at(0, 0, 0));
+    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(2, 2, 1)), 0, at(0, 0, -1.1));
+    const std::uint64_t before = shape.tree()->bounds_made();
+    Any any;
+    w.world.contactPairTest(&object, &box, any);
+    EXPECT_EQ(shape.tree()->bounds_made(), before);
+    const bullet::Converted mesh{shape.shape(), shape.tree()};
+    bullet::only_face(mesh, at(1.9, 0, 1.2), btBoxShape(btVector3(2, 2, 1)), at(0, 0, 0));
+    EXPECT_EQ(shape.tree()->bounds_made(), before);
+}
+
+TEST(MeshShape, ABoxThatCouldNotBeMadeLeavesTheOthers) {
+    bullet::BoxCache cache;
+    const btTransform pose = at(1, 2, 3);
+    btVector3 low, high;
+    EXPECT_THROW(cache.get(pose, low, high, [](btVector3&, btVector3&) { throw std::bad_alloc(); }), std::bad_alloc);
+    for (int i = 0; i < 3; ++i) cache.get(pose, low, high, [](btVector3& a, btVector3& b) { a = b = {1, 1, 1}; });
+    EXPECT_EQ(cache.made(), 1u);
+}
+
+TEST(MeshShape, ItsTreeMayOutliveIt) {
+    std::weak_ptr<const Shape> shape;
+    std::shared_ptr<const bullet::MeshTree> tree;
+    {
+        const bullet::MeshShape mesh(Shape::make(box_mesh(1, 1, 1)));
+        shape = mesh.shape();
+        tree = mesh.tree();
+    }
+    EXPECT_FALSE(shape.expired());
+    std::vector<std::uint32_t> below;
+    tree->vertices_below(btVector3(0, 0, 1), 0, below); // looks at the triangles
+    EXPECT_EQ(below.size(), 4u);
+}
+
 TEST(MeshShape, ABoxTakesFewLooks) {
     const auto looks = [](std::uint32_t triangles) {
         const auto shape = Shape::make(scenes::scene_model("torus", triangles).mesh);
-        return bullet::MeshTree(*shape).bounds_size();
+        return bullet::MeshTree(shape).bounds_size();
     };
     EXPECT_EQ(looks(600), torus()->vertices().size());
     for (const std::uint32_t triangles : {2000u, 2400u, 6000u, 50000u}) EXPECT_LE(looks(triangles), 1024u) << triangles;

@@ -2,6 +2,7 @@
 // Transforms that Bullet takes although they are not rigid, and meshes without an area: none ends a simulation.
 #include "test_world.h"
 
+#include <faults.h>
 #include <placement.h>
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -51,6 +53,11 @@ struct Told {
     }
     std::vector<bullet::Fault> faults;
 };
+
+/// Without new boxes: Bullet moves no box that is not finite, so the pairs stay.
+void dispatch(TestWorld& w) {
+    w.dispatcher.dispatchAllCollisionPairs(w.world.getPairCache(), w.world.getDispatchInfo(), &w.dispatcher);
+}
 
 TEST(BulletPose, ABasisThatDriftsIsMadeRigid) {
     TestWorld w;
@@ -105,6 +112,39 @@ TEST(BulletPose, DriftScaleAndWhatCannotBeUsed) {
     EXPECT_THROW(bullet::place(with_basis(diagonal(0, 1, 1), origin)), InputError);
     EXPECT_THROW(bullet::place(with_basis(diagonal(0, 0, 0), origin)), InputError);
     EXPECT_THROW(bullet::place(with_basis(diagonal(1, 1, double(INFINITY)), origin)), InputError);
+}
+
+TEST(BulletPose, ThinScalesStayThin) {
+    using bullet::Stretch;
+    const Stretch thin = bullet::place(with_basis(turned(1) * diagonal(1, 1, 4e-4), {0, 0, 0})).stretch;
+    EXPECT_NEAR(thin[0], 1, 1e-3);
+    EXPECT_NEAR(thin[8], 4e-4, 4e-7);
+    // Thin along none of the axes: each entry alone would be rounded to a flat one.
+    const btMatrix3x3 turn = turned(1);
+    const auto slanted = bullet::place(with_basis(turn * diagonal(1, 1, 4e-4) * turn.transpose(), {0, 0, 0}));
+    const Stretch back = bullet::inverse(slanted.stretch), exact = bullet::inverse(slanted.unrounded);
+    EXPECT_NEAR((back[0] + back[4] + back[8]) / (exact[0] + exact[4] + exact[8]), 1, 3e-3);
+
+    for (const double z : {4e-4, 3.3333}) {
+        TestWorld w;
+        btRigidBody& plate = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, 0));
+        plate.setWorldTransform(with_basis(diagonal(1, 1, z), btVector3(0, 0, btScalar(-z / 2))));
+        w.world.updateSingleAabb(&plate);
+        w.add_mesh(table(), 5, at(0.1, 0.2, 0.4 - 1e-4));
+        w.world.performDiscreteCollisionDetection();
+        EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+        EXPECT_GT(w.dispatcher.stats().contacts, 0u);
+
+        // 100 m from its origin; no mesh is made of a plane, so nothing is rounded.
+        TestWorld above;
+        const btTransform pose = with_basis(diagonal(1, 1, z), {0, 0, 0});
+        above.add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(100)), 0, pose);
+        above.add_mesh(table(), 5, at(0.1, 0.2, 100 * z + 0.39));
+        above.world.performDiscreteCollisionDetection();
+        ASSERT_GT(above.touching(), 0);
+        const btPersistentManifold& touch = *above.dispatcher.getManifoldByIndexInternal(0);
+        EXPECT_NEAR(double(touch.getContactPoint(0).getDistance()), -0.01, 1e-4) << z;
+    }
 }
 
 /// The highest point of a table let fall on a scaled floor, after it came to rest.
@@ -192,8 +232,7 @@ TEST(BulletPose, WhatCannotBePlacedIsLeftOutAndNamed) {
         const btTransform before = body.getWorldTransform();
         body.setWorldTransform(with_basis(basis, before.getOrigin()));
         for (int i = 0; i < 3; ++i) {
-            // The pair stays: Bullet does not move a box that is not finite.
-            w.dispatcher.dispatchAllCollisionPairs(w.world.getPairCache(), w.world.getDispatchInfo(), &w.dispatcher);
+            dispatch(w);
             EXPECT_EQ(w.dispatcher.stats().left_out, std::vector<const btCollisionObject*>{&body});
             EXPECT_EQ(w.touching(), 0);
         }
@@ -256,6 +295,151 @@ TEST(BulletPose, QueriesTakeThemToo) {
     EXPECT_EQ(points(), 0);
     ASSERT_EQ(told.faults.size(), 1u);
     EXPECT_EQ(told.faults[0].object, &high);
+}
+
+/// Two tables in one object, side by side; a third lies on the right one.
+struct TwoChildren {
+    explicit TwoChildren(TestWorld& w) : table_shape(w.keep(std::make_unique<bullet::MeshShape>(table()))) {
+        auto made = std::make_unique<btCompoundShape>();
+        compound = made.get();
+        for (const double x : {0.0, 3.0}) compound->addChildShape(at(x, 0, 0), &table_shape);
+        object = &w.add(std::move(made), 0, at(0, 0, 0));
+        w.add_mesh(table(), 1, at(3, 0, 0.79));
+    }
+    bullet::MeshShape& table_shape;
+    btCompoundShape* compound;
+    btRigidBody* object;
+};
+
+// Points are held for some steps, and manifolds of Bullet's own algorithms until these run again.
+TEST(BulletFaults, AChildThatIsLeftOutLosesItsManifoldsAtOnce) {
+    TestWorld w;
+    w.dispatcher.on_fault({});
+    const auto squeezed = diagonal(1, 1, 1e-5);
+    auto compound = std::make_unique<btCompoundShape>();
+    compound->addChildShape(with_basis(squeezed, btVector3(3, 0, btScalar(-0.5))),
+                            &w.keep(std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(2, 2, 1e5)))));
+    btRigidBody& object = w.add(std::move(compound), 1, at(0, 0, 0));
+    w.add_mesh(table(), 0, at(3, 0, 0.39));
+    w.world.performDiscreteCollisionDetection();
+    ASSERT_TRUE(w.dispatcher.stats().left_out.empty());
+    ASSERT_GT(w.touching(), 0);
+    object.setWorldTransform(with_basis(squeezed, btVector3(0, 0, 0))); // squeezed twice it is flat
+    dispatch(w);
+    ASSERT_EQ(w.dispatcher.stats().left_out.size(), 1u);
+    EXPECT_EQ(w.touching(), 0);
+}
+
+TEST(BulletFaults, EachChildsIsToldAgainWhenItComesBack) {
+    TestWorld w;
+    Told told(w);
+    TwoChildren two(w);
+    w.world.performDiscreteCollisionDetection();
+    const auto set = [&](int child, btScalar z) {
+        two.compound->getChildList()[child].m_transform.getBasis()[2][2] = z;
+        told.faults.clear();
+        dispatch(w);
+        dispatch(w);
+    };
+    set(0, 0);
+    ASSERT_EQ(told.faults.size(), 1u);
+    set(1, 0);
+    ASSERT_EQ(told.faults.size(), 1u);
+    EXPECT_EQ(told.faults[0].child, 1);
+    set(1, 1);
+    EXPECT_TRUE(told.faults.empty());
+    set(1, 0);
+    ASSERT_EQ(told.faults.size(), 1u) << "the other child was bad all the while";
+    EXPECT_EQ(told.faults[0].child, 1);
+}
+
+TEST(BulletFaults, AddBodyThrowsEachTimeAndNothingIsToldTwice) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    TestWorld w;
+    Told told(w);
+    const btRigidBody& bad = w.add(std::make_unique<btBvhTriangleMeshShape>(flat.get(), false), 0, at(0, 0, 0));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+    w.world.performDiscreteCollisionDetection(); // both are in use
+    EXPECT_EQ(told.faults.size(), 1u);
+    const btTransform pose = body.getWorldTransform();
+    body.setWorldTransform(with_basis(diagonal(1, 1, 0), pose.getOrigin()));
+    for (int i = 0; i < 3; ++i) {
+        for (const btRigidBody* one : {&bad, static_cast<const btRigidBody*>(&body)}) {
+            for (int k = 0; k < 2; ++k) {
+                try {
+                    w.dispatcher.add_body(*one);
+                    FAIL() << "it was added";
+                } catch (const bullet::ObjectError& error) {
+                    EXPECT_EQ(error.fault().object, one);
+                    EXPECT_NE(error.fault().text.find("it has no contacts"), std::string::npos);
+                }
+            }
+        }
+        dispatch(w);
+    }
+    EXPECT_EQ(told.faults.size(), 2u);
+    body.setWorldTransform(pose); // mended, it is taken without another dispatch
+    EXPECT_NO_THROW(w.dispatcher.add_body(body));
+    w.dispatcher.remove_body(body);
+}
+
+TEST(BulletFaults, NoneIsLostWhenTheCallbackThrowsOrPutsAnotherInItsPlace) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    TestWorld w;
+    for (int i = 0; i < 4; ++i)
+        w.add(std::make_unique<btBvhTriangleMeshShape>(flat.get(), false), 0, at(0, 0, 0)).setUserIndex(i);
+    w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+    std::vector<int> told;
+    const std::vector<int> large(1000, 7); // in the callback's own memory, which must outlive the call
+    w.dispatcher.on_fault([&, large](const bullet::Fault& fault) {
+        told.push_back(fault.object->getUserIndex());
+        w.dispatcher.on_fault([&](const bullet::Fault& other) { told.push_back(other.object->getUserIndex()); });
+        EXPECT_EQ(large.back(), 7);
+        throw InputError("the user's");
+    });
+    EXPECT_THROW(w.world.performDiscreteCollisionDetection(), InputError);
+    EXPECT_EQ(told.size(), 1u);
+    dispatch(w);
+    std::ranges::sort(told);
+    EXPECT_EQ(told, (std::vector{0, 1, 2, 3}));
+}
+
+TEST(BulletFaults, AnotherObjectAtTheSameAddressIsToldOf) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    const btBvhTriangleMeshShape bad(flat.get(), false);
+    TestWorld w;
+    Told told(w);
+    const auto meet = [&] {
+        btCollisionObject object; // at one address each time
+        object.setCollisionShape(const_cast<btBvhTriangleMeshShape*>(&bad));
+        w.world.addCollisionObject(&object);
+        w.world.performDiscreteCollisionDetection();
+        w.world.removeCollisionObject(&object);
+        w.dispatcher.remove_body(object);
+    };
+    w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+    meet();
+    meet();
+    EXPECT_EQ(told.faults.size(), 2u);
+}
+
+TEST(BulletFaults, ObjectsThatAreGoneForLongAreForgotten) {
+    bullet::Faults faults;
+    int told = 0;
+    faults.set_callback([&](const bullet::Fault&) { ++told; });
+    const btBoxShape box(btVector3(1, 1, 1));
+    btCollisionObject gone, used;
+    for (btCollisionObject* object : {&gone, &used}) object->setCollisionShape(const_cast<btBoxShape*>(&box));
+    const auto find = [&] {
+        for (const btCollisionObject* object : {&gone, &used}) faults.add(bullet::fault_of(*object, 0, "bad"));
+        faults.tell();
+    };
+    find();
+    find();
+    EXPECT_EQ(told, 2);
+    for (int i = 0; i < 1000; ++i) faults.sweep([&](const btCollisionObject* object) { return object == &used; });
+    find();
+    EXPECT_EQ(told, 3);
 }
 
 // A speed beyond all bounds makes a pose that is not finite; `continuous` asks for it before Bullet does.

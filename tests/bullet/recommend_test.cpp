@@ -3,6 +3,7 @@
 #include "test_world.h"
 
 #include <raycontact/bullet/recommend.h>
+#include <raycontact/error.h>
 #include <scenes/models/model.h>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace raycontact::test {
@@ -48,34 +50,49 @@ double shake_at_a_wall(const Change& change) {
     return 1000 * double(most - least);
 }
 
-struct Pile {
-    double speed = 0;   ///< median of all bodies over the last second, mm/s
-    double deepest = 0; ///< mm, in that second
-};
-
-/// 48 bunnies that fell on a slab, after ten seconds.
-Pile pile(const Change& change) {
+/// Millimetres a second at which a table flies off that began 20 mm deep in a slab, without gravity.
+double flies_off(const Change& change) {
     TestWorld w;
     set_up(w, change);
-    w.add_mesh(Shape::make(box_mesh(20, 20, 1)), 0, at(0, 0, -0.5));
-    for (int i = 0; i < 48; ++i) {
-        const int layer = i / 4, row = i / 2 % 2;
-        btTransform pose = at(0.5 * (i % 2) - 0.25, 0.5 * row - 0.25, 0.6 + 0.7 * layer);
-        pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
-        w.add_mesh(bunny(), 5, pose);
+    w.world.setGravity(btVector3(0, 0, 0));
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    const btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.38));
+    w.steps(60);
+    return 1000 * double(body.getLinearVelocity().length());
+}
+
+struct Piles {
+    double speed = 0;   ///< median of all bodies over the last second, mm/s
+    double deepest = 0; ///< mm, median of the steps of that second
+};
+
+double median(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+/// Eight heaps of eight bunnies that fell on a slab, in the fifth second: each is one draw of many.
+Piles piles(const Change& change) {
+    std::vector<double> speeds, depths;
+    for (int heap = 0; heap < 8; ++heap) {
+        TestWorld w;
+        set_up(w, change);
+        w.add_mesh(Shape::make(box_mesh(20, 20, 1)), 0, at(0, 0, -0.5));
+        for (int i = 0; i < 8; ++i) {
+            const int layer = i / 4, row = i / 2 % 2;
+            btTransform pose = at(0.5 * (i % 2) - 0.25, 0.5 * row - 0.25, 0.6 + 0.7 * layer);
+            pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i + 50 * heap)));
+            w.add_mesh(bunny(), 5, pose);
+        }
+        w.steps(240);
+        for (int i = 0; i < 60; ++i) {
+            w.steps(1);
+            depths.push_back(1000 * w.dispatcher.scene().stats().depth_max);
+            for (const auto& body : w.bodies)
+                if (!body->isStaticObject()) speeds.push_back(1000 * double(body->getLinearVelocity().length()));
+        }
     }
-    w.steps(540);
-    Pile found;
-    std::vector<double> speeds;
-    for (int i = 0; i < 60; ++i) {
-        w.steps(1);
-        found.deepest = std::max(found.deepest, 1000 * w.dispatcher.scene().stats().depth_max);
-        for (const auto& body : w.bodies)
-            if (!body->isStaticObject()) speeds.push_back(1000 * double(body->getLinearVelocity().length()));
-    }
-    std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2), speeds.end());
-    found.speed = speeds[speeds.size() / 2];
-    return found;
+    return {median(speeds), median(depths)};
 }
 
 TEST(Recommend, MeshesComeToRest) {
@@ -105,18 +122,41 @@ TEST(Recommend, MeshesComeToRest) {
          but([&](btContactSolverInfo& info) { info.m_solverMode = own.m_solverMode; })},
         {"Bullet's own but slop 0.001", [](btContactSolverInfo& info) { info.m_linearSlop = btScalar(0.001); }},
     };
-    std::vector<double> shakes, speeds;
+    struct Row {
+        double shake, speed_off;
+        Piles piles;
+    };
+    std::vector<Row> found;
     for (const auto& [name, change] : rows) {
-        const double shake = shake_at_a_wall(change);
-        const Pile heap = pile(change);
-        std::printf("[ counts ] %-36s shakes at a wall by %7.3f mm; a pile's median speed %6.2f mm/s, %5.1f mm deep\n",
-                    name, shake, heap.speed, heap.deepest);
-        shakes.push_back(shake);
-        speeds.push_back(heap.speed);
+        const Row row{shake_at_a_wall(change), flies_off(change), piles(change)};
+        std::printf(
+            "[ counts ] %-36s shakes at a wall by %6.3f mm; flies off at %4.0f mm/s; piles' median speed %6.2f mm/s, "
+            "%4.1f mm deep\n",
+            name, row.shake, row.speed_off, row.piles.speed, row.piles.deepest);
+        found.push_back(row);
     }
-    EXPECT_LT(shakes[1], 0.2);
-    EXPECT_LT(shakes[1], shakes[0] / 5);
-    EXPECT_LT(speeds[1], speeds[0] / 2);
+    const auto& best = found[1];
+    EXPECT_LT(best.shake, 0.2);
+    EXPECT_LT(best.shake, found[0].shake / 5);
+    EXPECT_LT(best.speed_off, 10);
+    for (const int row : {0, 2, 5, 6}) EXPECT_LT(best.piles.speed, found[row].piles.speed / 2) << rows[row].first;
+    EXPECT_GT(found[2].shake, 0.5);
+    EXPECT_LT(best.piles.deepest, found[3].piles.deepest / 1.15);
+    EXPECT_GT(found[4].speed_off, 100);
+    EXPECT_LT(found[7].shake, 0.2);
+}
+
+TEST(Recommend, RefusesWhatIsOutOfRange) {
+    TestWorld w;
+    const btContactSolverInfo before = w.world.getSolverInfo();
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    using Bad = bullet::SolverSettings;
+    for (const Bad& bad : {Bad{.slop = -1e-9}, Bad{.slop = nan}, Bad{.slop = inf}, Bad{.erp = -0.1}, Bad{.erp = 1.1},
+                           Bad{.erp = nan}, Bad{.iterations = 0}, Bad{.iterations = -3}})
+        EXPECT_THROW(bullet::recommend(w.world, bad), InputError);
+    EXPECT_EQ(w.world.getSolverInfo().m_linearSlop, before.m_linearSlop);
+    EXPECT_NO_THROW(bullet::recommend(w.world, {.slop = 0, .erp = 1, .iterations = 1}));
+    EXPECT_EQ(w.world.getSolverInfo().m_numIterations, 1);
 }
 
 } // namespace

@@ -19,18 +19,26 @@ public:
     /// make(low, high) is called unless the box is known.
     template <class Make>
     void get(const btTransform& transform, btVector3& low, btVector3& high, Make&& make) {
-        const bool mine = !busy_.test_and_set(std::memory_order_acquire);
-        if (!mine || !find(transform, low, high)) {
-            make(low, high);
-            made_.fetch_add(1, std::memory_order_relaxed);
-            if (mine) put(transform, low, high);
-        }
-        if (mine) busy_.clear(std::memory_order_release);
+        const Turn turn(busy_);
+        if (turn.mine && find(transform, low, high)) return;
+        make(low, high);
+        made_.fetch_add(1, std::memory_order_relaxed);
+        if (turn.mine) put(transform, low, high);
     }
     /// How many boxes were made.
     std::uint64_t made() const { return made_.load(std::memory_order_relaxed); }
 
 private:
+    struct Turn {
+        explicit Turn(std::atomic_flag& flag) : busy(flag), mine(!flag.test_and_set(std::memory_order_acquire)) {}
+        ~Turn() { // also where memory ends
+            if (mine) busy.clear(std::memory_order_release);
+        }
+        Turn(const Turn&) = delete;
+        Turn& operator=(const Turn&) = delete;
+        std::atomic_flag& busy;
+        const bool mine;
+    };
     struct Entry {
         const btTransform* owner = nullptr; ///< only compared: it may be gone
         btTransform transform;

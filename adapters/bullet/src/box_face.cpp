@@ -38,7 +38,7 @@ std::optional<HalfSpace> only_face(const Converted& mesh, const btTransform& mes
         bool near_rim = false;
         for (int k = 0; k < 3; ++k) near_rim = near_rim || size[k] > 2 * half[k];
         if (near_rim) return std::nullopt;
-        mesh.tree->bounds(relative, low, high);
+        mesh.tree->bounds_once(relative, low, high);
         const btVector3 around(slack, slack, slack);
         face = face_under(low - around, high + around, half);
     }

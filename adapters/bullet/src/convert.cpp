@@ -28,6 +28,7 @@ namespace raycontact::bullet {
 namespace {
 
 constexpr std::uint64_t keep_dispatches = 600;
+constexpr std::uint64_t keep_stretched = 16; ///< where another of the same shape is made: its scale may change for ever
 
 /// Locks one part of a mesh interface for as long as it lives.
 struct Part {
@@ -196,6 +197,11 @@ std::array<std::uint64_t, 2> content_hashes(const Mesh& mesh) {
     return {one, two};
 }
 
+/// Whether anyone beside the cache has it. Its tree has its shape, too.
+bool in_use(const Converted& converted) {
+    return converted.tree.use_count() > 1;
+}
+
 /// A ball, or a capsule of two.
 bool is_round(const btMultiSphereShape& shape) {
     const btVector3& scaling = shape.getLocalScaling();
@@ -238,6 +244,11 @@ unsigned kinds_in(const btCollisionShape& shape) {
     unsigned kinds = 0;
     for (int i = 0; i < compound.getNumChildShapes(); ++i) kinds |= kinds_in(*compound.getChildShape(i));
     return kinds;
+}
+
+void aabb_once(const btCollisionShape& shape, const btTransform& transform, btVector3& low, btVector3& high) {
+    const auto* own = dynamic_cast<const MeshShape*>(&shape);
+    own ? own->aabb_once(transform, low, high) : shape.getAabb(transform, low, high);
 }
 
 btVector3 scaling_of(const btCollisionShape& shape) {
@@ -338,7 +349,7 @@ Form form_of(const btCollisionShape& shape) {
 Converted ShapeCache::convert(const Mesh& mesh, Repair repair) {
     ++made_;
     const auto shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_), threads_);
-    return {shape, std::make_shared<const MeshTree>(*shape)};
+    return {shape, std::make_shared<const MeshTree>(shape)};
 }
 
 // By its numbers: the stand-in is not made to find out whether it is there.
@@ -412,10 +423,14 @@ Converted ShapeCache::stretched(const Converted& converted, const Stretch& stret
     auto found = stretched_.find(key);
     if (found == stretched_.end()) {
         sweep();
+        std::erase_if(stretched_, [&](const auto& one) {
+            return one.first.first == key.first && !in_use(one.second.converted)
+                   && one.second.used + keep_stretched < now_;
+        });
         ++made_;
-        const auto shape = stretch_shape(*converted.shape, stretch);
-        const Converted made{shape, std::make_shared<const MeshTree>(*shape), converted.names};
-        found = stretched_.emplace(key, Stretched{converted.shape, made}).first;
+        const auto shape = stretch_shape(*converted.shape, stretch, threads_);
+        const Converted made{shape, std::make_shared<const MeshTree>(shape), converted.names};
+        found = stretched_.emplace(key, Stretched{converted, made}).first;
     }
     found->second.used = now_;
     return found->second.converted;
@@ -428,7 +443,7 @@ void ShapeCache::sweep() {
     const auto drop = [&](auto& made) { // what a body has is in use
         for (auto i = made.begin(); i != made.end();) {
             auto& entry = i->second;
-            if (entry.converted.shape.use_count() > 1) entry.used = now_;
+            if (in_use(entry.converted)) entry.used = now_;
             i = entry.used + keep_dispatches < now_ ? made.erase(i) : std::next(i);
         }
     };
@@ -436,7 +451,7 @@ void ShapeCache::sweep() {
     drop(entries_);
 }
 
-std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s) {
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s, std::uint32_t threads) {
     for (const double x : s)
         if (!std::isfinite(x)) throw InputError(shape.name() + ": its scaling must be finite");
     const bool mirrored =
@@ -453,13 +468,13 @@ std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s)
         for (auto& t : plain.triangles) std::swap(t[1], t[2]);
     // Lengths, areas and volumes have changed: check again, but keep the file's indices.
     PreparedMesh mesh;
-    mesh.report = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology).report;
+    mesh.report = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology, threads).report;
     mesh.name = std::move(plain.name);
     mesh.vertices = std::move(plain.vertices);
     mesh.triangles = std::move(plain.triangles);
     mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
     mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
-    return Shape::make(std::move(mesh));
+    return Shape::make(std::move(mesh), threads);
 }
 
 } // namespace raycontact::bullet

@@ -49,6 +49,9 @@ constexpr unsigned bit(Kind kind) {
     return 1u << static_cast<unsigned>(kind);
 }
 
+/// Its box at a transform that is gone soon, for which a MeshShape must keep nothing.
+void aabb_once(const btCollisionShape& shape, const btTransform& transform, btVector3& low, btVector3& high);
+
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
 
@@ -106,7 +109,7 @@ private:
         std::uint64_t used = 0;
     };
     struct Stretched {
-        std::shared_ptr<const Shape> original; ///< kept, since its address is a key
+        Converted original; ///< kept, since its shape's address is a key
         Converted converted;
         std::uint64_t used = 0;
     };
@@ -121,7 +124,7 @@ private:
 };
 
 /// The same shape, stretched in its own frame, with the file's indices; windings turn when it is mirrored. Throws
-/// InputError when an entry is not finite or the result has no area.
-std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& stretch);
+/// InputError when an entry is not finite or the result has no area. threads: as of Shape::make.
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& stretch, std::uint32_t threads = 0);
 
 } // namespace raycontact::bullet

@@ -156,7 +156,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.batch.clear();
     s.objects.mended() = {};
     const std::uint64_t made_before = s.objects.shapes().made();
-    s.objects.shapes().sweep();
+    s.objects.sweep();
     s.objects.look_ahead(s.scene.settings().continuous ? info.m_timeStep : 0);
 
     struct Visit final : btOverlapCallback {
@@ -287,7 +287,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     objects.refresh(*b, state.record1, dispatch);
     state.check_versions(state.record0.version, state.record1.version);
     state.candidates.clear();
-    if (state.record0.misplaced || state.record1.misplaced) return state.clear();
+    if (state.record0.misplaced() || state.record1.misplaced()) return state.clear();
     work.push_back(&state);
     gather(state, state.record0, state.record1, info);
 }
@@ -468,10 +468,12 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
     if (object.getCollisionShape() == nullptr)
         throw InputError("CollisionDispatcher::add_body: the object has no shape; give it one first");
     Objects& objects = state_->objects;
+    if (Object* known = objects.find(object)) known->seen = Object::never; // it may have moved since the last dispatch
     const Object& record = objects.refresh(object, state_->dispatch);
-    if (record.left_out()) {
+    if (std::vector<Fault> faults = objects.faults_of(object, record); !faults.empty()) {
+        objects.faults().take_back(&object);
         objects.drop_unused(&object);
-        throw ObjectError(objects.faults().take(object));
+        throw ObjectError(std::move(faults.front()));
     }
     objects.pin(object, true);
     for (const Leaf& leaf : record.leaves) {
@@ -493,6 +495,7 @@ void CollisionDispatcher::finish_recording() {
 }
 void CollisionDispatcher::remove_body(const btCollisionObject& object) {
     state_->objects.pin(object, false);
+    state_->objects.faults().set(object, {}); // another may lie at its address next
 }
 
 void CollisionDispatcher::refresh(const btCollisionObject& object) {

@@ -4,39 +4,55 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <limits>
 
 namespace raycontact::bullet {
 
-void Faults::add(const btCollisionObject& object, int child, const std::string& what) {
+void Faults::add(Fault fault) {
+    if (known_.size() > most_known) known_.clear();
+    Known& known = known_[fault.object];
+    known.seen = now_;
+    if (std::ranges::find(known.texts, fault.text) != known.texts.end()) return;
+    known.texts.push_back(fault.text);
+    waiting_.push_back(std::move(fault));
+}
+
+void Faults::set(const btCollisionObject& object, std::vector<Fault> faults) {
+    const auto mended = [&](const std::string& text) {
+        return std::ranges::find(faults, text, &Fault::text) == faults.end();
+    };
+    std::erase_if(waiting_, [&](const Fault& one) { return one.object == &object && mended(one.text); });
+    if (const auto known = known_.find(&object); known != known_.end()) {
+        std::erase_if(known->second.texts, mended);
+        if (faults.empty()) known_.erase(known);
+    }
+    for (Fault& fault : faults) add(std::move(fault));
+}
+
+void Faults::take_back(const btCollisionObject* object) {
+    std::erase_if(waiting_, [&](const Fault& fault) {
+        if (fault.object != object) return false;
+        if (const auto known = known_.find(object); known != known_.end()) std::erase(known->second.texts, fault.text);
+        return true;
+    });
+}
+
+void Faults::tell() {
+    while (!waiting_.empty()) { // the callback may ask for contacts, which tells, too
+        const Fault fault = std::move(waiting_.front());
+        waiting_.pop_front();
+        const Callback callback = callback_; // it may put another in its place
+        if (callback) callback(fault);
+    }
+}
+
+Fault fault_of(const btCollisionObject& object, int child, const std::string& what) {
     const btCollisionShape& shape = *object.getCollisionShape();
     std::string text = "object with shape " + std::string(shape.getName());
     if (shape.isCompound()) text += ", child " + std::to_string(child);
     if (object.getUserIndex() >= 0) text += ", user index " + std::to_string(object.getUserIndex());
-    text += ": " + what + "; it has no contacts until that is mended";
-    Fault& known = known_[{&object, child}];
-    if (known.text == text) return;
-    known = {&object, child, std::move(text)};
-    waiting_.push_back(known);
-}
-
-void Faults::forget(const btCollisionObject& object) {
-    if (known_.empty()) return; // as good as always
-    known_.erase(known_.lower_bound({&object, 0}), known_.upper_bound({&object, std::numeric_limits<int>::max()}));
-}
-
-void Faults::tell() {
-    const std::vector<Fault> faults = std::exchange(waiting_, {});
-    for (const Fault& fault : faults)
-        if (callback_) callback_(fault);
-}
-
-Fault Faults::take(const btCollisionObject& object) {
-    Fault fault = known_.lower_bound({&object, 0})->second;
-    forget(object);
-    std::erase_if(waiting_, [&](const Fault& one) { return one.object == &object; });
-    return fault;
+    return {&object, child, text + ": " + what + "; it has no contacts until that is mended"};
 }
 
 void print(const Fault& fault) {

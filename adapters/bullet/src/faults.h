@@ -3,9 +3,11 @@
 
 #include <raycontact/bullet/fault.h>
 
+#include <cstdint>
+#include <deque>
 #include <functional>
-#include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,21 +19,40 @@ public:
     using Callback = std::function<void(const Fault&)>;
 
     void set_callback(Callback callback) { callback_ = std::move(callback); }
-    /// Unless the last one of this child was the same, it waits for tell().
-    void add(const btCollisionObject& object, int child, const std::string& what);
-    /// The object has no fault any more.
-    void forget(const btCollisionObject& object);
-    /// Calls the callback, which may throw, for those that wait.
+    /// Unless it is known, it waits for tell().
+    void add(Fault fault);
+    /// All that an object has now: what else it had is mended.
+    void set(const btCollisionObject& object, std::vector<Fault> faults);
+    /// What of the object waits is as if it had not been found. It may be gone.
+    void take_back(const btCollisionObject* object);
+    /// Calls the callback for those that wait. Where it throws, the others go on waiting.
     void tell();
-    /// The first of an object that has one; as if it had none from now on.
-    Fault take(const btCollisionObject& object);
+    /// Call it once a dispatch: forgets objects that were not in use for a while. They may be gone, and others lie at
+    /// their addresses. in_use(address) must not look there.
+    template <class InUse>
+    void sweep(InUse&& in_use) {
+        if (++now_ % 64 != 0) return;
+        for (auto& [object, known] : known_)
+            if (in_use(object)) known.seen = now_;
+        std::erase_if(known_, [&](const auto& one) { return one.second.seen + keep_dispatches < now_; });
+    }
 
 private:
+    struct Known {
+        std::vector<std::string> texts;
+        std::uint64_t seen = 0;
+    };
+    static constexpr std::uint64_t keep_dispatches = 600;
+    static constexpr std::size_t most_known = 10'000; ///< where nothing is dispatched, only queried
+
     Callback callback_;
-    std::map<std::pair<const btCollisionObject*, int>, Fault> known_; ///< never iterated but for one object
-    std::vector<Fault> waiting_;
+    std::unordered_map<const btCollisionObject*, Known> known_; ///< no order of it shows
+    std::deque<Fault> waiting_;
+    std::uint64_t now_ = 0;
 };
 
+/// child: of the leaves, depth first.
+Fault fault_of(const btCollisionObject& object, int child, const std::string& what);
 /// One line on stderr.
 void print(const Fault& fault);
 

@@ -13,9 +13,9 @@ constexpr std::size_t exact_bounds = 1024;
 constexpr std::uint32_t most_groups = 1024; ///< of large meshes, for bounds
 } // namespace
 
-MeshTree::MeshTree(const Shape& shape) : triangles_(shape.triangles()) {
-    vertices_.reserve(shape.vertices().size());
-    for (const Vec3& v : shape.vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+MeshTree::MeshTree(std::shared_ptr<const Shape> shape) : shape_(std::move(shape)), triangles_(shape_->triangles()) {
+    vertices_.reserve(shape_->vertices().size());
+    for (const Vec3& v : shape_->vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
     if (vertices_.size() > exact_bounds) return;
     points_.reserve(vertices_.size());
     for (const btVector3& v : vertices_) points_.add(v, btVector3(0, 0, 0));
@@ -137,6 +137,10 @@ const Extent& MeshTree::extent() const {
 
 void MeshTree::bounds(const btTransform& transform, btVector3& low, btVector3& high) const {
     cache_.get(transform, low, high, [&](btVector3& from, btVector3& to) { extent().bounds(transform, from, to); });
+}
+
+void MeshTree::bounds_once(const btTransform& transform, btVector3& low, btVector3& high) const {
+    extent().bounds(transform, low, high);
 }
 
 } // namespace raycontact::bullet

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -18,10 +19,9 @@ namespace raycontact::bullet {
 
 /// Boxes over a shape's triangles in preorder, for Bullet's own algorithms, planes and bounds. Body frame, metres. They
 /// are made when they are first asked for, on any thread: a mesh of Bullet's that meets only meshes never needs them.
-/// The shape must live as long.
 class MeshTree {
 public:
-    explicit MeshTree(const Shape& shape);
+    explicit MeshTree(std::shared_ptr<const Shape> shape);
 
     const btVector3& vertex(std::uint32_t index) const { return vertices_[index]; }
     const std::array<std::uint32_t, 3>& triangle(std::uint32_t index) const { return triangles_[index]; }
@@ -50,6 +50,8 @@ public:
     /// vertices, beyond that of the rotated boxes of at most 1024 groups of triangles. Made anew only where this
     /// transform has changed since it was last asked about.
     void bounds(const btTransform& transform, btVector3& low, btVector3& high) const;
+    /// The same for a transform that is gone soon, at an address of no use: its box is not kept.
+    void bounds_once(const btTransform& transform, btVector3& low, btVector3& high) const;
     /// How many boxes bounds() has made, and how many vertices or groups each looked at.
     std::uint64_t bounds_made() const { return cache_.made(); }
     std::size_t bounds_size() const { return extent().size(); }
@@ -76,6 +78,7 @@ private:
     const Boxes& boxes() const;
     const Extent& extent() const;
 
+    std::shared_ptr<const Shape> shape_; ///< has the triangles
     std::vector<btVector3> vertices_;
     std::span<const std::array<std::uint32_t, 3>> triangles_;
     Extent points_; ///< all vertices, where there are few

@@ -65,68 +65,76 @@ Object& Objects::refresh(const btCollisionObject& object, Object& record, std::u
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
     if (!unchanged(object, record)) make_leaves(object, record);
     place_object(object, record);
-    if (ahead_ > 0 && !record.misplaced) expect(object, record);
+    if (ahead_ > 0 && !record.misplaced()) expect(object, record);
     record.seen = dispatch;
     return record;
 }
 
 void Objects::place_object(const btCollisionObject& object, Object& record) {
     Placement whole;
-    record.misplaced = false;
+    record.fault.clear();
     try {
         whole = place(object.getWorldTransform());
     } catch (const InputError& error) {
-        record.misplaced = true;
-        faults_.add(object, 0, error.what());
+        record.fault = error.what();
     }
     record.pose = whole.pose;
     for (Leaf& leaf : record.leaves)
-        if (leaf.kind != Kind::other && !record.misplaced) place_leaf(object, record, leaf, whole);
-    if (record.left_out())
-        mended_.left_out.push_back(&object);
-    else
-        faults_.forget(object);
+        if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
+    std::vector<Fault> faults = faults_of(object, record);
+    if (!faults.empty()) mended_.left_out.push_back(&object);
+    faults_.set(object, std::move(faults));
+}
+
+std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Object& record) {
+    std::vector<Fault> faults;
+    if (record.misplaced()) faults.push_back(fault_of(object, 0, record.fault));
+    for (const Leaf& leaf : record.leaves)
+        if (leaf.left_out())
+            faults.push_back(fault_of(object, static_cast<int>(&leaf - record.leaves.data()), leaf.fault));
+    return faults;
 }
 
 void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole) {
-    const auto child = static_cast<int>(&leaf - record.leaves.data());
-    leaf.misplaced = false;
+    const bool was_left_out = leaf.left_out();
+    const auto leave_out = [&](const InputError& error, bool unusable) {
+        leaf.fault = error.what();
+        leaf.unusable = unusable;
+        if (!was_left_out) record.version = ++versions_; // or its manifolds would stay
+    };
     Placement placed = whole;
     try {
         if (object.getCollisionShape()->isCompound()) placed = place(object.getWorldTransform() * leaf.local);
     } catch (const InputError& error) {
-        leaf.misplaced = true;
-        return faults_.add(object, child, error.what());
+        return leave_out(error, false);
     }
     leaf.pose = placed.pose;
     if (placed.drifted) ++mended_.made_rigid;
     if (placed.stretch != no_stretch) ++mended_.scaled;
-    if (placed.stretch != leaf.stretch) {
+    const Stretch& stretch = stretch_of(leaf.kind, placed);
+    if (stretch != leaf.stretch) {
         drop_body(leaf);
-        leaf.stretch = placed.stretch;
+        leaf.stretch = stretch;
         leaf.unusable = false;
-        record.version = ++versions_;
+        if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
     }
-    if (!in_scene(leaf.kind) || leaf.unusable) return;
-    if (leaf.body == Leaf::no_body)
-        give_body(object, record, leaf);
-    else
+    if (leaf.unusable) return;
+    leaf.fault.clear();
+    if (!in_scene(leaf.kind) || leaf.flat) return;
+    if (leaf.body != Leaf::no_body) {
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
-    if (leaf.body != Leaf::no_body) find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
-}
-
-// A flat convex shape has no mesh to stand for it, and so no body.
-void Objects::give_body(const btCollisionObject& object, const Object& record, Leaf& leaf) {
-    if (leaf.flat) return;
-    try {
-        leaf.converted = shapes_.get(*leaf.shape);
-        if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
-    } catch (const InputError& error) {
-        leaf.unusable = true;
-        return faults_.add(object, static_cast<int>(&leaf - record.leaves.data()), error.what());
+    } else {
+        try {
+            leaf.converted = shapes_.get(*leaf.shape);
+            if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
+        } catch (const InputError& error) {
+            return leave_out(error, true);
+        }
+        leaf.flat = !leaf.converted.shape; // a convex shape without a mesh to stand for it, and so without a body
+        if (leaf.flat) return;
+        leaf.body = scene_.add(leaf.converted.shape, to_pose(leaf.pose));
     }
-    leaf.flat = !leaf.converted.shape;
-    if (!leaf.flat) leaf.body = scene_.add(leaf.converted.shape, to_pose(leaf.pose));
+    find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
 }
 
 // As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object, and
@@ -139,7 +147,7 @@ void Objects::expect(const btCollisionObject& object, const Object& record) {
     btTransform then;
     btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     for (const Leaf& leaf : record.leaves) {
-        if (leaf.body == Leaf::no_body || leaf.misplaced) continue;
+        if (leaf.body == Leaf::no_body || leaf.left_out()) continue;
         try {
             scene_.set_next_pose(leaf.body, to_pose(place(then * leaf.local).pose));
         } catch (const InputError&) {
@@ -185,11 +193,13 @@ void Objects::drop_unused(const btCollisionObject* object) {
     if (i == records_.end() || i->second.uses > 0 || i->second.pinned) return;
     drop_bodies(i->second);
     records_.erase(i);
+    faults_.take_back(object); // who waits longer may find it deleted
 }
 
 void Objects::refresh_pinned(std::uint64_t dispatch) {
     for (const auto& [object, record] : pinned_) refresh(*object, *record, dispatch);
 }
+
 void Objects::pin(const btCollisionObject& object, bool pinned) {
     const auto i = records_.find(&object);
     if (i == records_.end()) return;

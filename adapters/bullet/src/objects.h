@@ -10,9 +10,9 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -30,11 +30,11 @@ struct Leaf {
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid; of all kinds but `other`
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     bool flat = false;                     ///< a convex shape without a mesh to stand for it
-    bool unusable = false;                 ///< no mesh can be made of it
-    bool misplaced = false;                ///< its transform is not finite, or flat
+    std::string fault;                     ///< why it is left out; empty: it takes part
+    bool unusable = false;                 ///< no mesh can be made of it, which is its fault; else its transform
     static constexpr BodyId no_body = ~BodyId{0};
 
-    bool left_out() const { return unusable || misplaced; }
+    bool left_out() const { return !fault.empty(); }
 };
 
 /// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.
@@ -42,15 +42,15 @@ struct Object {
     std::vector<Leaf> leaves;
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid
     std::uint64_t version = 0;                     ///< changes when the leaves change
-    std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over
+    std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over, or `never`
     std::uint32_t uses = 0;                        ///< pairs that refer to it
     bool pinned = false;                           ///< by add_body
     bool stale = false;                            ///< refresh() was called
-    bool misplaced = false;                        ///< all of it
+    std::string fault;                             ///< why all of it is left out: its transform; empty: it is not
 
-    bool left_out() const {
-        return misplaced || std::ranges::any_of(leaves, [](const Leaf& leaf) { return leaf.left_out(); });
-    }
+    static constexpr std::uint64_t never = ~std::uint64_t{0};
+
+    bool misplaced() const { return !fault.empty(); }
 };
 
 /// Of one dispatch.
@@ -62,6 +62,11 @@ struct Mended {
 /// Whether leaves of this kind are bodies of the scene.
 constexpr bool in_scene(Kind kind) {
     return kind == Kind::mesh || kind == Kind::field || kind == Kind::convex;
+}
+
+/// By what a leaf is stretched: rounding is there to save meshes.
+inline const Stretch& stretch_of(Kind kind, const Placement& placement) {
+    return kind == Kind::plane ? placement.unrounded : placement.stretch;
 }
 
 /// Calls visit(shape, local) for each leaf, depth first; `local` in the frame of the whole.
@@ -104,6 +109,14 @@ public:
     /// From now on refresh() also tells the scene where objects will be after so many seconds; 0: not.
     void look_ahead(btScalar seconds) { ahead_ = seconds; }
 
+    /// What leaves the object, or some of its leaves, out.
+    static std::vector<Fault> faults_of(const btCollisionObject& object, const Object& record);
+    /// Call it once a dispatch.
+    void sweep() {
+        shapes_.sweep();
+        faults_.sweep([&](const btCollisionObject* object) { return records_.contains(object); });
+    }
+
     ShapeCache& shapes() { return shapes_; }
     Faults& faults() { return faults_; }
     Mended& mended() { return mended_; }
@@ -116,7 +129,6 @@ private:
     void drop_bodies(Object& record);
     void place_object(const btCollisionObject& object, Object& record);
     void place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole);
-    void give_body(const btCollisionObject& object, const Object& record, Leaf& leaf);
     void expect(const btCollisionObject& object, const Object& record);
 
     Scene& scene_;

@@ -47,8 +47,8 @@ void PairState::run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, co
     const auto found = std::find_if(children_.begin(), children_.end(),
                                     [&](const ChildPair& c) { return c.leaf0 == leaf0 && c.leaf1 == leaf1; });
     btVector3 low0, high0, low1, high1;
-    a.shape->getAabb(pose0, low0, high0);
-    b.shape->getAabb(pose1, low1, high1);
+    aabb_once(*a.shape, pose0, low0, high0);
+    aabb_once(*b.shape, pose1, low1, high1);
     const btVector3 reach(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
     if (!TestAabbAgainstAabb2(low0 - reach, high0 + reach, low1, high1)) {
         if (found != children_.end()) {

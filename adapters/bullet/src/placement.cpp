@@ -12,7 +12,8 @@ namespace {
 
 constexpr btScalar rigid_to = btScalar(1e-5); ///< Bullet's own float rotations are rigid to a few 1e-7
 constexpr double drift = 1e-3;
-constexpr int stretch_bits = 10;
+constexpr int first_bits = 10, most_bits = 30; ///< of a rounded stretch
+constexpr double rounded_to = 2e-3;
 
 bool is_rigid(const btTransform& transform) {
     const btMatrix3x3 square = transform.getBasis().transposeTimes(transform.getBasis());
@@ -37,7 +38,47 @@ Stretch stretch_between(const Pose& rigid, const Pose& given) {
     return stretch;
 }
 
+/// How far the ratio of two stretches is from 1, in all directions together.
+double difference(const Stretch& a, const Stretch& b) {
+    const Stretch i = inverse(a);
+    Stretch ratio = no_stretch; // less the identity
+    for (std::size_t r = 0; r < 9; r += 3)
+        for (std::size_t c = 0; c < 3; ++c)
+            ratio[r + c] = i[r] * b[c] + i[r + 1] * b[c + 3] + i[r + 2] * b[c + 6] - no_stretch[r + c];
+    double squares = 0; // of its eigenvalues: the trace of its square
+    for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) squares += ratio[3 * r + c] * ratio[3 * c + r];
+    return std::sqrt(std::max(squares, 0.0));
+}
+
+/// Each entry by the lengths of its two axes, so that thin directions are as exact as long ones; finer where the thin
+/// direction is none of the axes.
+Stretch round_stretch(const Stretch& stretch) {
+    Stretch rounded = stretch;
+    for (int bits = first_bits; bits <= most_bits; ++bits) {
+        for (std::size_t i = 0; i < 9; ++i) {
+            const double size = std::sqrt(std::fabs(stretch[4 * (i / 3)] * stretch[4 * (i % 3)]));
+            const double step = std::ldexp(1, std::ilogb(size) - bits);
+            rounded[i] = std::round(stretch[i] / step) * step + 0.0; // no negative zeros: equal stretches are equal
+        }
+        if (difference(stretch, rounded) <= rounded_to) return rounded;
+    }
+    return stretch;
+}
+
 } // namespace
+
+Stretch inverse(const Stretch& s) {
+    Stretch adjugate;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const std::size_t r = 3 * ((j + 1) % 3), q = 3 * ((j + 2) % 3), c = (i + 1) % 3, d = (i + 2) % 3;
+            adjugate[3 * i + j] = s[r + c] * s[q + d] - s[r + d] * s[q + c];
+        }
+    const double determinant = s[0] * adjugate[0] + s[1] * adjugate[3] + s[2] * adjugate[6];
+    for (double& x : adjugate) x /= determinant;
+    return adjugate;
+}
 
 Placement place(const btTransform& transform) {
     Placement placement{transform};
@@ -50,17 +91,13 @@ Placement place(const btTransform& transform) {
     const std::array<double, 9>& r = rigid.rotation;
     placement.pose.getBasis().setValue(btScalar(r[0]), btScalar(r[1]), btScalar(r[2]), btScalar(r[3]), btScalar(r[4]),
                                        btScalar(r[5]), btScalar(r[6]), btScalar(r[7]), btScalar(r[8]));
-    Stretch stretch = stretch_between(rigid, given);
-    double off = 0, largest = 0;
-    for (std::size_t i = 0; i < 9; ++i) {
-        off = std::max(off, std::fabs(stretch[i] - no_stretch[i]));
-        largest = std::max(largest, std::fabs(stretch[i]));
-    }
+    const Stretch stretch = stretch_between(rigid, given);
+    double off = 0;
+    for (std::size_t i = 0; i < 9; ++i) off = std::max(off, std::fabs(stretch[i] - no_stretch[i]));
     placement.drifted = off <= drift;
     if (placement.drifted) return placement;
-    const double step = std::ldexp(1, std::ilogb(largest) - stretch_bits);
-    for (double& x : stretch) x = std::round(x / step) * step + 0.0; // no negative zeros: equal stretches are equal
-    placement.stretch = stretch;
+    placement.stretch = round_stretch(stretch);
+    placement.unrounded = stretch;
     return placement;
 }
 

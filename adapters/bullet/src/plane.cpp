@@ -4,8 +4,6 @@
 #include <objects.h>
 #include <vectors.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace raycontact::bullet {
@@ -13,15 +11,17 @@ namespace raycontact::bullet {
 HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose, const Stretch& stretch) {
     HalfSpace space;
     btVector3 normal = plane.getPlaneNormal();
-    btScalar nearer = 1;
+    double nearer = 1;
     if (stretch != no_stretch) { // normal . p <= constant is (inverse normal) . (stretch p) <= constant
-        std::array<btScalar, 9> s;
-        std::transform(stretch.begin(), stretch.end(), s.begin(), [](double x) { return btScalar(x); });
-        normal = btMatrix3x3(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]).inverse() * normal;
-        nearer = normal.length();
+        const Stretch s = inverse(stretch);
+        const Vec3 n = to_vec(normal);
+        const Vec3 turned{s[0] * n.x + s[1] * n.y + s[2] * n.z, s[3] * n.x + s[4] * n.y + s[5] * n.z,
+                          s[6] * n.x + s[7] * n.y + s[8] * n.z};
+        nearer = std::sqrt(turned.x * turned.x + turned.y * turned.y + turned.z * turned.z);
+        normal = to_bullet({turned.x / nearer, turned.y / nearer, turned.z / nearer});
     }
     space.normal = (plane_pose.getBasis() * normal).normalized();
-    space.height = dot_in_double(space.normal, plane_pose.getOrigin()) + double(plane.getPlaneConstant() / nearer);
+    space.height = dot_in_double(space.normal, plane_pose.getOrigin()) + double(plane.getPlaneConstant()) / nearer;
     return space;
 }
 

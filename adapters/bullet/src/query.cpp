@@ -53,10 +53,10 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   try {
                       const Placement placement = place(pose);
                       placed.leaf.pose = placement.pose;
-                      placed.leaf.stretch = placement.stretch;
+                      placed.leaf.stretch = stretch_of(placed.leaf.kind, placement);
                   } catch (const InputError& error) {
-                      placed.leaf.misplaced = true;
-                      faults_.add(*wrap.getCollisionObject(), placed.index, error.what());
+                      placed.leaf.fault = error.what();
+                      faults_.add(fault_of(*wrap.getCollisionObject(), placed.index, placed.leaf.fault));
                   }
                   leaves.push_back(placed);
               });
@@ -70,12 +70,12 @@ void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrap
     const btScalar apart = result.m_closestPointDistanceThreshold;
     for (Placed& one : leaves_a) {
         btVector3 low, high;
-        one.leaf.shape->getAabb(one.pose, low, high);
+        aabb_once(*one.leaf.shape, one.pose, low, high);
         const btVector3 around(apart, apart, apart);
         for (Placed& two : leaves_b) {
-            if (one.leaf.misplaced || two.leaf.misplaced) continue;
+            if (one.leaf.left_out() || two.leaf.left_out()) continue;
             btVector3 low_b, high_b;
-            two.leaf.shape->getAabb(two.pose, low_b, high_b);
+            aabb_once(*two.leaf.shape, two.pose, low_b, high_b);
             if (!TestAabbAgainstAabb2(low - around, high + around, low_b, high_b)) continue;
             run_pair(one, two, a, b, info, result);
             result.setPersistentManifold(manifold); // Bullet's algorithms put in theirs, which is gone
@@ -86,13 +86,13 @@ void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrap
 
 void Queries::convert(Placed& placed, const btCollisionObjectWrapper& whole) {
     Leaf& leaf = placed.leaf;
-    if (!in_scene(leaf.kind) || leaf.converted.shape || leaf.unusable) return;
+    if (!in_scene(leaf.kind) || leaf.converted.shape || leaf.left_out()) return;
     try {
         leaf.converted = shapes_.get_again(*leaf.shape);
         if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
     } catch (const InputError& error) {
-        leaf.unusable = true;
-        faults_.add(*whole.getCollisionObject(), placed.index, error.what());
+        leaf.fault = error.what();
+        faults_.add(fault_of(*whole.getCollisionObject(), placed.index, leaf.fault));
     }
 }
 
@@ -103,7 +103,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
         convert(a, whole_a);
         convert(b, whole_b);
     }
-    if (a.leaf.unusable || b.leaf.unusable) return;
+    if (a.leaf.left_out() || b.leaf.left_out()) return;
     const bool convex = a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex;
     switch (work_for(a.leaf, b.leaf)) {
     case Work::plane:

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/recommend.h>
 
+#include <raycontact/error.h>
+
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <cmath>
 
 namespace raycontact::bullet {
 
 void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
+    if (!(std::isfinite(settings.slop) && settings.slop >= 0))
+        throw InputError("SolverSettings::slop must be finite and not negative");
+    if (!(settings.erp >= 0 && settings.erp <= 1)) throw InputError("SolverSettings::erp must be from 0 to 1");
+    if (settings.iterations < 1) throw InputError("SolverSettings::iterations must be at least 1");
     btContactSolverInfo& info = world.getSolverInfo();
     info.m_linearSlop = btScalar(settings.slop);
     info.m_erp2 = btScalar(settings.erp);

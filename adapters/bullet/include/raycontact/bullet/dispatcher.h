@@ -50,8 +50,8 @@ struct DispatcherStats {
     std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
     std::uint64_t reduced_away = 0;   ///< contacts that no manifold point stands for
     std::uint64_t manifolds = 0;      ///< patches
-    /// Meshes made of Bullet's shapes, because they met something for the first time: some 1 us a triangle in which the
-    /// dispatch waits. add_body() has them made ahead.
+    /// Meshes made of Bullet's shapes, because they met something for the first time: the dispatch waited for them
+    /// (docs/performance.md has how long). add_body() has them made ahead.
     std::uint64_t shapes_made = 0;
     /// Shapes (each child of a compound) whose transform had drifted, as a product of many float matrices does: by at
     /// most 1e-3 of their size. The nearest rigid pose was taken.
@@ -100,17 +100,19 @@ public:
     btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         btPersistentManifold* manifold, ebtDispatcherQueryType type) override;
 
-    /// Optional: makes the object's meshes now, so that no dispatch has to wait for them, gives them their slots in
-    /// scene(), and keeps both even when no pair needs them. So slots follow the caller's order. Returns the id of its
-    /// first mesh. The object must be removed by remove_body before it is deleted. Throws ObjectError, which has the
-    /// object, for one that a dispatch would leave out, and InputError for one without a mesh.
+    /// Optional: makes the object's meshes now, so that no dispatch has to make them (what is left for the first one is
+    /// in docs/performance.md), gives them their slots in scene(), and keeps both even when no pair needs them. So
+    /// slots follow the caller's order. Returns the id of its first mesh. The object must be removed by remove_body
+    /// before it is deleted. Throws ObjectError, which has the object, for one that a dispatch would leave out, and
+    /// InputError for one without a mesh.
     BodyId add_body(const btCollisionObject& object);
     void remove_body(const btCollisionObject& object);
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
-    /// Called at the end of the dispatch or query that found a fault, once for each; it may throw. At first it prints a
-    /// line on stderr; an empty function says nothing.
+    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts. It may
+    /// throw (the others are told next time) and put another in its place. At first it prints a line on stderr; an
+    /// empty function says nothing.
     void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a

@@ -37,8 +37,11 @@ public:
         return tree_;
     }
 
-    /// The world box, enlarged by the margin.
+    /// The world box, enlarged by the margin. It is kept for the next time that this transform, by its address, is
+    /// asked about.
     void getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const override;
+    /// The same for a transform that is gone soon: nothing is kept.
+    void aabb_once(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const;
     void processAllTriangles(btTriangleCallback * callback, const btVector3& aabb_min, const btVector3& aabb_max)
         const override;
     /// Diagonal of the true inertia tensor about the centre of mass for a closed mesh; that of its box for an open one.
@@ -58,6 +61,8 @@ public:
     const char* serialize(void* data, btSerializer* serializer) const override;
 
 private:
+    void find_aabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max, bool keep) const;
+
     std::shared_ptr<const Shape> original_;
     std::shared_ptr<const Shape> scaled_;
     std::shared_ptr<const MeshTree> tree_;
