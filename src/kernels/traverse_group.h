@@ -17,13 +17,16 @@ STRUCT(Runs) {
 
 // Nodes to be visited, and for which run.
 STRUCT(Visits) {
-    uint who[GROUP_VISITS], at[GROUP_VISITS];
+    uint who[GROUP_VISITS];
+    READS(Node) at[GROUP_VISITS];
     uint count;
 };
 
 // Leaves that overlap a run's box: lanes of nodes.
 STRUCT(NearLeaves) {
-    uint run[GROUP_VISITS], node[GROUP_VISITS], lane[GROUP_VISITS], block[GROUP_VISITS];
+    uint run[GROUP_VISITS], lane[GROUP_VISITS];
+    READS(Node) node[GROUP_VISITS];
+    READS(TriangleBlock) block[GROUP_VISITS];
     uint meets[GROUP_VISITS]; // rays of the run, a bit each
     uint count;
 };
@@ -75,7 +78,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
     levels[0].count = runs->count;
     for (uint i = 0u; i < runs->count; ++i) {
         levels[0].who[i] = i;
-        levels[0].at[i] = 0u;
+        levels[0].at[i] = runs->tree[i];
     }
     while (levels[level].count != 0u) {
         const Visits* visits = levels + level;
@@ -83,9 +86,8 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
         level = 1u - level;
         below->count = 0u;
         for (uint i = 0u; i < visits->count; ++i)
-            near[i] = ((full >> visits->who[i]) & 1u) != 0u
-                          ? 0u // it would take the room of others
-                          : children_in(runs->box[visits->who[i]], runs->tree[visits->who[i]] + visits->at[i]);
+            near[i] = ((full >> visits->who[i]) & 1u) != 0u ? 0u // it would take the room of others
+                                                            : children_in(runs->box[visits->who[i]], visits->at[i]);
         for (uint i = 0u; i < visits->count; i += 4u) {
             ulong left = four_sixteens(near, i, visits->count);
             const uint most = bit_count_of_long(left);
@@ -97,15 +99,16 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
             // Written to both lists and counted in one: a branch would be hard to predict.
             for (; left != 0u; left &= left - 1u) {
                 const uint bit = lowest_bit_of_long(left), j = i + bit / 16u, lane = bit % 16u;
-                const uint run = visits->who[j], node = visits->at[j];
-                const uint child = runs->tree[run][node].child[lane], leaf = (uint)((child & LEAF) != 0u);
+                const uint run = visits->who[j];
+                READS(Node) node = visits->at[j];
+                const uint child = node->child[lane], leaf = (uint)((child & LEAF) != 0u);
                 leaves->run[leaves->count] = run;
                 leaves->node[leaves->count] = node;
                 leaves->lane[leaves->count] = lane;
-                leaves->block[leaves->count] = child & ~LEAF;
+                leaves->block[leaves->count] = runs->blocks[run] + (child & ~LEAF);
                 leaves->count += leaf;
                 below->who[below->count] = run;
-                below->at[below->count] = child;
+                below->at[below->count] = runs->tree[run] + child;
                 below->count += 1u - leaf;
             }
         }
@@ -142,19 +145,18 @@ DEVICE uint traverse_group(Closest* closest, const RayGroup* group, READS(ulong)
     find_runs(&runs, group, memory);
     for (uint lost = find_near_leaves(&near, &runs); lost != 0u; lost &= lost - 1u) full |= runs.rays[lowest_bit(lost)];
     for (uint i = 0u; i < near.count; ++i) {
-        const uint meets = rays_that_meet(group, runs.tree[near.run[i]] + near.node[i], near.lane[i]);
+        const uint meets = rays_that_meet(group, near.node[i], near.lane[i]);
         near.meets[i] = runs.rays[near.run[i]] & ~full & meets;
     }
     // The leaves of a fine mesh do not fit the caches.
     for (uint i = 0u; i < near.count; ++i) {
         if (near.meets[i] == 0u) continue;
-        for (uint j = 0u; j < 9u; ++j)
-            PREFETCH((GLOBAL const float*)(runs.blocks[near.run[i]] + near.block[i]), TRIANGLE_LANES * j);
+        for (uint j = 0u; j < 9u; ++j) PREFETCH((GLOBAL const float*)near.block[i], TRIANGLE_LANES * j);
     }
     for (uint i = 0u; i < near.count; i += 4u) {
         for (ulong left = four_sixteens(near.meets, i, near.count); left != 0u; left &= left - 1u) {
-            const uint bit = lowest_bit_of_long(left), r = bit % 16u, leaf = i + bit / 16u;
-            READS(TriangleBlock) block = runs.blocks[near.run[leaf]] + near.block[leaf];
+            const uint bit = lowest_bit_of_long(left), r = bit % 16u;
+            READS(TriangleBlock) block = near.block[i + bit / 16u];
             const RayFrame frame = frame_of(group, r);
             const uint lanes = hit_block(closest + r, &frame, block, group->tolerance[r], true);
             hit_lanes(closest + r, &frame, block, lanes, group->tolerance[r], true);
