@@ -199,9 +199,9 @@ void measure_floor(std::uint32_t triangles, bool ahead) {
     world.addRigidBody(&body);
     for (int i = 0; i < 3; ++i) {
         const double time = milliseconds_of([&] { world.stepSimulation(btScalar(1.0 / 60), 0); });
-        std::printf("step %d      %8.1f ms, %llu shapes made, %llu pairs\n", i, time,
+        std::printf("step %d      %8.1f ms, %llu shapes made, %llu contacts\n", i, time,
                     static_cast<unsigned long long>(dispatcher.stats().shapes_made),
-                    static_cast<unsigned long long>(dispatcher.stats().mesh_pairs));
+                    static_cast<unsigned long long>(dispatcher.stats().contacts));
         if (i == 0)
             std::printf("            %.0f bytes a triangle at most, %.0f kept\n", (resident("VmHWM:") - before) / size,
                         (resident("VmRSS:") - before) / size);

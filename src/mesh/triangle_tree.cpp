@@ -53,14 +53,15 @@ struct Cut {
 // right.
 struct Way {
     float cost = 0;
-    std::size_t of_left = 0;
+    uint of_left = 0;
 };
+// With up to 1, 2, ... parts.
+using Ways = std::array<Way, NODE_LANES>;
 
 struct Branch {
     ItemBox box;
-    std::size_t left = 0, right = 0;    // 0: a leaf
-    uint block = 0;                     // of a leaf
-    std::array<Way, NODE_LANES> ways{}; // with up to 1, 2, ... of them
+    std::size_t left = 0, right = 0; // 0: a leaf
+    uint block = 0;                  // of a leaf
 };
 
 std::size_t blocks_of(std::size_t items) {
@@ -265,9 +266,14 @@ private:
         for_each_part(executor_, parts, [&](const Part& p) {
             subtrees[static_cast<std::size_t>(&p - parts.data())].build(plan_, items_of(p));
         });
-        std::size_t blocks = 0;
-        for (const Subtree& subtree : subtrees) blocks += subtree.blocks.size();
+        items = {};
+        std::size_t blocks = 0, branches = branches_.size();
+        for (const Subtree& subtree : subtrees) {
+            blocks += subtree.blocks.size();
+            branches += subtree.branches.size();
+        }
         tree_.triangle_blocks.reserve(blocks);
+        branches_.reserve(branches);
         for (std::size_t i = 0; i < parts.size(); ++i) graft(std::exchange(subtrees[i], {}), parts[i].branch);
     }
 
@@ -275,7 +281,6 @@ private:
     void graft(const Subtree& subtree, std::size_t at) {
         const std::size_t shift = branches_.size() - 1;
         const auto first_block = static_cast<uint>(tree_.triangle_blocks.size());
-        branches_.reserve(branches_.size() + subtree.branches.size());
         for (std::size_t i = 0; i < subtree.branches.size(); ++i) {
             Branch branch = subtree.branches[i];
             if (branch.left == 0) {
@@ -297,27 +302,29 @@ private:
     // ... leaves and nodes (after Pinter 2010). Opening the largest branches first would leave most nodes above the
     // leaves nearly empty. four_levels: always four levels of branches, to bound the depth.
     void weigh(bool four_levels) {
+        ways_.assign(branches_.size(), {});
         for (std::size_t id = branches_.size(); id-- > 0;) { // children come after their parents
-            Branch& b = branches_[id];
+            const Branch& b = branches_[id];
             if (b.left == 0) continue; // a leaf is tested however it is reached
-            const auto &left = branches_[b.left].ways, &right = branches_[b.right].ways;
-            for (std::size_t most = 1; most < NODE_LANES; ++most) {
-                b.ways[most] = {infinite, (most + 1) / 2};
-                for (std::size_t k = 0; k < most && !four_levels; ++k) {
+            const Ways &left = ways_[b.left], &right = ways_[b.right];
+            Ways& ways = ways_[id];
+            for (uint most = 1; most < NODE_LANES; ++most) {
+                ways[most] = {infinite, (most + 1) / 2};
+                for (uint k = 0; k < most && !four_levels; ++k) {
                     const float cost = left[k].cost + right[most - 1 - k].cost;
-                    if (cost < b.ways[most].cost) b.ways[most] = {cost, k + 1};
+                    if (cost < ways[most].cost) ways[most] = {cost, k + 1};
                 }
             }
-            b.ways[0] = {static_cast<float>(b.box.area()) + b.ways[NODE_LANES - 1].cost, 0};
+            ways[0] = {static_cast<float>(b.box.area()) + ways[NODE_LANES - 1].cost, 0};
             for (std::size_t most = 1; most + 1 < NODE_LANES && !four_levels; ++most)
-                if (b.ways[0].cost <= b.ways[most].cost) b.ways[most] = b.ways[0];
+                if (ways[0].cost <= ways[most].cost) ways[most] = ways[0];
         }
     }
 
     // Finds up to `most` children of a wide node that cover a branch.
     void cover(std::size_t branch, std::size_t most, std::vector<std::size_t>& children) const {
         const Branch& b = branches_[branch];
-        const std::size_t of_left = b.ways[most - 1].of_left;
+        const std::size_t of_left = ways_[branch][most - 1].of_left;
         if (of_left == 0) return children.push_back(branch);
         cover(b.left, of_left, children);
         cover(b.right, most - of_left, children);
@@ -360,6 +367,7 @@ private:
     const TreePlan& plan_;
     Executor& executor_;
     std::vector<Branch> branches_;
+    std::vector<Ways> ways_; ///< by branch
 };
 
 } // namespace

@@ -18,13 +18,18 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 using Key = std::pair<float, uint>; // a coordinate and its source
 
-// What a lane of a block holds (kernels::VertexBlock), and by how much its box reaches around its place.
+// A vertex or an edge, by its name in a block, and the place by which it is ordered.
 struct Source {
-    Point3f place, direction, around;
-    float exit;
+    Point3f place;
     uint name;
 };
 using Sources = std::span<const Source>;
+
+// What else a lane of a block holds (kernels::VertexBlock).
+struct Lane {
+    Point3f direction;
+    float exit;
+};
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
 // tree groups neighbours.
@@ -92,47 +97,45 @@ std::vector<Source> vertices_of(const ShapeData& shape) {
     std::vector<Source> sources;
     sources.reserve(shape.points.size());
     for (uint v = 0; v < shape.points.size(); ++v)
-        if (const float exit = shape.exit_distances[v]; exit > 0) {
-            const Point3f n = rounded(shape.vertex_normals[v]);
-            sources.push_back({shape.points[v], {-n.x, -n.y, -n.z}, {}, std::min(exit, UNBOUNDED), v});
-        }
+        if (shape.exit_distances[v] > 0) sources.push_back({shape.points[v], v});
     return sources;
 }
+Lane vertex_lane(const ShapeData& shape, uint vertex) {
+    return {rounded(-1.0 * shape.vertex_normals[vertex]), std::min(shape.exit_distances[vertex], UNBOUNDED)};
+}
 
+std::array<Vec3, 2> ends_of(const ShapeData& shape, uint edge) {
+    return {shape.corner(edge / 3, edge % 3), shape.corner(edge / 3, (edge + 1) % 3)};
+}
+// Each edge once, by its lowest triangle.
 std::vector<Source> edges_of(const ShapeData& shape) {
-    const auto is_named = [&](uint t, uint c) { // by this triangle, not by the one across
-        const uint across = shape.neighbours[t][c];
-        return across == NONE || across >= t;
-    };
-    std::size_t count = 0;
-    for (uint t = 0; t < shape.mesh.triangles.size(); ++t)
-        for (uint c = 0; c < 3; ++c) count += is_named(t, c) ? 1 : 0;
     std::vector<Source> sources;
-    sources.reserve(count);
-    for (uint t = 0; t < shape.mesh.triangles.size(); ++t)
-        for (uint c = 0; c < 3; ++c) {
-            if (!is_named(t, c)) continue;
-            const Vec3 from = shape.corner(t, c), to = shape.corner(t, (c + 1) % 3), half = 0.5 * (to - from);
-            const Point3f h = rounded(half);
-            sources.push_back({rounded(0.5 * (from + to)),
-                               h,
-                               {std::fabs(h.x), std::fabs(h.y), std::fabs(h.z)},
-                               static_cast<float>(length(half)),
-                               3 * t + c});
-        }
+    sources.reserve(3 * shape.mesh.triangles.size() / 2);
+    for (uint edge = 0; edge < 3 * shape.mesh.triangles.size(); ++edge) {
+        const uint across = shape.neighbours[edge / 3][edge % 3];
+        if (across < edge / 3) continue;
+        const auto [from, to] = ends_of(shape, edge);
+        sources.push_back({rounded(0.5 * (from + to)), edge});
+    }
     return sources;
+}
+Lane edge_lane(const ShapeData& shape, uint edge) {
+    const auto [from, to] = ends_of(shape, edge);
+    const Vec3 half = 0.5 * (to - from);
+    return {rounded(half), static_cast<float>(length(half))};
 }
 
 std::size_t blocks_of(std::size_t sources) {
     return (sources + lanes - 1) / lanes;
 }
 
-void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executor& executor) {
+// reach: how far a source reaches from its place, in lengths of its direction.
+void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Lane (*lane_of)(const ShapeData&, uint),
+           float reach, Executor& executor) {
     std::vector<uint> order(sources.size());
     std::iota(order.begin(), order.end(), 0U);
     order_by_place(sources, order, executor);
 
-    constexpr Source nothing{{nan, nan, nan}, {}, {}, 0, NONE};
     tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
     below.reserve(blocks_of(order.size()));
@@ -140,16 +143,18 @@ void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executo
         kernels::VertexBlock& block = shape.vertex_blocks.emplace_back();
         Bounds& bounds = below.emplace_back();
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const Source& own = first + lane < order.size() ? sources[order[first + lane]] : nothing;
+            const bool empty = first + lane >= order.size();
+            const Source own = empty ? Source{{nan, nan, nan}, NONE} : sources[order[first + lane]];
+            const Lane more = empty ? Lane{} : lane_of(shape, own.name);
             const float place[] = {own.place.x, own.place.y, own.place.z};
-            const float direction[] = {own.direction.x, own.direction.y, own.direction.z};
-            const float around[] = {own.around.x, own.around.y, own.around.z};
+            const float direction[] = {more.direction.x, more.direction.y, more.direction.z};
             for (std::size_t k = 0; k < 3; ++k) {
+                const float around = reach * std::fabs(direction[k]);
                 block.position[k][lane] = place[k];
                 block.direction[k][lane] = direction[k];
-                bounds.add(k, place[k] - around[k], place[k] + around[k]);
+                bounds.add(k, place[k] - around, place[k] + around);
             }
-            block.exit[lane] = own.exit;
+            block.exit[lane] = more.exit;
             block.vertex[lane] = own.name;
         }
     }
@@ -183,10 +188,11 @@ void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Executo
 } // namespace
 
 void build_clusters(ShapeData& shape, Executor& executor) {
-    const std::vector<Source> vertices = vertices_of(shape), edges = edges_of(shape);
-    shape.vertex_blocks.reserve(blocks_of(vertices.size()) + blocks_of(edges.size()));
-    build(shape, shape.header.vertices, vertices, executor);
-    build(shape, shape.header.edges, edges, executor);
+    const std::size_t edges = 3 * shape.mesh.triangles.size() / 2; // of a closed mesh
+    shape.vertex_blocks.reserve(blocks_of(shape.points.size()) + blocks_of(edges));
+    build(shape, shape.header.vertices, vertices_of(shape), vertex_lane, 0, executor);
+    build(shape, shape.header.edges, edges_of(shape), edge_lane, 1, executor);
+    shape.vertex_blocks.shrink_to_fit();
     shape.clusters.shrink_to_fit();
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/check.h"
 #include "mesh/measure.h"
+#include "platform/system.h"
 #include "shape/build.h"
 
 #include <raycontact/error.h>
@@ -16,8 +17,9 @@ namespace raycontact {
 
 namespace {
 
-constexpr double rounding = 1.1920929e-7;  // 2^-23
-constexpr std::size_t few_triangles = 512; // one thread has them done before others wake
+constexpr double rounding = 1.1920929e-7;       // 2^-23
+constexpr std::size_t few_triangles = 512;      // one thread has them done before others wake
+constexpr std::size_t many_triangles = 1 << 16; // a millisecond to give memory back is not noticed
 
 // Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
 void round_vertices(ShapeData& shape) {
@@ -116,8 +118,11 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     for (const float exit : shape.exit_distances)
         if (std::isfinite(exit)) longest_exit = std::max(longest_exit, exit);
     shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
-    normals = {}; // here the most memory is in use
+    normals = {};
+    const bool large = shape.mesh.triangles.size() > many_triangles;
+    if (large) platform::trim_heap(); // what the tree took; here the most memory is in use
     build_clusters(shape, executor);
+    if (large) platform::trim_heap();
     set_box_clearance(shape.header);
     shape.set_places();
     return std::shared_ptr<const Shape>(new Shape(std::move(data)));

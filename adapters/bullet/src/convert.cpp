@@ -346,9 +346,11 @@ Form form_of(const btCollisionShape& shape) {
     return form;
 }
 
-Converted ShapeCache::convert(const Mesh& mesh, Repair repair) {
+Converted ShapeCache::convert(Mesh mesh, Repair repair) {
     ++made_;
-    const auto shape = Shape::make(prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_), threads_);
+    PreparedMesh prepared = prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_);
+    mesh = {}; // a large one is large beside its shape
+    const auto shape = Shape::make(std::move(prepared), threads_);
     return {shape, std::make_shared<const MeshTree>(shape)};
 }
 
@@ -365,8 +367,8 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
     }
     sweep();
     Entry entry;
-    const Mesh mesh = stand_in(shape);
-    if (!mesh.triangles.empty()) entry.converted = convert(mesh, Repair::allowed);
+    Mesh mesh = stand_in(shape);
+    if (!mesh.triangles.empty()) entry.converted = convert(std::move(mesh), Repair::allowed);
     entry.numbers = std::move(numbers);
     entry.used = now_;
     return entries_.emplace(hash, std::move(entry))->second.converted;
@@ -391,7 +393,7 @@ Converted ShapeCache::get(const btCollisionShape& shape) {
     Entry entry;
     // We chose the windings of a height field; for an open sheet repairs could only guess.
     const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
-    entry.converted = convert(mesh, repair);
+    entry.converted = convert(std::move(mesh), repair);
     if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
     entry.second_hash = second_hash;
     entry.used = now_;

@@ -114,7 +114,7 @@ private:
         std::uint64_t used = 0;
     };
     Converted get_convex(const btCollisionShape& shape);
-    Converted convert(const Mesh& mesh, Repair repair);
+    Converted convert(Mesh mesh, Repair repair);
 
     std::uint32_t threads_;
     std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
