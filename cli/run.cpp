@@ -185,6 +185,7 @@ RunLog log_of(const Simulation& scene, const std::string& summary_json) {
 }
 
 void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::uint32_t pictures, bool cut_short) {
+    const auto start = std::chrono::steady_clock::now();
     const int before = stop_signal();
     folder.write("steps.csv", steps_csv(log.rows));
     raycontact::report::ReportOptions report{pictures, compare_with_gimpact(log)};
@@ -195,7 +196,8 @@ void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::
     progress.done();
     folder.keep(cut_short);
     if (stop_signal() != before) std::cerr << "drawing was ended: the report lacks pictures\n";
-    std::cerr << "report: " << folder.kept("report.html").string() << '\n';
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::cerr << fmt::format("report: {}, made in {:.1f} s\n", folder.kept("report.html").string(), seconds.count());
 }
 
 void run(const RunOptions& options) {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace raycontact::report {
 namespace {
@@ -58,6 +59,7 @@ std::vector<std::size_t> film_frames_of(const scenes::RunLog& log, const ReportO
 class Drawing {
 public:
     explicit Drawing(const ReportOptions& options) : options_(options) {}
+    std::uint32_t done() const { return done_; }
     bool goes_on() const { return !options_.stop || !options_.stop(); }
     void did(std::uint32_t work) {
         done_ += work;
@@ -172,18 +174,19 @@ void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Re
     describe(log, page);
     page.plots = plots_of(log);
     page.comparison = options.comparison;
-    const Renderer renderer(log);
+    std::optional<Renderer> renderer; // building its scenes takes a while
+    if (options.pictures > 0) renderer.emplace(log);
     Drawing drawing(options);
     for (const std::size_t k : chosen_frames(log.frames.size(), options.pictures)) {
         if (!drawing.goes_on()) break;
         const scenes::Frame& frame = log.frames[k];
-        const Image image = renderer.render(frame, picture_width, picture_height);
+        const Image image = renderer->render(frame, picture_width, picture_height);
         folder.write(fmt::format("pictures/step-{:03}.png", frame.step), encode_png(image));
         page.stills.push_back({encode_jpeg(image, jpeg_quality),
                                fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
         drawing.did(picture_cost);
     }
-    page.film = film_of(log, film_frames_of(log, options), renderer, drawing);
+    if (renderer) page.film = film_of(log, film_frames_of(log, options), *renderer, drawing);
     if (!page.film.empty()) {
         folder.write(film_name, page.film);
         page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
@@ -193,6 +196,8 @@ void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Re
             fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. The "
                         "camera follows the pile from picture to picture. {}",
                         log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
+    if (drawing.done() < work_of(log, options))
+        page.footer = "Drawing was ended before all pictures were made. " + page.footer;
     folder.write(page_name, make_page(page));
 }
 
