@@ -183,6 +183,7 @@ struct Scene::State {
         try {
             work();
         } catch (...) {
+            narrow.parts().forget(); // slots may get other bodies before the next step
             coming.clear();
             contacts.clear();
             throw;

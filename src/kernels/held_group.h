@@ -55,8 +55,8 @@ DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const S
 DEVICE void fetch_triangle(const RayArrays* arrays, HeldGroup* group, uint r) {
     const uint triangle_lane = group->triangle_lane[r], lane = triangle_lane % TRIANGLE_LANES;
     READS(ShapeHeader) shape = group->rays.shape[r];
-    READS(TriangleBlock)
-    block = AT(arrays->memory, TriangleBlock, shape->triangle_blocks) + triangle_lane / TRIANGLE_LANES;
+    READS(TriangleBlock) blocks = AT(arrays->memory, TriangleBlock, shape->triangle_blocks);
+    READS(TriangleBlock) block = blocks + triangle_lane / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
     group->cap[r] = group->tests_cap[r] != 0u ? AT(arrays->memory, uint, shape->caps)[triangle_lane] : 0u;

@@ -108,7 +108,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
                 leaves->block[leaves->count] = runs->blocks[run] + (child & ~LEAF);
                 leaves->count += leaf;
                 below->who[below->count] = run;
-                below->at[below->count] = runs->tree[run] + child;
+                below->at[below->count] = runs->tree[run] + (child & (leaf - 1u)); // of a leaf it is overwritten
                 below->count += 1u - leaf;
             }
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structs in device buffers: scalars only, sizes checked, offsets instead of pointers.
+// The structs in device buffers: scalars only, sizes checked, offsets instead of pointers (ShapeHeader has places).
 
 // Pointers into buffers, without aliases: to data that is only read, and to data that is written (and may be read).
 #define READS(type) GLOBAL const type* RESTRICT

@@ -24,9 +24,9 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     build_clearance_grid(shape, *made, executor, stop);
     build_caps(shape, *made, executor, stop);
     if (stop.stop_requested()) return nullptr;
-    made->header.outside_cells = place_of(made->outside_cells);
-    made->header.clearances = place_of(made->clearances);
-    made->header.caps = place_of(made->caps);
+    made->header.outside_cells = host_place(made->outside_cells);
+    made->header.clearances = host_place(made->clearances);
+    made->header.caps = host_place(made->caps);
     return made;
 }
 

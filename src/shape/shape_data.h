@@ -12,9 +12,9 @@ namespace raycontact {
 /// A vertex or box corner as the kernels see it: float32, relative to the shape's centre.
 using Point3f = kernels::Packed3;
 
-/// Where an array is, for AT() without a buffer (kernels/types.h).
+/// Where an array is, for AT() without a buffer (docs/dialect.md).
 template <class T>
-kernels::ulong place_of(const std::vector<T>& values) {
+kernels::ulong host_place(const std::vector<T>& values) {
     return reinterpret_cast<std::uintptr_t>(values.data()) / sizeof(kernels::ulong);
 }
 
@@ -50,13 +50,13 @@ struct ShapeData : TriangleTree {
 
     /// Enters where the kernel arrays are, once they are all there.
     void set_places() {
-        header.nodes = place_of(nodes);
-        header.triangle_blocks = place_of(triangle_blocks);
-        header.faces = place_of(faces);
-        header.face_normals = place_of(face_normals);
-        header.vertex_blocks = place_of(vertex_blocks);
-        header.clusters = place_of(clusters);
-        header.clearances = place_of(clearances);
+        header.nodes = host_place(nodes);
+        header.triangle_blocks = host_place(triangle_blocks);
+        header.faces = host_place(faces);
+        header.face_normals = host_place(face_normals);
+        header.vertex_blocks = host_place(vertex_blocks);
+        header.clusters = host_place(clusters);
+        header.clearances = host_place(clearances);
     }
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }

@@ -7,15 +7,26 @@
 
 namespace raycontact {
 
-// What is copied begins in a line of its own.
+namespace {
+
 template <class T>
-void ShapeStore::copy(const std::vector<T>& values, kernels::ulong& place) {
-    constexpr std::size_t line = 64;
-    const std::size_t first = arrays_.memory.size(), bytes = values.size() * sizeof(T);
-    arrays_.memory.extend(device_, first + (bytes + line - 1) / line * (line / sizeof(kernels::ulong)));
-    if (bytes > 0)
-        device_.queue().write(*arrays_.memory.buffer(), first * sizeof(kernels::ulong), values.data(), bytes);
-    place = first;
+std::pair<const std::vector<T>&, kernels::ulong&> array(const std::vector<T>& values, kernels::ulong& place) {
+    return {values, place};
+}
+
+} // namespace
+
+// Arrays go to the end of the device's memory, each in lines of its own; their places are entered.
+template <class... T>
+void ShapeStore::copy(const std::pair<const std::vector<T>&, kernels::ulong&>&... arrays) {
+    constexpr std::size_t line = 64, word = sizeof(kernels::ulong);
+    std::size_t end = arrays_.memory.size();
+    ((arrays.second = end, end += (arrays.first.size() * sizeof(T) + line - 1) / line * (line / word)), ...);
+    arrays_.memory.extend(device_, end);
+    const auto write = [&](kernels::ulong place, const void* values, std::size_t bytes) {
+        if (bytes > 0) device_.queue().write(*arrays_.memory.buffer(), word * place, values, bytes);
+    };
+    (write(arrays.second, arrays.first.data(), arrays.first.size() * sizeof(T)), ...);
 }
 
 void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
@@ -62,14 +73,13 @@ bool ShapeStore::upload(Entry& entry) {
     const Accelerators* more = entry.shape->accelerators();
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
     if (!device_.traits().shares_memory) {
-        copy(data.nodes, header.nodes);
-        copy(data.triangle_blocks, header.triangle_blocks);
-        copy(data.faces, header.faces);
-        copy(data.face_normals, header.face_normals);
-        copy(data.vertex_blocks, header.vertex_blocks);
-        copy(data.clusters, header.clusters);
-        copy(more != nullptr ? more->clearances : data.clearances, header.clearances);
-        if (more != nullptr) copy(more->outside_cells, header.outside_cells);
+        static const std::vector<kernels::uint> none;
+        copy(array(data.nodes, header.nodes), array(data.triangle_blocks, header.triangle_blocks),
+             array(data.faces, header.faces), array(data.face_normals, header.face_normals),
+             array(data.vertex_blocks, header.vertex_blocks), array(data.clusters, header.clusters),
+             array(more != nullptr ? more->clearances : data.clearances, header.clearances),
+             array(more != nullptr ? more->outside_cells : none, header.outside_cells));
+        header.caps = 0; // of no use there
     }
     headers_.reserve(headers_.size() + 1);
     plain_shapes_.resize(headers_.size() + 1, nullptr);
@@ -114,8 +124,8 @@ void ShapeStore::upload_accelerators(Entry& entry, const Accelerators& more) {
         header.face_normals = before.face_normals;
         header.vertex_blocks = before.vertex_blocks;
         header.clusters = before.clusters;
-        copy(more.clearances, header.clearances);
-        copy(more.outside_cells, header.outside_cells);
+        copy(array(more.clearances, header.clearances), array(more.outside_cells, header.outside_cells));
+        header.caps = 0;
     }
     device_.queue().write(*arrays_.headers.buffer(), entry.index * sizeof header, &header, sizeof header);
     headers_[entry.index] = header;

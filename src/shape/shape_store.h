@@ -6,6 +6,7 @@
 #include <raycontact/shape.h>
 
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -47,8 +48,8 @@ private:
     };
     bool upload(Entry& entry); ///< returns whether it has accelerators
     void upload_accelerators(Entry& entry, const Accelerators& more);
-    template <class T>
-    void copy(const std::vector<T>& values, kernels::ulong& place);
+    template <class... T>
+    void copy(const std::pair<const std::vector<T>&, kernels::ulong&>&... arrays);
     void note_plain(const Entry& entry);
     void no_longer_plain(kernels::uint index, const Shape* shape);
 

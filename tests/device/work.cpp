@@ -120,7 +120,8 @@ std::vector<Way> cpu_ways() {
 Outcome run_work(OpenDevice opened, const Work& work, const std::vector<Way>& ways) {
     auto trace = std::make_shared<Trace>();
     const bool shares = std::ranges::any_of(ways, [](const Way& way) { return way.method == Method::certified; });
-    opened.device = std::make_unique<TracingDevice>(std::move(opened.device), trace, shares);
+    const bool may = opened.device->traits().shares_memory;
+    opened.device = std::make_unique<TracingDevice>(std::move(opened.device), trace, shares && may);
     Part part(std::move(opened));
     Outcome outcome = run_part(part, work, ways);
     outcome.trace = std::move(*trace);

@@ -63,7 +63,7 @@ struct Range {
 namespace raycontact::kernels {
 template <class T>
 DEVICE const T* at_place(const ulong* memory, ulong place) {
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): `memory` may be null, and an offset from that is none
+    // By numbers: `memory` may be null, from which no offset is allowed.
     return reinterpret_cast<const T*>(reinterpret_cast<std::uintptr_t>(memory) + sizeof(ulong) * place);
 }
 #if defined(__GNUC__) || defined(__clang__)

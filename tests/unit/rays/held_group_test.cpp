@@ -45,8 +45,8 @@ Ground any_ground(Floats kind, Random& random) {
     for (std::uint32_t s = 0; s < 3; ++s) {
         kernels::ShapeHeader shape{};
         shape.triangle_blocks =
-            place_of(ground.blocks) + sizeof(kernels::TriangleBlock) / sizeof(kernels::ulong) * blocks_of_shape * s;
-        shape.face_normals = place_of(ground.normals)
+            host_place(ground.blocks) + sizeof(kernels::TriangleBlock) / sizeof(kernels::ulong) * blocks_of_shape * s;
+        shape.face_normals = host_place(ground.normals)
                              + sizeof(kernels::Packed3) * TRIANGLE_LANES / sizeof(kernels::ulong) * blocks_of_shape * s;
         shape.closed = random.below(2);
         shape.tolerance = static_cast<float>(std::pow(10.0, random.uniform(-7, -4)));
