@@ -5,7 +5,6 @@
 
 #include <raycontact/body_id.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

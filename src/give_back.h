@@ -12,6 +12,19 @@ void give_back(std::vector<T>& list) {
     constexpr std::size_t kept_anyway = 1 << 20; // bytes
     if (list.capacity() * sizeof(T) > kept_anyway && list.capacity() > 4 * list.size()) list.shrink_to_fit();
 }
+/// Of anything else that can.
+template <class T>
+requires requires(T& kept) {
+    kept.give_back();
+}
+void give_back(T& kept) {
+    kept.give_back();
+}
+template <class First, class Second, class... More>
+void give_back(First& first, Second& second, More&... more) {
+    give_back(first);
+    give_back(second, more...);
+}
 
 /// Frees a list's memory, which "list = {}" does not.
 template <class T>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/pose.h>
 
+#include "mesh/vector.h"
 #include "pose_fault.h"
 
 #include <raycontact/error.h>
@@ -46,8 +47,7 @@ std::array<double, 9> nearest_rotation(std::array<double, 9> r, int rounds) {
 const char* infinite_part(const Pose& pose) {
     for (const double x : pose.rotation)
         if (!std::isfinite(x)) return "the rotation has an entry that is not a finite number";
-    if (!std::isfinite(pose.translation.x) || !std::isfinite(pose.translation.y) || !std::isfinite(pose.translation.z))
-        return "the translation has an entry that is not a finite number";
+    if (!is_finite(pose.translation)) return "the translation has an entry that is not a finite number";
     return nullptr;
 }
 
@@ -108,10 +108,7 @@ Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y,
 }
 
 Vec3 transform_point(const Pose& pose, const Vec3& p) {
-    const auto& r = pose.rotation;
-    const Vec3& t = pose.translation;
-    return {((r[0] * p.x + r[1] * p.y) + r[2] * p.z) + t.x, ((r[3] * p.x + r[4] * p.y) + r[5] * p.z) + t.y,
-            ((r[6] * p.x + r[7] * p.y) + r[8] * p.z) + t.z};
+    return rotated(pose.rotation, p) + pose.translation;
 }
 
 Pose relative_pose(const Pose& outer, const Pose& inner) {
@@ -122,10 +119,7 @@ Pose relative_pose(const Pose& outer, const Pose& inner) {
         for (int column = 0; column < 3; ++column)
             relative.rotation[3 * row + column] =
                 (o[row] * i[column] + o[3 + row] * i[3 + column]) + o[6 + row] * i[6 + column];
-    const Vec3 d{inner.translation.x - outer.translation.x, inner.translation.y - outer.translation.y,
-                 inner.translation.z - outer.translation.z};
-    relative.translation = {(o[0] * d.x + o[3] * d.y) + o[6] * d.z, (o[1] * d.x + o[4] * d.y) + o[7] * d.z,
-                            (o[2] * d.x + o[5] * d.y) + o[8] * d.z};
+    relative.translation = rotated_back(o, inner.translation - outer.translation);
     return relative;
 }
 

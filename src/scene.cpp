@@ -113,7 +113,7 @@ struct Scene::State {
         try {
             for (const SlotPair& pair : slot_pairs)
                 for (const BodySlot slot : {pair.first, pair.second})
-                    if (narrow.parts().is_plain(bodies[slot].shape_index)) meet(*bodies[slot].shape);
+                    if (!bodies[slot].shape->is_prepared()) meet(*bodies[slot].shape);
         } catch (const std::bad_alloc&) {
         }
     }
@@ -139,10 +139,7 @@ struct Scene::State {
                 return world_box(i, shape.box_min(), shape.box_max(), pose, open ? double(reach) : 0);
             };
             boxes.push_back(box_at(bodies[i].pose));
-            if (next.empty()) continue;
-            const WorldBox then = box_at(next[i]);
-            boxes.back().low = least(boxes.back().low, then.low);
-            boxes.back().high = most(boxes.back().high, then.high);
+            if (!next.empty()) boxes.back().add(box_at(next[i]));
         }
         pairs_stand = false;
         sweep_and_prune(boxes, slot_pairs);
@@ -204,9 +201,7 @@ struct Scene::State {
         slots.step_done();
         want_shapes();
         cut_to_slots();
-        give_back(boxes);
-        give_back(pairs);
-        give_back(slot_pairs);
+        give_back(boxes, pairs, slot_pairs);
     }
 
     void find_coming() {
@@ -385,15 +380,8 @@ std::span<const Contact> Scene::contacts() const {
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
-    const auto [low, high] = std::minmax({slot_of(a), slot_of(b)});
-    Contact wanted;
-    wanted.body_a = low;
-    wanted.body_b = high;
-    const auto by_bodies = [](const Contact& p, const Contact& q) {
-        return SlotPair(p.body_a, p.body_b) < SlotPair(q.body_a, q.body_b);
-    };
-    const auto [first, last] = std::equal_range(state_->contacts.begin(), state_->contacts.end(), wanted, by_bodies);
-    return {first, last};
+    const SlotPair wanted = std::minmax({slot_of(a), slot_of(b)});
+    return std::ranges::equal_range(state_->contacts, wanted, {}, pair_of);
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/contact.h>
+
 #include <cstdint>
 #include <utility>
 
@@ -11,5 +13,8 @@ using BodySlot = std::uint32_t;
 
 /// An unordered pair of bodies by their slots, first < second.
 using SlotPair = std::pair<BodySlot, BodySlot>;
+inline SlotPair pair_of(const Contact& contact) {
+    return {contact.body_a, contact.body_b};
+}
 
 } // namespace raycontact

@@ -26,10 +26,6 @@ std::vector<double> costs_of(Parts& parts) {
     return costs;
 }
 
-SlotPair pair_of(const Contact& contact) {
-    return {contact.body_a, contact.body_b};
-}
-
 } // namespace
 
 NarrowPhase::NarrowPhase(const Settings& settings) : NarrowPhase(settings, open_devices(settings)) {}

@@ -69,7 +69,7 @@ std::vector<WorldBox> make_boxes(std::size_t count) {
     std::vector<WorldBox> boxes;
     for (BodySlot i = 0; i < count; ++i) {
         const double x = half * random.symmetric(), y = half * random.symmetric(), z = half * random.symmetric();
-        boxes.push_back({i, {x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}});
+        boxes.push_back({{{x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}}, i});
     }
     return boxes;
 }

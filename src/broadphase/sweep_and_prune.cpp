@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "broadphase/sweep_and_prune.h"
 
-#include "mesh/vector.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,10 +11,10 @@ namespace {
 // The axis of largest variance of the boxes' middles: fewest overlaps per box.
 std::size_t widest_axis(const std::vector<WorldBox>& boxes) {
     Vec3 mean, spread;
-    for (const WorldBox& box : boxes) mean = mean + 0.5 * (box.low + box.high);
+    for (const WorldBox& box : boxes) mean = mean + box.middle();
     mean = (1 / static_cast<double>(boxes.size())) * mean;
     for (const WorldBox& box : boxes) {
-        const Vec3 d = 0.5 * (box.low + box.high) - mean;
+        const Vec3 d = box.middle() - mean;
         spread = spread + Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
     }
     return spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
@@ -33,7 +31,7 @@ WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, cons
     const Vec3 e{std::fabs(r[0]) * half.x + std::fabs(r[1]) * half.y + std::fabs(r[2]) * half.z + slack,
                  std::fabs(r[3]) * half.x + std::fabs(r[4]) * half.y + std::fabs(r[5]) * half.z + slack,
                  std::fabs(r[6]) * half.x + std::fabs(r[7]) * half.y + std::fabs(r[8]) * half.z + slack};
-    return {body, c - e, c + e};
+    return {{c - e, c + e}, body};
 }
 
 void sweep_and_prune(std::vector<WorldBox>& boxes, std::vector<SlotPair>& pairs) {

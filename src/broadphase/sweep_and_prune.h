@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/measure.h"
 #include "slot_pair.h"
 
-#include <raycontact/pose.h>
-
-#include <cstdint>
 #include <vector>
 
 namespace raycontact {
 
 /// World box of a body, metres.
-struct WorldBox {
+struct WorldBox : Box {
     BodySlot body = 0;
-    Vec3 low, high;
 };
 
 /// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.

@@ -4,9 +4,7 @@
 #include "broadphase/sweep_and_prune.h"
 #include "edges/pair_meshes.h"
 #include "give_back.h"
-#include "mesh/measure.h"
 #include "pairs/displacement.h"
-#include "shape/mesh_rays.h"
 
 #include <algorithm>
 
@@ -19,9 +17,8 @@ constexpr std::size_t pairs_in_block = 32;
 constexpr double least_motion = 0.005;
 
 Box box_of(const ShapeData& shape, const Pose& pose) {
-    const auto &low = shape.header.low, &high = shape.header.high;
-    const WorldBox box = world_box(0, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, pose, 0);
-    return {box.low, box.high};
+    const Box own = box_of(shape);
+    return world_box(0, own.low, own.high, pose, 0);
 }
 
 // One direction of a pair, by the target's centred frame.
@@ -48,25 +45,16 @@ void find(const Course& course, const SlotPair& pair, VertexBody side, Direction
         // From a hair behind, so that a vertex on the surface that is about to enter counts.
         const MeshHit hit = closest_hit(target, {from, (1 / way) * (to - from), -hair, way});
         if (hit.face == NONE || hit.from_inside) continue;
-        const Vec3 out = normal_of(target, hit.face);
-        const Vec3 turned = transform_point({course.target.centred.rotation, {}}, out);
+        const Vec3 out = unit(area_normal(target, hit.face));
         const double gap = std::max(0.0, dot(from - target.corner(hit.face, 0), out));
-        const double sign = side == VertexBody::a ? -1 : 1;
-        Contact& contact = found.emplace_back();
-        contact.body_a = pair.first;
-        contact.body_b = pair.second;
-        contact.vertex_body = side;
+        Contact& contact = found.emplace_back(contact_at(pair, side, course.target, from, out));
         contact.vertex = source.mesh.vertex_index[v];
         contact.triangle = target.mesh.triangle_index[hit.face];
-        contact.point = transform_point(course.target.centred, from);
-        contact.normal = {static_cast<float>(sign * turned.x), static_cast<float>(sign * turned.y),
-                          static_cast<float>(sign * turned.z)};
         contact.depth = static_cast<float>(-gap);
         contact.ray_length = static_cast<float>(std::max(0.0, hit.distance));
         if (direction == Direction::weighted) contact.weight = source.vertex_areas[v];
     }
-    std::sort(found.begin() + first, found.end(),
-              [](const Contact& p, const Contact& q) { return p.vertex < q.vertex; });
+    std::ranges::sort(found.begin() + first, found.end(), {}, &Contact::vertex);
 }
 
 void find(const SlotPair& pair, std::span<const PlacedBody> bodies, std::span<const Pose> next, Direction direction,
@@ -86,15 +74,12 @@ void find(const SlotPair& pair, std::span<const PlacedBody> bodies, std::span<co
 
 void ComingContacts::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
                          std::span<const Pose> next, std::span<const SlotPair> pairs) {
-    const auto block_count = static_cast<std::uint32_t>((pairs.size() + pairs_in_block - 1) / pairs_in_block);
-    blocks_.resize(block_count);
-    executor.run(block_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t b = begin; b < end; ++b) {
-            blocks_[b].clear();
-            const std::size_t first = b * pairs_in_block;
-            for (const SlotPair& pair : pairs.subspan(first, std::min(pairs.size() - first, pairs_in_block)))
-                find(pair, bodies, next, direction, blocks_[b]);
-        }
+    blocks_.resize((pairs.size() + pairs_in_block - 1) / pairs_in_block);
+    executor.each(blocks_.size(), 1, [&](std::uint32_t b) {
+        blocks_[b].clear();
+        const std::size_t first = b * pairs_in_block;
+        for (const SlotPair& pair : pairs.subspan(first, std::min(pairs.size() - first, pairs_in_block)))
+            find(pair, bodies, next, direction, blocks_[b]);
     });
     contacts_.clear();
     for (std::vector<Contact>& block : blocks_) {

@@ -38,10 +38,7 @@ public:
         return std::span(all_).subspan(first(directed), ends_[directed] - first(directed));
     }
     /// After a step: frees memory that it hardly used.
-    void give_back() {
-        raycontact::give_back(all_);
-        raycontact::give_back(ends_);
-    }
+    void give_back() { raycontact::give_back(all_, ends_); }
 
 private:
     std::vector<T> all_;

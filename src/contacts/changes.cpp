@@ -40,8 +40,7 @@ void Changes::mark(std::span<Contact> contacts) {
     }
     lost_.insert(lost_.end(), previous_.begin() + static_cast<std::ptrdiff_t>(old), previous_.end());
     previous_.resize(contacts.size());
-    give_back(previous_);
-    give_back(lost_);
+    give_back(previous_, lost_);
     for (std::size_t i = 0; i < contacts.size(); ++i) previous_[i] = key_of(contacts[i]);
 }
 

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cstdio>
-#include <cstring>
 #include <new>
 #include <xxhash.h>
 
@@ -31,8 +30,8 @@ Vec3 point_on_b(const Contact& contact) {
 }
 
 std::string contact_key(const Contact& contact) {
-    return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.feature,
-                                   contact.vertex, contact.other()});
+    return contact_key(LostContact{contact.body_a, contact.body_b, contact.vertex_body, contact.feature, contact.vertex,
+                                   contact.other()});
 }
 
 std::string contact_key(const LostContact& contact) {

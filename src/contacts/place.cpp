@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
+#include "mesh/vector.h"
 #include "platform/prefetch.h"
 #include "shape/shape_data.h"
 
@@ -27,12 +28,6 @@ struct Side {
     }
 };
 
-Vec3 rotate(const Pose& pose, const Vec3& v) {
-    const auto& r = pose.rotation;
-    return {(r[0] * v.x + r[1] * v.y) + r[2] * v.z, (r[3] * v.x + r[4] * v.y) + r[5] * v.z,
-            (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
-}
-
 // Writes the contact in place and calls no function of another unit: a load would have to wait for a value that was
 // just stored in pieces of another size. The point has the bits of transform_point().
 void place(Contact& contact, const Side& side, const kernels::LocalContact& local) {
@@ -43,7 +38,7 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     contact.feature = Feature::vertex; // with edges the place may have held one of theirs
     contact.vertex = shape.mesh.vertex_index[local.vertex];
     contact.triangle = side.target.mesh.triangle_index[local.triangle];
-    const Vec3 turned = rotate(side.source_pose, shape.mesh.vertices[local.vertex]);
+    const Vec3 turned = rotated(side.source_pose.rotation, shape.mesh.vertices[local.vertex]);
     const Vec3& origin = side.source_pose.translation;
     contact.point.x = turned.x + origin.x;
     contact.point.y = turned.y + origin.y;
@@ -53,13 +48,13 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     Vec3 out; // the direction in which the source leaves the target
     switch (side.direction) {
     case Direction::reprojected:
-        out = rotate(side.target_pose, {local.normal.x, local.normal.y, local.normal.z});
+        out = rotated(side.target_pose.rotation, {local.normal.x, local.normal.y, local.normal.z});
         contact.depth = local.distance * local.facing;
         break;
     case Direction::ray:
     case Direction::weighted: {
         const Vec3 n = shape.vertex_normals[local.vertex];
-        out = rotate(side.source_pose, {-n.x, -n.y, -n.z});
+        out = rotated(side.source_pose.rotation, {-n.x, -n.y, -n.z});
         contact.depth = local.distance;
     }
     }

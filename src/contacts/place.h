@@ -5,8 +5,6 @@
 #include "give_back.h"
 #include "pairs/directed_pairs.h"
 
-#include <raycontact/scene.h>
-
 #include <vector>
 
 namespace raycontact {

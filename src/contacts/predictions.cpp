@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/predictions.h"
 
+#include "mesh/vector.h"
+
 #include <algorithm>
 #include <tuple>
 
@@ -13,26 +15,16 @@ auto key_of(const T& c) {
     return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
 }
 
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // Where the vertex's outward normal meets the plane of the triangle; the vertex itself where they are parallel.
 Vec3 meeting_point(const PlacedBody& source, const PlacedBody& target, const KeptRay& ray, const Vec3& vertex) {
     const Vec3 outward = transform_point({source.pose.rotation, {}}, source.shape->vertex_normals()[ray.vertex]);
     Vec3 corner[3];
     for (int k = 0; k < 3; ++k)
         corner[k] = transform_point(target.pose, target.shape->vertices()[target.shape->triangles()[ray.triangle][k]]);
-    const Vec3 normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
+    const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const double slope = dot(normal, outward);
-    const double t = slope == 0 ? 0 : dot(normal, minus(corner[0], vertex)) / slope;
-    return {vertex.x + t * outward.x, vertex.y + t * outward.y, vertex.z + t * outward.z};
+    const double t = slope == 0 ? 0 : dot(normal, corner[0] - vertex) / slope;
+    return vertex + t * outward;
 }
 
 } // namespace

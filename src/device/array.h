@@ -82,4 +82,10 @@ private:
     std::size_t capacity_ = 0;
 };
 
+/// Of several arrays, as each one's.
+template <typename... T>
+void resize(Device& device, std::size_t size, Array<T>&... arrays) {
+    (arrays.resize(device, size), ...);
+}
+
 } // namespace raycontact

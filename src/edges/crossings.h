@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/near_edges.h"
 #include "edges/pair_meshes.h"
 
 #include <array>

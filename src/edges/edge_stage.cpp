@@ -2,7 +2,6 @@
 #include "edges/edge_stage.h"
 
 #include "give_back.h"
-#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <optional>
@@ -12,21 +11,16 @@ namespace raycontact {
 
 namespace {
 
-constexpr std::uint32_t pairs_in_block = 32, most_work = 64;
+constexpr std::size_t pairs_in_block = 32, most_work = 64;
 
 auto order_of(const Contact& c) {
     return std::tuple(c.feature, c.vertex_body, c.vertex, c.triangle);
 }
 
-double area_of(const ShapeData& shape, std::uint32_t face) {
-    const Vec3 a = shape.corner(face, 0);
-    return 0.5 * length(cross(shape.corner(face, 1) - a, shape.corner(face, 2) - a));
-}
-
 // Of an edge, the area of its faces.
 double area_at(const ShapeData& shape, std::uint32_t edge) {
     const auto [own, across] = faces_of(shape, edge);
-    return area_of(shape, own) + (across == NONE ? 0 : area_of(shape, across));
+    return 0.5 * length(area_normal(shape, own)) + (across == NONE ? 0 : 0.5 * length(area_normal(shape, across)));
 }
 
 float weight_of(const ShapeData& source, const ShapeData& target, const FeatureContact& found) {
@@ -37,12 +31,6 @@ float weight_of(const ShapeData& source, const ShapeData& target, const FeatureC
 // As the file counts it.
 std::uint32_t file_edge(const ShapeData& shape, std::uint32_t edge) {
     return 3 * shape.mesh.triangle_index[edge / 3] + edge % 3;
-}
-
-bool in_box(const ShapeData& mesh, const Vec3& p) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (axis(p, k) < double(mesh.header.low[k]) || axis(p, k) > double(mesh.header.high[k])) return false;
-    return true;
 }
 
 // A cell of the outside grid that holds the point is outside as a whole.
@@ -61,7 +49,7 @@ bool known_outside(const Accelerators* mesh, const Vec3& p) {
 
 bool is_inside(const SourceMesh& placed, const Vec3& p) {
     const ShapeData& mesh = placed.target;
-    if (!in_box(mesh, p) || known_outside(placed.target_accelerators, p)) return false;
+    if (!box_of(mesh).touches({p, p}) || known_outside(placed.target_accelerators, p)) return false;
     // Any direction serves; this one is related to no axis and no diagonal.
     const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
     return hit.face != NONE && hit.from_inside;
@@ -69,9 +57,8 @@ bool is_inside(const SourceMesh& placed, const Vec3& p) {
 
 // Whether a component of the source lies in the target; needs surfaces that do not cross, and a closed target.
 bool has_part_inside(const SourceMesh& placed) {
-    for (const std::uint32_t v : placed.source.component_vertices)
-        if (is_inside(placed, placed.vertex(v))) return true;
-    return false;
+    return std::ranges::any_of(placed.source.component_vertices,
+                               [&](std::uint32_t v) { return is_inside(placed, placed.vertex(v)); });
 }
 
 // The contact of a source of which a component lies wholly inside the target: its deepest vertex, the nearest face.
@@ -81,7 +68,7 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
     for (std::uint32_t v = 0; v < placed.source.points.size(); ++v) {
         if (placed.source.vertex_triangle[v] == Shape::no_triangle) continue;
         const Vec3 p = placed.vertex(v);
-        if (!in_box(target, p)) continue;
+        if (!box_of(target).touches({p, p})) continue;
         const NearestFace nearest = nearest_face(target, p, deepest ? deepest->depth : 0);
         if (deepest && nearest.distance <= deepest->depth) continue;
         if (!is_inside(placed, p)) continue; // of another component
@@ -89,7 +76,7 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
                                        target.corner(nearest.face, 2))
                          - p;
         const double depth = length(out);
-        const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : normal_of(target, nearest.face);
+        const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : unit(area_normal(target, nearest.face));
         if (!(depth > 0)) continue;
         deepest = {source, Feature::inside, v, nearest.face, p, normal, depth};
     }
@@ -109,28 +96,18 @@ bool find_inside(const PlacedBody& a, const PlacedBody& b, std::vector<FeatureCo
 }
 
 void sort(std::span<NearEdge> near) {
-    const auto before = [](const NearEdge& p, const NearEdge& q) {
-        return std::tie(p.edge, p.face) < std::tie(q.edge, q.face);
-    };
-    if (!std::is_sorted(near.begin(), near.end(), before)) std::sort(near.begin(), near.end(), before);
+    const auto key = [](const NearEdge& edge) { return std::tie(edge.edge, edge.face); };
+    if (!std::ranges::is_sorted(near, {}, key)) std::ranges::sort(near, {}, key);
 }
 
 Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
               Direction direction) {
     const ShapeData &shape = source.shape->data(), &other = target.shape->data();
     const bool edges = found.feature == Feature::edges;
-    Contact contact;
-    contact.body_a = pair.first;
-    contact.body_b = pair.second;
-    contact.vertex_body = found.source;
+    Contact contact = contact_at(pair, found.source, target, found.point, found.normal);
     contact.feature = found.feature;
     contact.vertex = edges ? file_edge(shape, found.index) : shape.mesh.vertex_index[found.index];
     contact.triangle = edges ? file_edge(other, found.other) : other.mesh.triangle_index[found.other];
-    contact.point = transform_point(target.centred, found.point);
-    const Vec3 out = transform_point({target.centred.rotation, {}}, found.normal);
-    const double sign = found.source == VertexBody::a ? -1 : 1;
-    contact.normal = {static_cast<float>(sign * out.x), static_cast<float>(sign * out.y),
-                      static_cast<float>(sign * out.z)};
     contact.depth = static_cast<float>(found.depth);
     contact.ray_length = contact.depth;
     if (direction == Direction::weighted) contact.weight = weight_of(shape, other, found);
@@ -142,16 +119,14 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
                     std::vector<Contact>& contacts) {
     // By the places of the pairs: so a block has in most steps what it had before, and allocates nothing.
-    const auto block_count = static_cast<std::uint32_t>((update.pairs.size() + pairs_in_block - 1) / pairs_in_block);
-    block_count_ = block_count;
-    if (blocks_.size() < block_count) blocks_.resize(block_count);
+    block_count_ = (update.pairs.size() + pairs_in_block - 1) / pairs_in_block;
+    if (blocks_.size() < block_count_) blocks_.resize(block_count_);
     const Question question{update, local, asked};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
-    const std::uint32_t work_count = std::min(block_count, most_work);
+    const std::size_t work_count = std::min(block_count_, most_work);
     if (work_.size() < work_count) work_.resize(work_count);
-    update.executor.run(work_count, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t w = begin; w < end; ++w)
-            for (std::uint32_t b = w; b < block_count; b += most_work) find(work_[w], question, b);
+    update.executor.each(work_count, 1, [&](std::uint32_t w) {
+        for (std::size_t b = w; b < block_count_; b += most_work) find(work_[w], question, b);
     });
     merge(question, contacts);
 }
@@ -187,8 +162,7 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
         block.contacts.push_back(
             place(found, pair, from_a ? a : b, from_a ? b : a, question.update.settings.direction));
     }
-    std::sort(block.contacts.begin() + first, block.contacts.end(),
-              [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); });
+    std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), {}, order_of);
 }
 
 std::uint64_t EdgeStage::bytes() const {
@@ -213,7 +187,6 @@ void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) 
     merged_.clear();
     if (added == 0) return;
     merged_.reserve(contacts.size() + added);
-    const auto before = [](const Contact& p, const Contact& q) { return order_of(p) < order_of(q); };
     auto done = contacts.begin();
     std::size_t in = 0; // the pair's place in its block
     for (std::size_t k = 0; k < question.asked.size(); ++k) {
@@ -226,7 +199,7 @@ void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) 
         const auto own = contacts.begin() + question.local.first(2 * pair);
         const auto own_end = contacts.begin() + question.local.first(2 * pair + 2);
         merged_.insert(merged_.end(), done, own);
-        std::merge(own, own_end, more, more_end, std::back_inserter(merged_), before);
+        std::ranges::merge(own, own_end, more, more_end, std::back_inserter(merged_), {}, order_of, order_of);
         done = own_end;
     }
     merged_.insert(merged_.end(), done, contacts.end());

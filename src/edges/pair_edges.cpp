@@ -42,7 +42,7 @@ bool is_convex(const ShapeData& shape, std::uint32_t edge) {
     const auto [own, across] = faces_of(shape, edge);
     if (across == NONE) return true;
     const auto [start, stop] = ends_of(shape, edge);
-    const Vec3 n = normal_of(shape, own), from = shape.point(start);
+    const Vec3 n = unit(area_normal(shape, own)), from = shape.point(start);
     for (const std::uint32_t v : shape.mesh.triangles[across])
         if (v != start && v != stop && dot(shape.point(v) - from, n) > 0) return false;
     return true;
@@ -92,12 +92,10 @@ bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
     if (all_speak_) give_deep(pair, found);
     // Two edges have one contact, the deepest.
     const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
-    std::sort(found.begin() + before, found.end(), [&](const FeatureContact& p, const FeatureContact& q) {
-        return std::tuple(edges(p), -p.depth) < std::tuple(edges(q), -q.depth);
-    });
-    found.erase(std::unique(found.begin() + before, found.end(),
-                            [&](const auto& p, const auto& q) { return edges(p) == edges(q); }),
-                found.end());
+    std::ranges::sort(found.begin() + before, found.end(), {},
+                      [&](const FeatureContact& c) { return std::tuple(edges(c), -c.depth); });
+    const auto doubled = std::ranges::unique(found.begin() + before, found.end(), {}, edges);
+    found.erase(doubled.begin(), doubled.end());
     return true;
 }
 
@@ -130,8 +128,7 @@ void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalCon
     for (std::size_t side = 0; side < 2; ++side)
         for (const kernels::LocalContact& c : vertices[side])
             in_contact_.push_back({std::uint64_t{side} << 32 | c.vertex, double(c.distance) * double(c.facing)});
-    std::sort(in_contact_.begin(), in_contact_.end(),
-              [](const VertexContact& p, const VertexContact& q) { return p.vertex < q.vertex; });
+    std::ranges::sort(in_contact_, {}, &VertexContact::vertex);
 }
 
 void PairEdges::list_pieces(const PairMeshes& pair) {
@@ -140,9 +137,9 @@ void PairEdges::list_pieces(const PairMeshes& pair) {
     crossed_.clear();
     by_edge_.resize(crossings().size());
     std::iota(by_edge_.begin(), by_edge_.end(), 0u);
-    std::sort(by_edge_.begin(), by_edge_.end(), [this](std::uint32_t i, std::uint32_t k) {
-        const Crossing &p = crossings()[i], &q = crossings()[k];
-        return std::tie(p.side, p.edge, p.at, p.face) < std::tie(q.side, q.edge, q.at, q.face);
+    std::ranges::sort(by_edge_, {}, [this](std::uint32_t i) {
+        const Crossing& c = crossings()[i];
+        return std::tie(c.side, c.edge, c.at, c.face);
     });
     for (std::size_t begin = 0, end = 0; begin < by_edge_.size(); begin = end) {
         const std::uint32_t side = crossings()[by_edge_[begin]].side, edge = crossings()[by_edge_[begin]].edge;
@@ -208,8 +205,7 @@ void PairEdges::join_vertices(const PairMeshes& pair) {
         const auto join = [&](std::uint32_t other) {
             if (other < own) return; // joined there
             const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
-            const auto at = std::lower_bound(in_contact_.begin(), in_contact_.end(), vertex,
-                                             [](const VertexContact& c, std::uint64_t v) { return c.vertex < v; });
+            const auto at = std::ranges::lower_bound(in_contact_, vertex, {}, &VertexContact::vertex);
             if (at == in_contact_.end() || at->vertex != vertex) return;
             if (!std::binary_search(crossed_.begin(), crossed_.end(), std::array{contact.vertex, vertex}))
                 sets_.join(node_of(*at), node_of(contact));
@@ -420,10 +416,8 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
 
 // Two edges that pass each other more than once have the shallowest contact.
 void PairEdges::give_edges(std::vector<FeatureContact>& found) {
-    std::sort(passing_.begin(), passing_.end(), [](const Passing& p, const Passing& q) {
-        return std::tuple(p.contact.index, p.contact.other, p.contact.depth)
-               < std::tuple(q.contact.index, q.contact.other, q.contact.depth);
-    });
+    std::ranges::sort(passing_, {},
+                      [](const Passing& p) { return std::tuple(p.contact.index, p.contact.other, p.contact.depth); });
     for (std::size_t i = 0; i < passing_.size(); ++i) {
         const FeatureContact& c = passing_[i].contact;
         if (i > 0 && passing_[i - 1].contact.index == c.index && passing_[i - 1].contact.other == c.other) continue;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "edges/loops.h"
+#include "edges/near_edges.h"
 #include "mesh/disjoint_sets.h"
-#include "shape/mesh_rays.h"
 
 #include <array>
 #include <span>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/vector.h"
 #include "pairs/directed_pairs.h"
 #include "shape/accelerators.h"
+#include "shape/mesh_rays.h"
 
 #include <raycontact/contact.h>
 
@@ -26,29 +26,12 @@ struct SourceMesh {
         : source(from.shape->data()), target(to.shape->data()), target_accelerators(to.shape->accelerators()),
           pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), hair(1e-7 * size) {}
 
-    Vec3 turned(const Vec3& v) const {
-        const auto& r = pose.rotation;
-        return {(r[0] * v.x + r[1] * v.y) + r[2] * v.z, (r[3] * v.x + r[4] * v.y) + r[5] * v.z,
-                (r[6] * v.x + r[7] * v.y) + r[8] * v.z};
-    }
+    Vec3 turned(const Vec3& v) const { return rotated(pose.rotation, v); }
     Vec3 placed(const Vec3& v) const { return turned(v) + pose.translation; }
     /// A point of the target's frame, back in the source's.
-    Vec3 back(const Vec3& p) const {
-        const auto& r = pose.rotation;
-        const Vec3 d = p - pose.translation;
-        return {(r[0] * d.x + r[3] * d.y) + r[6] * d.z, (r[1] * d.x + r[4] * d.y) + r[7] * d.z,
-                (r[2] * d.x + r[5] * d.y) + r[8] * d.z};
-    }
+    Vec3 back(const Vec3& p) const { return rotated_back(pose.rotation, p - pose.translation); }
     Vec3 vertex(std::uint32_t v) const { return placed(source.point(v) + hair * source.hair_moves[v]); }
 };
-
-/// Outward unit normal of a face, in double; zero without area.
-inline Vec3 normal_of(const ShapeData& shape, std::uint32_t face) {
-    const Vec3 a = shape.corner(face, 0);
-    const Vec3 n = cross(shape.corner(face, 1) - a, shape.corner(face, 2) - a);
-    const double size = length(n);
-    return size > 0 ? (1 / size) * n : Vec3{};
-}
 
 /// Both bodies of a pair in one frame, that of b about its centre, in double: what decides, decides of one
 /// configuration. Every vertex is moved inward by a hair, those of a and b shaken in opposite ways.
@@ -71,7 +54,7 @@ public:
     }
     /// Outward unit normal of a face; zero without area.
     Vec3 normal(std::size_t side, std::uint32_t face) const {
-        const Vec3 n = normal_of(*shapes_[side], face);
+        const Vec3 n = unit(area_normal(*shapes_[side], face));
         return side == 0 ? a_in_b_.turned(n) : n;
     }
     /// A point or a direction, in a body's own frame.
@@ -96,12 +79,6 @@ struct FeatureContact {
     double depth;
 };
 
-/// Zero for a zero vector.
-inline Vec3 unit(const Vec3& v) {
-    const double size = length(v);
-    return size > 0 ? (1 / size) * v : Vec3{};
-}
-
 /// An edge of a shape, 3 x its lowest triangle + its first corner there.
 struct EdgeFaces {
     std::uint32_t own, across; ///< across: NONE at a border
@@ -112,6 +89,19 @@ inline EdgeFaces faces_of(const ShapeData& shape, std::uint32_t edge) {
 inline std::array<std::uint32_t, 2> ends_of(const ShapeData& shape, std::uint32_t edge) {
     const auto& corners = shape.mesh.triangles[edge / 3];
     return {corners[edge % 3], corners[(edge % 3 + 1) % 3]};
+}
+
+/// A contact at a point, whose normal points out of the target along `out`; both are of the target's centred frame.
+inline Contact contact_at(const SlotPair& pair, VertexBody source, const PlacedBody& target, const Vec3& point,
+                          const Vec3& out) {
+    Contact contact;
+    contact.body_a = pair.first;
+    contact.body_b = pair.second;
+    contact.vertex_body = source;
+    contact.point = transform_point(target.centred, point);
+    const Vec3 n = (source == VertexBody::a ? -1.0 : 1.0) * transform_point({target.centred.rotation, {}}, out);
+    contact.normal = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+    return contact;
 }
 
 /// The edge of a face from its k-th corner to the next.

@@ -21,9 +21,7 @@ std::vector<Part> divide(Executor& executor, Part whole, IsLarge&& is_large, Spl
         parts.insert(parts.end(), first_small, open.end());
         open.erase(first_small, open.end());
         std::vector<std::array<Part, 2>> halves(open.size());
-        executor.run(static_cast<std::uint32_t>(open.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) halves[i] = split(open[i]);
-        });
+        executor.each(open.size(), 1, [&](std::uint32_t i) { halves[i] = split(open[i]); });
         std::vector<Part> next;
         for (std::size_t i = 0; i < open.size(); ++i) {
             settle(open[i], halves[i]);
@@ -41,9 +39,7 @@ std::vector<Part> divide(Executor& executor, Part whole, IsLarge&& is_large, Spl
 /// Calls work(part) for each, on the executor's threads.
 template <class Part, class Work>
 void for_each_part(Executor& executor, const std::vector<Part>& parts, Work&& work) {
-    executor.run(static_cast<std::uint32_t>(parts.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) work(parts[i]);
-    });
+    executor.each(parts.size(), 1, [&](std::uint32_t i) { work(parts[i]); });
 }
 
 } // namespace raycontact

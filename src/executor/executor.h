@@ -68,6 +68,13 @@ public:
                                       (*static_cast<const Function*>(function))(begin, end);
                                   }});
     }
+    /// Calls work(i) for each i below `count`.
+    template <typename Work>
+    void each(std::size_t count, std::uint32_t grain, Work&& work) {
+        run(static_cast<std::uint32_t>(count), grain, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) work(i);
+        });
+    }
 
 private:
     void run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/gltf_moves.h"
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,18 +20,16 @@ void check_count(const GltfFile& file, const Item& accessor, std::size_t vertice
     }
 }
 
-std::vector<double> read_joints(const GltfFile& file, const Item& accessor, std::size_t vertices) {
-    const std::size_t type = file.whole(accessor, "componentType");
-    if ((type != unsigned_byte && type != unsigned_short) || file.flag(accessor, "normalized"))
-        file.fail(accessor, "joints must be whole numbers of 8 or 16 bits, unsigned and not normalized");
-    check_count(file, accessor, vertices);
-    return file.read_accessor(accessor, "VEC4", 4);
-}
+enum class Four { joints, weights };
 
-std::vector<double> read_weights(const GltfFile& file, const Item& accessor, std::size_t vertices) {
+/// Of each vertex.
+std::vector<double> read_four(Four what, const GltfFile& file, const Item& accessor, std::size_t vertices) {
     const std::size_t type = file.whole(accessor, "componentType");
     const bool whole = type == unsigned_byte || type == unsigned_short;
-    if (type != float32 && !(whole && file.flag(accessor, "normalized")))
+    const bool normalized = whole && file.flag(accessor, "normalized");
+    if (what == Four::joints && (!whole || normalized))
+        file.fail(accessor, "joints must be whole numbers of 8 or 16 bits, unsigned and not normalized");
+    if (what == Four::weights && type != float32 && !normalized)
         file.fail(accessor, "weights must be float32, or normalized and of 8 or 16 bits without a sign");
     check_count(file, accessor, vertices);
     return file.read_accessor(accessor, "VEC4", 4);
@@ -100,14 +97,14 @@ GltfSkin::GltfSkin(const GltfFile& file, const Item& skin, std::vector<Placement
 std::vector<Placement> GltfSkin::placements(const GltfFile& file, const Item& attributes, std::size_t vertices) const {
     std::vector<Placement> placed(vertices, {{}, {}, {}, {}});
     std::vector<double> sums(vertices, 0);
-    std::string joints_key = "JOINTS_0", weights_key = "WEIGHTS_0";
-    for (std::size_t set = 1;
-         set == 1 || file.member(attributes, joints_key.c_str()) || file.member(attributes, weights_key.c_str());
-         ++set) {
+    for (std::size_t set = 0;; ++set) {
+        const std::string joints_key = "JOINTS_" + std::to_string(set), weights_key = "WEIGHTS_" + std::to_string(set);
+        const auto has = [&](const std::string& key) { return file.member(attributes, key.c_str()).has_value(); };
+        if (set > 0 && !has(joints_key) && !has(weights_key)) break;
         const Item of_joints = file.item("accessors", file.whole(attributes, joints_key.c_str())),
                    of_weights = file.item("accessors", file.whole(attributes, weights_key.c_str()));
-        const std::vector<double> joints = read_joints(file, of_joints, vertices),
-                                  weights = read_weights(file, of_weights, vertices);
+        const std::vector<double> joints = read_four(Four::joints, file, of_joints, vertices),
+                                  weights = read_four(Four::weights, file, of_weights, vertices);
         for (std::size_t i = 0; i < joints.size(); ++i) {
             const auto record = [&] { return "record " + std::to_string(i / 4) + ": "; };
             if (joints[i] >= static_cast<double>(joints_.size())) {
@@ -119,8 +116,6 @@ std::vector<Placement> GltfSkin::placements(const GltfFile& file, const Item& at
             add(placed[i / 4], weights[i], joints_[static_cast<std::size_t>(joints[i])]);
             sums[i / 4] += weights[i];
         }
-        joints_key = "JOINTS_" + std::to_string(set);
-        weights_key = "WEIGHTS_" + std::to_string(set);
     }
     for (std::size_t v = 0; v < vertices; ++v) {
         if (!(sums[v] > 0)) file.fail(attributes, "vertex " + std::to_string(v) + " has no weight for any joint");

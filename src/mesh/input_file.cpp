@@ -3,13 +3,17 @@
 
 #include <raycontact/error.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <system_error>
 
 namespace raycontact {
+
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
 
 std::string no_vertex(std::int64_t index, std::size_t vertex_count) {
     return "vertex index " + std::to_string(index) + " is not in 0 to " + std::to_string(vertex_count) + " - 1";

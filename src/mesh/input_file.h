@@ -14,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 namespace raycontact {
@@ -37,6 +36,9 @@ struct InputFile {
 /// The file itself; or `room`, filled with it in UTF-8, where it is UTF-16 with a byte order mark. No binary format
 /// that is read starts so. Throws InputError where half of a unit is missing.
 const InputFile& as_utf8(const InputFile& file, InputFile& room);
+
+/// Capitals of ASCII become small letters.
+std::string lower_case(std::string text);
 
 /// An error message about an index; the caller names the place.
 std::string no_vertex(std::int64_t index, std::size_t vertex_count);

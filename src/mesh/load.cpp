@@ -12,20 +12,8 @@
 
 namespace raycontact {
 
-namespace {
-
-std::string ending_of(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    for (char& c : ending) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return ending;
-}
-
-} // namespace
-
 Mesh load_mesh(const std::filesystem::path& path) {
-    const std::string ending = ending_of(path);
+    const std::string ending = lower_case(path.extension().string());
     using Format = std::pair<std::string_view, Mesh (*)(const InputFile&)>;
     constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
                                  Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
@@ -41,7 +29,7 @@ Mesh load_mesh(const std::filesystem::path& path) {
 }
 
 std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path) {
-    const std::string ending = ending_of(path);
+    const std::string ending = lower_case(path.extension().string());
     if (ending != ".gltf" && ending != ".glb") {
         auto mesh = std::make_shared<const Mesh>(load_mesh(path));
         std::string name = mesh->name;

@@ -5,7 +5,6 @@
 #include "mesh/vector.h"
 
 #include <raycontact/assembly.h>
-#include <raycontact/error.h>
 
 #include <algorithm>
 #include <array>

@@ -89,9 +89,7 @@ private:
 
     /// `comment` and `obj_info`, in capitals, with a colon, or a # as in other formats.
     static bool is_comment(std::string_view word) {
-        std::string lower(word);
-        for (char& c : lower)
-            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        const std::string lower = lower_case(std::string(word));
         return lower.starts_with("comment") || lower.starts_with("obj_info") || lower.starts_with("#");
     }
 

@@ -20,10 +20,8 @@ public:
     template <class Test>
     bool any_pair(Executor& executor, Test&& test) const {
         std::atomic<bool> found = false;
-        const auto count = static_cast<std::uint32_t>(tree_.triangle_blocks.size());
-        executor.run(count, 16, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end && !found; ++i)
-                if (any_pair_of(tree_.triangle_blocks[i], test)) found = true;
+        executor.each(tree_.triangle_blocks.size(), 16, [&](std::uint32_t i) {
+            if (!found && any_pair_of(tree_.triangle_blocks[i], test)) found = true;
         });
         return found;
     }

@@ -17,7 +17,6 @@
 #include <limits>
 #include <numeric>
 #include <queue>
-#include <utility>
 
 namespace raycontact {
 namespace {

@@ -4,7 +4,6 @@
 #include "mesh/predicates.h"
 
 #include <algorithm>
-#include <array>
 
 namespace raycontact {
 namespace {

@@ -4,6 +4,7 @@
 #include <raycontact/pose.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -26,6 +27,20 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline double length(const Vec3& a) {
     return std::sqrt(dot(a, a));
+}
+/// Zero for a zero vector.
+inline Vec3 unit(const Vec3& a) {
+    const double size = length(a);
+    return size > 0 ? (1 / size) * a : Vec3{};
+}
+/// By a rotation, its rows one after the other; and by its transpose.
+inline Vec3 rotated(const std::array<double, 9>& r, const Vec3& a) {
+    return {(r[0] * a.x + r[1] * a.y) + r[2] * a.z, (r[3] * a.x + r[4] * a.y) + r[5] * a.z,
+            (r[6] * a.x + r[7] * a.y) + r[8] * a.z};
+}
+inline Vec3 rotated_back(const std::array<double, 9>& r, const Vec3& a) {
+    return {(r[0] * a.x + r[3] * a.y) + r[6] * a.z, (r[1] * a.x + r[4] * a.y) + r[7] * a.z,
+            (r[2] * a.x + r[5] * a.y) + r[8] * a.z};
 }
 inline Vec3 least(const Vec3& a, const Vec3& b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};

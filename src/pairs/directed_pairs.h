@@ -7,8 +7,6 @@
 
 #include <raycontact/shape.h>
 
-#include <vector>
-
 namespace raycontact {
 
 /// A body as the pipeline sees it.

@@ -35,12 +35,7 @@ double displacement_bound(const Pose& from, const Pose& to, double reach, double
 }
 
 PairPlace place_pair(const Pose& first, const Pose& second, double shear) {
-    const auto& r = first.rotation;
-    const Vec3 d = second.translation - first.translation;
-    return {relative_pose(second, first),
-            {(r[0] * d.x + r[3] * d.y) + r[6] * d.z, (r[1] * d.x + r[4] * d.y) + r[7] * d.z,
-             (r[2] * d.x + r[5] * d.y) + r[8] * d.z},
-            shear};
+    return {relative_pose(second, first), rotated_back(first.rotation, second.translation - first.translation), shear};
 }
 
 std::array<double, 2> displacement_bounds(const PairPlace& from, const PairPlace& to, double reach_first,

@@ -29,29 +29,27 @@ float distance(const float (&a)[3], const float (&b)[3]) {
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     bodies_.resize(bodies.size());
     lasts_.resize(bodies.size());
-    executor.run(static_cast<std::uint32_t>(bodies.size()), 1024, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            Body& body = bodies_[i];
-            Last& last = lasts_[i];
-            if (bodies[i].shape == nullptr) {
-                last.known = false;
-                continue;
-            }
-            const Pose& now = bodies[i].centred;
-            // Steps of a method that asks for no motion may have passed, and a body with them.
-            const bool known = last.known && last.generation == bodies[i].generation;
-            const double shear = shear_bound(now);
-            const Pose& before = known ? last.centred : now;
-            const Vec3 shift = now.translation - before.translation;
-            round_to(body.shift, shift);
-            round_to(body.centre, now.translation);
-            body.centre_lost = static_cast<float>(lost_of_float * length(now.translation));
-            const double far = length(shift);
-            body.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
-            body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
-            body.reach = static_cast<float>(bodies[i].shape->data().reach);
-            last = {now, shear, bodies[i].generation, true};
+    executor.each(bodies.size(), 1024, [&](std::uint32_t i) {
+        Body& body = bodies_[i];
+        Last& last = lasts_[i];
+        if (bodies[i].shape == nullptr) {
+            last.known = false;
+            return;
         }
+        const Pose& now = bodies[i].centred;
+        // Steps of a method that asks for no motion may have passed, and a body with them.
+        const bool known = last.known && last.generation == bodies[i].generation;
+        const double shear = shear_bound(now);
+        const Pose& before = known ? last.centred : now;
+        const Vec3 shift = now.translation - before.translation;
+        round_to(body.shift, shift);
+        round_to(body.centre, now.translation);
+        body.centre_lost = static_cast<float>(lost_of_float * length(now.translation));
+        const double far = length(shift);
+        body.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
+        body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
+        body.reach = static_cast<float>(bodies[i].shape->data().reach);
+        last = {now, shear, bodies[i].generation, true};
     });
 }
 

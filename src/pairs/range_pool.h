@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 namespace raycontact {
@@ -15,14 +18,39 @@ public:
         std::uint32_t first = 0, capacity = 0;
     };
     /// Throws std::length_error beyond 2^31 elements.
-    Range allocate(std::uint32_t count);
-    void release(Range range);
+    Range allocate(std::uint32_t count) {
+        if (count == 0) return {};
+        if (count > 1u << 30) throw std::length_error("a pair watches more than 2^30 vertex blocks; split its meshes");
+        const std::uint32_t capacity = std::bit_ceil(std::max(count, 4u));
+        std::vector<std::uint32_t>& free = free_of(capacity);
+        Range range{end_, capacity};
+        if (!free.empty()) {
+            range.first = free.back();
+            free.pop_back();
+        } else {
+            if (end_ > (1u << 31) - capacity)
+                throw std::length_error(
+                    "the pairs of this scene watch more than 2^31 vertex blocks; give a step fewer");
+            end_ += capacity;
+        }
+        in_use_ += capacity;
+        return range;
+    }
+    void release(Range range) {
+        if (range.capacity == 0) return;
+        free_of(range.capacity).push_back(range.first);
+        in_use_ -= range.capacity;
+    }
     void clear() { *this = {}; }
 
     std::uint32_t end() const { return end_; }       ///< the array must be this long
     std::uint64_t in_use() const { return in_use_; } ///< elements of the allocated ranges
 
 private:
+    std::vector<std::uint32_t>& free_of(std::uint32_t capacity) {
+        return free_[static_cast<std::size_t>(std::countr_zero(capacity))];
+    }
+
     std::array<std::vector<std::uint32_t>, 32> free_; ///< by the power of two
     std::uint32_t end_ = 0;
     std::uint64_t in_use_ = 0;

@@ -16,14 +16,9 @@ Part::Part(OpenDevice opened)
     : executor_(std::move(opened.executor)), device_(std::make_unique<CountingDevice>(std::move(opened.device))),
       shapes_(*device_), settings_(&before_any_step) {}
 
-void Part::forget() {
-    pipeline_.forget();
-}
-
 void Part::give_back() {
     pipeline_.give_back(update(bodies_, pairs_));
-    placer_.give_back();
-    edges_.give_back();
+    raycontact::give_back(placer_, edges_);
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
@@ -62,8 +57,7 @@ void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts
     pipeline_.put_in(now, added.pipeline.take_out(now, added.pairs));
     const auto old = static_cast<std::ptrdiff_t>(contacts.size());
     contacts.insert(contacts.end(), more.begin(), more.end());
-    std::ranges::inplace_merge(contacts, contacts.begin() + old, {},
-                               [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+    std::ranges::inplace_merge(contacts, contacts.begin() + old, {}, pair_of);
 }
 
 std::vector<std::byte> Part::take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {

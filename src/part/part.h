@@ -47,7 +47,7 @@ public:
     /// After all of a step: frees memory that it hardly used.
     void give_back();
     /// Forgets what the methods kept.
-    void forget();
+    void forget() { pipeline_.forget(); }
 
 private:
     Update update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const;

@@ -2,7 +2,6 @@
 #include "part/parts.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace raycontact {
 
@@ -77,11 +76,8 @@ void Parts::remove_shape(const Shape* shape) {
 
 // All stores have had the same calls, so a shape has the same index in each.
 kernels::uint Parts::index_of(const Shape* shape) const {
-    return any_part().shapes().index_of(shape);
-}
-
-Part& Parts::any_part() const {
-    return **std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
+    const auto any = std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
+    return (*any)->shapes().index_of(shape);
 }
 
 bool Parts::pack_shapes() {

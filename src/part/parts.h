@@ -42,9 +42,8 @@ public:
     kernels::uint index_of(const Shape* shape) const;
     bool pack_shapes();
     void accelerate_shapes();
-    /// As ShapeStore: of the part that has most, and by an index.
+    /// As ShapeStore: of the part that has most.
     std::size_t plain_shapes() const;
-    bool is_plain(kernels::uint index) const { return any_part().shapes().is_plain(index); }
 
     /// Begins to wake the threads of all.
     void wake();
@@ -56,7 +55,6 @@ public:
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
 private:
-    Part& any_part() const;
     using Function = std::function<void(std::size_t)>;
     std::vector<std::size_t> run_all(const Function& work);
     std::vector<std::size_t> each(const Function& work);

@@ -48,10 +48,7 @@ void Pipeline::give_back(const Update& last) {
     }
     if (has_near_) edges_.give_back();
     batch_.give_back(rays);
-    found_.give_back();
-    local_.give_back();
-    near_.give_back();
-    raycontact::give_back(asked_);
+    raycontact::give_back(found_, local_, near_, asked_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.

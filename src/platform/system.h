@@ -34,4 +34,42 @@ std::uint64_t process_id();
 /// Where a user's programs keep what they can make again; empty: nowhere.
 std::filesystem::path cache_folder();
 
+template <typename Signature>
+class Function;
+
+/// A shared library, loaded at run time. It stays for as long as the process lives, so to load it again takes no time.
+class Library {
+public:
+    /// By its path, or by a name that the system's loader looks for.
+    explicit Library(const std::filesystem::path& name);
+
+    /// Whether it is there and can be loaded.
+    explicit operator bool() const { return handle_ != nullptr; }
+    /// The last symbol that was sought and that it lacks; empty: none.
+    const std::string& missing() const { return missing_; }
+
+private:
+    template <typename Signature>
+    friend class Function;
+    using Symbol = void (*)();
+    Symbol symbol(const char* name) const;
+
+    void* handle_;
+    std::string missing_;
+};
+
+/// A function of a library, which has it under `symbol`. Whoever declares it vouches for the type.
+template <typename Result, typename... Parameters>
+class Function<Result(Parameters...)> {
+public:
+    Function(Library& library, const char* symbol)
+        : function_(reinterpret_cast<Result (*)(Parameters...)>(library ? library.symbol(symbol) : nullptr)) {
+        if (library && !function_) library.missing_ = symbol;
+    }
+    Result operator()(Parameters... parameters) const { return function_(parameters...); }
+
+private:
+    Result (*function_)(Parameters...);
+};
+
 } // namespace raycontact::platform

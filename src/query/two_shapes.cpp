@@ -8,7 +8,7 @@
 #include "mesh/predicates.h"
 #include "mesh/self_intersection.h"
 #include "pairs/directed_pairs.h"
-#include "shape/shape_data.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -73,10 +73,7 @@ public:
 
 private:
     // About a box of a's tree, in b's frame.
-    Box turned(const Box& own) const {
-        const WorldBox box = world_box(0, own.low, own.high, pose_, 0);
-        return {box.low, box.high};
-    }
+    Box turned(const Box& own) const { return world_box(0, own.low, own.high, pose_, 0); }
 
     // Calls test(child, box) for the children of a node that reach into a box until it returns true; whether it did.
     template <class Place, class Test>
@@ -172,9 +169,8 @@ std::optional<int> winding_along(const ShapeData& shape, const Vec3& from, const
 // Exact: each crossing of a ray is decided by exact predicates. `point` in the shape's centred frame.
 int winding_number(const ShapeData& shape, const Vec3& point) {
     const Vec3 p = snapped(point);
-    const Vec3 low{shape.header.low[0], shape.header.low[1], shape.header.low[2]};
-    const Vec3 high{shape.header.high[0], shape.header.high[1], shape.header.high[2]};
-    if (least(p, low) != low || most(p, high) != high) return 0;
+    const Box box = box_of(shape);
+    if (!box.touches({p, p})) return 0;
     // Straight out through a face of the box, a little askew, so that a segment's box stays slim.
     std::uint32_t state = 1;
     const auto askew = [&] {
@@ -183,7 +179,7 @@ int winding_number(const ShapeData& shape, const Vec3& point) {
     };
     constexpr int attempts = 64; // as many that all meet an edge: the point is on the surface
     for (int i = 0; i < attempts; ++i) {
-        const double rise = high.x - p.x + 0.1 * shape.diagonal;
+        const double rise = box.high.x - p.x + 0.1 * shape.diagonal;
         const Vec3 to = snapped({p.x + rise, p.y + askew() * rise, p.z + askew() * rise});
         if (const auto winding = winding_along(shape, p, to)) return *winding;
     }

@@ -70,11 +70,9 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPa
 void BlockSearch::give_back(std::size_t used) {
     counts_.give_back(pair_count_);
     block_masks_.give_back(MASK_WORDS * pair_count_);
-    safe_distances_.give_back();
     ray_counts_.give_back(used);
     blocks_.give_back(used);
-    raycontact::give_back(host_counts_);
-    raycontact::give_back(host_safe_distances_);
+    raycontact::give_back(safe_distances_, host_counts_, host_safe_distances_);
 }
 
 bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {

@@ -77,9 +77,7 @@ void CertifiedRays::list_slices() {
 // the list lasts, and that could be in contact before it expires.
 void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale) {
     Device& device = update.device;
-    wide_pairs_.resize(device, stale.size());
-    horizons_.resize(device, stale.size());
-    places_.resize(device, stale.size());
+    resize(device, stale.size(), wide_pairs_, horizons_, places_);
     for (std::size_t i = 0; i < stale.size(); ++i) {
         const Due& due = stale[i].due();
         const float horizon = static_cast<float>(due.own->expiry) + due.margin;
@@ -118,15 +116,12 @@ void CertifiedRays::place(const Update& update) {
         for (const Due& due : slice.due) segment_count += segments_of(due.own->count);
     }
     directed_.resize(due_count);
-    pairs_.resize(update.device, due_count);
-    held_ranges_.resize(update.device, due_count);
+    resize(update.device, due_count, pairs_, held_ranges_);
     segments_.resize(update.device, segment_count);
-    update.executor.run(static_cast<std::uint32_t>(standard_count_), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
-            place_source(source, target, pairs_.in_place()[i]);
-            held_ranges_.in_place()[i] = {};
-        }
+    update.executor.each(standard_count_, 256, [&](std::uint32_t i) {
+        const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
+        place_source(source, target, pairs_.in_place()[i]);
+        held_ranges_.in_place()[i] = {};
     });
     wake_up_.each_slice(update.executor, [&](const WakeUp::Slice& slice) {
         std::copy(slice.places.begin(), slice.places.end(), pairs_.in_place().begin() + std::ptrdiff_t(slice.first));
@@ -236,9 +231,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     list_slices();
     if (stale_.empty()) {
         near_.rest();
-        wide_pairs_.resize(update.device, 0);
-        horizons_.resize(update.device, 0);
-        places_.resize(update.device, 0);
+        resize(update.device, 0, wide_pairs_, horizons_, places_);
     }
     for (std::size_t done = 0; done < stale_.size(); done += lists_at_once)
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
@@ -270,22 +263,11 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
 
 // Not the rays held: the next step needs them.
 void CertifiedRays::give_back() {
-    wake_up_.give_back();
-    edges_.give_back();
-    raycontact::give_back(stale_);
-    raycontact::give_back(directed_);
-    const std::size_t segments = segments_.size();
-    pairs_.give_back();
-    segments_.give_back();
-    looks_.give_back();
-    held_ranges_.give_back();
-    look_rays_.give_back(segments);
-    wide_pairs_.give_back();
-    horizons_.give_back();
-    places_.give_back();
+    look_rays_.give_back(segments_.size());
     near_.give_back(near_.found());
     standard_.give_back(standard_.blocks().size());
-    last_held_.give_back();
+    raycontact::give_back(wake_up_, edges_, stale_, directed_, pairs_, segments_, looks_, held_ranges_, wide_pairs_,
+                          horizons_, places_, last_held_);
 }
 
 } // namespace raycontact

@@ -3,7 +3,6 @@
 
 #include "device/launch.h"
 #include "give_back.h"
-#include "pairs/displacement.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -137,22 +136,20 @@ void CoherentRays::wake_up(const Update& update) {
     wide_pairs_.resize(full_count_);
     reaches_.resize(full_count_);
     margins_.resize(full_count_);
-    update.executor.run(static_cast<std::uint32_t>(directed_.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
-            place_source(source, target, host_pairs_[i]);
-            cullings_[i] = static_cast<float>(table_.state(directed_[i] / 2).culling);
-            if (i >= full_count_) continue;
-            const float ahead = std::max(cullings_[i], 0.0F);
-            const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
-            wide_pairs_[i] = host_pairs_[i];
-            const double extension = std::min(settings.distance_extension.value_or(0), farthest_ahead);
-            widen(wide_pairs_[i], extended ? static_cast<float>(extension) : ahead);
-            margins_[i] = static_cast<float>(rounding_margin(source, target));
-            reaches_[i] = ahead + margins_[i];
-            // As in the paper: no vertex inside the bounds is known to be outside the mesh or far from it.
-            if (!settings.skip_outside) reaches_[i] = margins_[i] = std::numeric_limits<float>::max();
-        }
+    update.executor.each(directed_.size(), 256, [&](std::uint32_t i) {
+        const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed_[i]);
+        place_source(source, target, host_pairs_[i]);
+        cullings_[i] = static_cast<float>(table_.state(directed_[i] / 2).culling);
+        if (i >= full_count_) return;
+        const float ahead = std::max(cullings_[i], 0.0F);
+        const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
+        wide_pairs_[i] = host_pairs_[i];
+        const double extension = std::min(settings.distance_extension.value_or(0), farthest_ahead);
+        widen(wide_pairs_[i], extended ? static_cast<float>(extension) : ahead);
+        margins_[i] = static_cast<float>(rounding_margin(source, target));
+        reaches_[i] = ahead + margins_[i];
+        // As in the paper: no vertex inside the bounds is known to be outside the mesh or far from it.
+        if (!settings.skip_outside) reaches_[i] = margins_[i] = std::numeric_limits<float>::max();
     });
 }
 
@@ -223,8 +220,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
 void CoherentRays::follow(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     const Settings& settings = update.settings;
-    nexts_.resize(update.device, batch.rays.size());
-    hows_.resize(update.device, batch.rays.size());
+    resize(update.device, batch.rays.size(), nexts_, hows_);
     const kernels::uint predictive = settings.method == Method::predictive ? 1 : 0;
     const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
     const auto run = [&]<KernelId kernel>() {
@@ -370,24 +366,12 @@ void CoherentRays::count(StepStats& stats) const {
 
 // Not the candidates: the next step needs them.
 void CoherentRays::give_back() {
-    const std::size_t directed = directed_.size();
-    raycontact::give_back(turns_);
-    raycontact::give_back(directed_);
-    raycontact::give_back(host_pairs_);
-    raycontact::give_back(wide_pairs_);
-    for (std::vector<float>* list : {&cullings_, &reaches_, &margins_}) raycontact::give_back(*list);
-    raycontact::give_back(host_segments_);
-    raycontact::give_back(host_firsts_);
-    raycontact::give_back(host_ranges_);
-    raycontact::give_back(host_followed_);
-    device_pairs_.give_back();
-    device_wide_.give_back();
-    for (Array<float>* list : {&device_cullings_, &device_reaches_, &device_margins_}) list->give_back();
-    kept_counts_.give_back(directed);
-    for (Array<kernels::uint>* list : {&segment_firsts_, &ranges_, &starts_, &nexts_, &hows_}) list->give_back();
+    kept_counts_.give_back(directed_.size());
     near_.give_back(near_.blocks().size());
-    segments_.give_back();
-    followed_.give_back();
+    raycontact::give_back(turns_, directed_, host_pairs_, wide_pairs_, cullings_, reaches_, margins_, host_segments_,
+                          host_firsts_, host_ranges_, host_followed_, device_pairs_, device_wide_, device_cullings_,
+                          device_reaches_, device_margins_, segment_firsts_, ranges_, starts_, nexts_, hows_, segments_,
+                          followed_);
 }
 
 } // namespace raycontact

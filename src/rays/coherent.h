@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contacts/predictions.h"
 #include "pairs/displacement.h"
 #include "pairs/pair_table.h"
 #include "rays/block_search.h"
-#include "rays/kept_ray.h"
 #include "rays/ray_batch.h"
 
 #include <raycontact/scene.h>
 
-#include <array>
 #include <cstddef>
 
 namespace raycontact {

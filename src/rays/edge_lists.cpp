@@ -41,10 +41,7 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
             due_.push_back({due, in_contact ? static_cast<float>(short_length(a, b)) : 0});
         }
     if (due_.empty()) {
-        pairs_.resize(update.device, 0);
-        margins_.resize(update.device, 0);
-        ahead_.resize(update.device, 0);
-        least_.resize(update.device, 0);
+        resize(update.device, 0, pairs_, margins_, ahead_, least_);
         directed_.clear();
         found_.set({}, {}, 0);
         return rays_.rest();
@@ -54,21 +51,17 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
 }
 
 void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
-    pairs_.resize(update.device, 2 * due.size());
-    margins_.resize(update.device, 2 * due.size());
-    ahead_.resize(update.device, 2 * due.size());
-    least_.resize(update.device, 2 * due.size());
+    resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
-    update.executor.run(static_cast<std::uint32_t>(due.size()), 128, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t k = begin; k < end; ++k)
-            for (std::uint32_t side = 0; side < 2; ++side) {
-                const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].due.pair + side);
-                place_source(source, target, pairs_.in_place()[2 * k + side]);
-                margins_.in_place()[2 * k + side] = due[k].due.margin;
-                ahead_.in_place()[2 * k + side] = due[k].due.ahead;
-                least_.in_place()[2 * k + side] = due[k].least;
-            }
+    update.executor.each(due.size(), 128, [&](std::uint32_t k) {
+        for (std::uint32_t side = 0; side < 2; ++side) {
+            const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].due.pair + side);
+            place_source(source, target, pairs_.in_place()[2 * k + side]);
+            margins_.in_place()[2 * k + side] = due[k].due.margin;
+            ahead_.in_place()[2 * k + side] = due[k].due.ahead;
+            least_.in_place()[2 * k + side] = due[k].least;
+        }
     });
     do {
         rays_.cast(update, pairs_, {margins_, ahead_, least_}, batch);
@@ -100,14 +93,7 @@ std::uint64_t EdgeLists::bytes() const {
 }
 
 void EdgeLists::give_back() {
-    raycontact::give_back(due_);
-    raycontact::give_back(directed_);
-    pairs_.give_back();
-    margins_.give_back();
-    ahead_.give_back();
-    least_.give_back();
-    rays_.give_back();
-    found_.give_back();
+    raycontact::give_back(due_, directed_, pairs_, margins_, ahead_, least_, rays_, found_);
 }
 
 } // namespace raycontact

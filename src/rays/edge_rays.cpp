@@ -19,10 +19,8 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     const ShapeStore::Arrays& arrays = update.arrays();
     const Array<kernels::Totals>& totals = batch.totals;
     const std::size_t room = std::max(rays_.size(), least_room);
-    margins_.resize(device, pairs.size());
-    horizons_.resize(device, pairs.size());
-    rays_.resize(device, room);
-    hits_.resize(device, room);
+    resize(device, pairs.size(), margins_, horizons_);
+    resize(device, room, rays_, hits_);
     counts_.resize(device, 1, room);
     launch<KernelId::find_margins>(device, pairs.size(), pairs, reach.more, reach.ahead, arrays.headers, margins_,
                                    horizons_);
@@ -62,12 +60,10 @@ std::uint64_t EdgeRays::bytes() const {
 
 void EdgeRays::give_back() {
     search_.give_back(block_count_);
-    margins_.give_back();
-    horizons_.give_back();
     rays_.give_back(ray_count_);
     hits_.give_back(ray_count_);
     counts_.give_back(ray_count_);
-    found_.give_back();
+    raycontact::give_back(margins_, horizons_, found_);
 }
 
 } // namespace raycontact

@@ -26,8 +26,7 @@ struct RayBatch {
 
     /// Makes room for so many rays.
     void resize(Device& device, std::size_t size) {
-        rays.resize(device, size);
-        hits.resize(device, size);
+        raycontact::resize(device, size, rays, hits);
         outcomes.resize(device, 3, size);
         if (totals.size() == 0) totals.write(device, sums);
     }

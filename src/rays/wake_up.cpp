@@ -7,7 +7,6 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <array>
 
 namespace raycontact {
 
@@ -148,17 +147,15 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
         slices_.resize(room);
         most_due_ = 0;
     }
-    update.executor.run(slice_count_, 1, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t s = begin; s < end; ++s) {
-            Slice& slice = slices_[s];
-            Room& room = rooms_[s];
-            slice.due = List(room.due);
-            slice.places = List(room.places);
-            slice.stale = List(room.stale);
-            slice.as_standard = List(room.as_standard);
-            slice.edges = List(room.edges);
-            wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
-        }
+    update.executor.each(slice_count_, 1, [&](std::uint32_t s) {
+        Slice& slice = slices_[s];
+        Room& room = rooms_[s];
+        slice.due = List(room.due);
+        slice.places = List(room.places);
+        slice.stale = List(room.stale);
+        slice.as_standard = List(room.as_standard);
+        slice.edges = List(room.edges);
+        wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
     });
 }
 

@@ -14,9 +14,8 @@ MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Conta
     std::uint64_t all = 0;
     auto contact = contacts.begin();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const auto of = [](const Contact& c) { return SlotPair(c.body_a, c.body_b); };
-        while (contact != contacts.end() && of(*contact) < pairs[i]) ++contact;
-        for (; contact != contacts.end() && of(*contact) == pairs[i]; ++contact) ++weights[i];
+        while (contact != contacts.end() && pair_of(*contact) < pairs[i]) ++contact;
+        for (; contact != contacts.end() && pair_of(*contact) == pairs[i]; ++contact) ++weights[i];
         all += weights[i];
         weight_of_body[pairs[i].first] += weights[i];
         weight_of_body[pairs[i].second] += weights[i];

@@ -41,13 +41,11 @@ private:
     std::atomic<const Accelerators*> ready_{nullptr};
 };
 
-/// Calls piece(begin, end) over [0, count) on the executor's threads until all are done, or it is asked to stop.
-template <class Piece>
-void run_until(Executor& executor, const std::stop_token& stop, std::size_t count, std::uint32_t grain, Piece&& piece) {
-    executor.run(static_cast<std::uint32_t>(count), grain, [&](std::uint32_t begin, std::uint32_t end) {
-        // A slice may be long: with one thread it is all.
-        for (std::uint32_t next = begin; next < end && !stop.stop_requested(); next += grain)
-            piece(next, std::min(end, next + grain));
+/// Calls work(i) for each i below `count` on the executor's threads until all are done, or it is asked to stop.
+template <class Work>
+void run_until(Executor& executor, const std::stop_token& stop, std::size_t count, std::uint32_t grain, Work&& work) {
+    executor.each(count, grain, [&](std::uint32_t i) {
+        if (!stop.stop_requested()) work(i);
     });
 }
 

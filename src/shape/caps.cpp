@@ -128,9 +128,8 @@ void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, co
     const Caps caps(shape, normals);
     std::atomic<std::size_t> with_cap = 0;
     to.caps.assign(TRIANGLE_LANES * shape.triangle_blocks.size(), 0);
-    run_until(executor, stop, shape.triangle_blocks.size(), 16, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t block = begin; block < end; ++block) with_cap += caps.write(block, to);
-    });
+    run_until(executor, stop, shape.triangle_blocks.size(), 16,
+              [&](std::uint32_t block) { with_cap += caps.write(block, to); });
     to.header.caps_pay = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
 }
 

@@ -75,10 +75,9 @@ public:
             // By rows, of which there are many: a cell is measured by itself, from what longer strides have measured.
             const auto rows_y = static_cast<std::size_t>((cells_.size[1] + stride - 1) / stride);
             const auto rows_z = static_cast<std::size_t>((cells_.size[2] + stride - 1) / stride);
-            run_until(executor, stop, rows_y * rows_z, 16, [&](std::uint32_t begin, std::uint32_t end) {
-                for (std::uint32_t row = begin; row < end; ++row)
-                    measure_row(shape, stride, near, static_cast<int>(row % rows_y) * stride,
-                                static_cast<int>(row / rows_y) * stride);
+            run_until(executor, stop, rows_y * rows_z, 16, [&](std::uint32_t row) {
+                measure_row(shape, stride, near, static_cast<int>(row % rows_y) * stride,
+                            static_cast<int>(row / rows_y) * stride);
             });
         }
     }
@@ -106,16 +105,12 @@ public:
         to.header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
         to.clearances.assign(distance_.size(), 0);
         std::vector<Ball> outer, other;
-        executor.run(2, 1, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t side = begin; side < end; ++side) (side == 0 ? outer : other) = choose_balls(side == 0);
-        });
-        executor.run(static_cast<std::uint32_t>(cells_.count()), 4096, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const Cell cell = cells_.at(static_cast<int>(i));
-                // Prefers a ball outside if it reaches into the cell at all: most vertices are outside.
-                const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
-                if (ball.radius >= 0) to.clearances[i] = word(ball, cell);
-            }
+        executor.each(2, 1, [&](std::uint32_t side) { (side == 0 ? outer : other) = choose_balls(side == 0); });
+        executor.each(distance_.size(), 4096, [&](std::uint32_t i) {
+            const Cell cell = cells_.at(static_cast<int>(i));
+            // Prefers a ball outside if it reaches into the cell at all: most vertices are outside.
+            const Ball& ball = outer[i].depth_at(cell) > -half_diagonal ? outer[i] : other[i];
+            if (ball.radius >= 0) to.clearances[i] = word(ball, cell);
         });
     }
 

@@ -5,7 +5,6 @@
 #include "shape/mesh_rays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace raycontact {
@@ -59,17 +58,15 @@ std::vector<float> measure_exits(const ShapeData& shape, std::span<const Vec3> n
     const VertexTriangles triangles =
         vertex_triangles(shape.mesh.triangles, static_cast<std::uint32_t>(shape.points.size()));
     std::vector<float> distances(shape.points.size(), 0.0f);
-    executor.run(static_cast<std::uint32_t>(distances.size()), 64, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t v = begin; v < end; ++v) {
-            const Vec3 n = shape.vertex_normals[v];
-            if (n == Vec3{}) continue;
-            // The direction that the kernels will use, so that both end at the same face.
-            const Vec3 direction{-static_cast<float>(n.x), -static_cast<float>(n.y), -static_cast<float>(n.z)};
-            const auto around = triangles.of(v);
-            if (points_inside(shape, normals, v, direction, around))
-                distances[v] = static_cast<float>(
-                    closest_hit(shape, {shape.point(v), direction, from_here, never, true, around}).distance);
-        }
+    executor.each(distances.size(), 64, [&](std::uint32_t v) {
+        const Vec3 n = shape.vertex_normals[v];
+        if (n == Vec3{}) return;
+        // The direction that the kernels will use, so that both end at the same face.
+        const Vec3 direction{-static_cast<float>(n.x), -static_cast<float>(n.y), -static_cast<float>(n.z)};
+        const auto around = triangles.of(v);
+        if (points_inside(shape, normals, v, direction, around))
+            distances[v] = static_cast<float>(
+                closest_hit(shape, {shape.point(v), direction, from_here, never, true, around}).distance);
     });
     return distances;
 }

@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesh/vector.h"
+#include "mesh/measure.h"
 #include "shape/shape_data.h"
 
 #include <limits>
 #include <span>
 
 namespace raycontact {
+
+/// Normal of a face, out of the mesh and as long as twice the area.
+inline Vec3 area_normal(const ShapeData& mesh, std::uint32_t face) {
+    const Vec3 a = mesh.corner(face, 0);
+    return cross(mesh.corner(face, 1) - a, mesh.corner(face, 2) - a);
+}
+
+/// The mesh's own, in its centred frame.
+inline Box box_of(const ShapeData& mesh) {
+    const auto &low = mesh.header.low, &high = mesh.header.high;
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
 
 /// Where a ray meets a mesh, in double and in the centred frame of the mesh.
 struct MeshHit {

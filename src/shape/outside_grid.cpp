@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/measure.h"
 #include "shape/build.h"
 #include "shape/cells.h"
+#include "shape/mesh_rays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ enum State : unsigned char { Unknown, Surface, Outside };
 void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::stop_token& stop) {
     kernels::ShapeHeader& header = made.header;
     if (header.outward == 0) return;
-    const Vec3 low{header.low[0], header.low[1], header.low[2]};
-    const Vec3 extent = Vec3{header.high[0], header.high[1], header.high[2]} - low;
+    const Box own = box_of(shape);
+    const Vec3 &low = own.low, extent = own.high - low;
     // Cells about half as long as an edge of the surface's triangles: memory stays a small part of the triangles'.
     const double wanted = std::clamp(1.6 * std::sqrt(double(shape.mesh.triangles.size())), 8.0, 256.0);
     // A float32 scale: the kernels must find the very cells that are tested here. The farthest look-up is that of

@@ -35,11 +35,10 @@ void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
         return;
     }
     // Entered last: a shape too large for the device has no entry, and leaves at most unused elements in the arrays.
-    Entry entry{shape, 0, 1, 0};
-    const bool accelerated = upload(entry);
+    Entry entry{shape, 0, 1};
+    upload(entry);
     order_.reserve(order_.size() + 1);
-    const Entry& entered = entries_.emplace(shape.get(), std::move(entry)).first->second;
-    if (!accelerated) note_plain(entered);
+    plain_ += entries_.emplace(shape.get(), entry).first->second.plain ? 1 : 0;
     order_.push_back(shape.get());
 }
 
@@ -47,7 +46,7 @@ void ShapeStore::remove(const Shape* shape) {
     const auto found = entries_.find(shape);
     if (--found->second.users > 0) return;
     bytes_dropped_ += found->second.bytes;
-    no_longer_plain(found->second.index, shape);
+    plain_ -= found->second.plain ? 1 : 0;
     order_.erase(std::find(order_.begin(), order_.end(), shape));
     entries_.erase(found);
 }
@@ -56,19 +55,20 @@ bool ShapeStore::pack() {
     if (whole_ && 2 * bytes_dropped_ <= bytes_used_) return false;
     arrays_ = {};
     headers_.clear();
-    plain_shapes_.clear();
     bytes_used_ = bytes_dropped_ = 0;
-    plain_ = 0;
     whole_ = false; // if an upload throws, the next call begins anew
     for (const Shape* shape : order_) {
         Entry& entry = entries_.at(shape);
-        if (!upload(entry)) note_plain(entry);
+        plain_ -= entry.plain ? 1 : 0;
+        entry.plain = false;
+        upload(entry);
+        plain_ += entry.plain ? 1 : 0;
     }
     whole_ = true;
     return true;
 }
 
-bool ShapeStore::upload(Entry& entry) {
+void ShapeStore::upload(Entry& entry) {
     const ShapeData& data = entry.shape->data();
     const Accelerators* more = entry.shape->accelerators();
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
@@ -82,35 +82,23 @@ bool ShapeStore::upload(Entry& entry) {
         header.caps = 0; // of no use there
     }
     headers_.reserve(headers_.size() + 1);
-    plain_shapes_.resize(headers_.size() + 1, nullptr);
     arrays_.headers.append(device_, std::span(&header, 1));
     entry.index = static_cast<kernels::uint>(headers_.size());
     headers_.push_back(header);
     entry.bytes = entry.shape->memory_bytes();
     bytes_used_ += entry.bytes;
-    return more != nullptr;
+    entry.plain = more == nullptr;
 }
 
 void ShapeStore::accelerate() {
     if (plain_ == 0) return;
-    for (kernels::uint i = 0; i < plain_shapes_.size(); ++i) {
-        const Shape* shape = plain_shapes_[i];
-        if (shape == nullptr || shape->accelerators() == nullptr) continue;
-        upload_accelerators(entries_.at(shape), *shape->accelerators());
-        no_longer_plain(i, shape);
+    for (const Shape* shape : order_) {
+        Entry& entry = entries_.at(shape);
+        if (!entry.plain || shape->accelerators() == nullptr) continue;
+        upload_accelerators(entry, *shape->accelerators());
+        entry.plain = false;
+        --plain_;
     }
-}
-
-void ShapeStore::note_plain(const Entry& entry) {
-    plain_shapes_[entry.index] = entry.shape.get();
-    ++plain_;
-}
-
-// A pack that failed may have left another index.
-void ShapeStore::no_longer_plain(kernels::uint index, const Shape* shape) {
-    if (index >= plain_shapes_.size() || plain_shapes_[index] != shape) return;
-    plain_shapes_[index] = nullptr;
-    --plain_;
 }
 
 // What was copied stays; the word of the grid of one cell is unused from now on.

@@ -32,9 +32,8 @@ public:
     bool pack();
     /// Takes over what was made of the shapes since they were added (Shape::prepare). Call it between steps.
     void accelerate();
-    /// How many shapes have no accelerators here, and whether that one has none, by its index.
+    /// How many shapes have no accelerators here.
     std::size_t plain() const { return plain_; }
-    bool is_plain(kernels::uint index) const { return plain_shapes_[index] != nullptr; }
     const Arrays& arrays() const { return arrays_; }
     /// The host's copy of arrays().headers.
     std::span<const kernels::ShapeHeader> headers() const { return headers_; }
@@ -45,13 +44,12 @@ private:
         kernels::uint index = 0;
         std::uint32_t users = 0;
         std::uint64_t bytes = 0; ///< of the shape, as far as it is here
+        bool plain = false;      ///< without accelerators here
     };
-    bool upload(Entry& entry); ///< returns whether it has accelerators
+    void upload(Entry& entry);
     void upload_accelerators(Entry& entry, const Accelerators& more);
     template <class... T>
     void copy(const std::pair<const std::vector<T>&, kernels::ulong&>&... arrays);
-    void note_plain(const Entry& entry);
-    void no_longer_plain(kernels::uint index, const Shape* shape);
 
     Device& device_;
     std::unordered_map<const Shape*, Entry> entries_;
@@ -59,9 +57,8 @@ private:
     Arrays arrays_;
     std::vector<kernels::ShapeHeader> headers_;
     std::uint64_t bytes_used_ = 0, bytes_dropped_ = 0;
-    std::vector<const Shape*> plain_shapes_; ///< by index; null: accelerated, or dropped
-    std::size_t plain_ = 0;                  ///< of them
-    bool whole_ = true;                      ///< all shapes of order_ are in the arrays
+    std::size_t plain_ = 0; ///< entries
+    bool whole_ = true;     ///< all shapes of order_ are in the arrays
 };
 
 } // namespace raycontact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/vector.h"
 #include "shape/angle.h"
 #include "shape/build.h"
+#include "shape/mesh_rays.h"
 
 namespace raycontact {
 
@@ -25,20 +25,15 @@ Vec3 shaken(std::uint64_t vertex) {
 std::vector<Vec3> face_normals(const ShapeData& shape) {
     std::vector<Vec3> normals;
     normals.reserve(shape.mesh.triangles.size());
-    for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
-        const Vec3 n = cross(shape.corner(t, 1) - shape.corner(t, 0), shape.corner(t, 2) - shape.corner(t, 0));
-        const double size = length(n);
-        normals.push_back(size > 0 ? (1 / size) * n : Vec3{});
-    }
+    for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) normals.push_back(unit(area_normal(shape, t)));
     return normals;
 }
 
 std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const Vec3> normals, Executor& executor) {
     // Angles take most of the time. Sums are made in the order of the triangles.
     std::vector<std::array<double, 3>> angles(normals.size());
-    executor.run(static_cast<std::uint32_t>(normals.size()), 1024, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t t = begin; t < end; ++t)
-            angles[t] = corner_angles({shape.corner(t, 0), shape.corner(t, 1), shape.corner(t, 2)});
+    executor.each(normals.size(), 1024, [&](std::uint32_t t) {
+        angles[t] = corner_angles({shape.corner(t, 0), shape.corner(t, 1), shape.corner(t, 2)});
     });
     std::vector<Vec3> sums(shape.points.size());
     for (std::uint32_t t = 0; t < normals.size(); ++t)
@@ -57,8 +52,7 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
 std::vector<float> measure_areas(const ShapeData& shape) {
     std::vector<double> sums(shape.points.size());
     for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
-        const Vec3 a = shape.corner(t, 0);
-        const double area = 0.5 * length(cross(shape.corner(t, 1) - a, shape.corner(t, 2) - a));
+        const double area = 0.5 * length(area_normal(shape, t));
         for (const std::uint32_t v : shape.mesh.triangles[t]) sums[v] += area / 3;
     }
     std::vector<float> areas;

@@ -87,7 +87,7 @@ struct Devices {
 
 Devices devices() {
     Devices devices;
-    if (!driver().why_not.empty()) return {{}, driver().why_not};
+    if (const std::string why_not = driver().why_not(); !why_not.empty()) return {{}, why_not};
     int version = 0, count = 0;
     try {
         check(driver().cuInit(0), "cuInit");
@@ -190,14 +190,6 @@ private:
     DeviceBuffer scan_sums_; ///< the last member: it waits before the others go
 };
 
-std::unique_ptr<DriverDevice> make_device(const Listed& listed, const Source& source) {
-    const Nvrtc nvrtc(listed.driver_major);
-    const std::string image = image_for(nvrtc, source, listed.architecture, listed.driver_major);
-    const auto context = std::make_shared<const Context>(listed.device);
-    const Current current(*context);
-    return std::make_unique<DriverDevice>(listed, context, image);
-}
-
 } // namespace
 
 std::vector<DeviceInfo> describe() {
@@ -208,21 +200,15 @@ std::vector<DeviceInfo> describe() {
 
 std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::function<void(Source&)>& change) {
     const Listed listed = find(id);
-    const auto refuse = [](const DeviceInfo& info) {
-        throw InputError("device '" + info.id + "' (" + info.name + ") cannot be used: " + info.why_not);
-    };
-    if (!listed.info.usable) refuse(listed.info);
-    Source source = exact_source();
-    if (change) change(source);
-    std::unique_ptr<DriverDevice> device;
-    try {
-        device = make_device(listed, source);
-        if (device->info().usable || inexact) device->launch_all();
-    } catch (const DeviceError& error) {
-        throw DeviceError("device '" + listed.info.id + "' (" + listed.info.name + ") did not open: " + error.what());
-    }
-    if (!device->info().usable && !inexact) refuse(device->info());
-    return device;
+    return gpu::open(listed.info, listed.info.usable, inexact, [&] {
+        Source source = exact_source();
+        if (change) change(source);
+        const std::string image =
+            image_for(Nvrtc(listed.driver_major), source, listed.architecture, listed.driver_major);
+        const auto context = std::make_shared<const Context>(listed.device);
+        const Current current(*context);
+        return std::make_unique<DriverDevice>(listed, context, image);
+    });
 }
 
 } // namespace raycontact::cuda

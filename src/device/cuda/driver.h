@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/device.h"
-#include "platform/library.h"
+#include "platform/system.h"
 
 #include <string>
 #include <string_view>
@@ -19,87 +19,82 @@ using EventHandle = struct EventObject*;
 using ModuleHandle = struct ModuleObject*;
 using FunctionHandle = struct FunctionObject*;
 
-struct Driver;
-
-/// A function of the driver; the driver's library has it under `symbol`, whose suffix is part of the binary interface:
-/// without it, several of these are older functions.
-template <typename Signature>
-class Function;
-template <typename... Parameters>
-class Function<Status(Parameters...)> {
-public:
-    Function(Driver& driver, const char* symbol);
-    Status operator()(Parameters... parameters) const { return function_(parameters...); }
-
-private:
-    Status (*function_)(Parameters...) = nullptr;
-};
+using platform::Function;
 
 /// The driver that is installed, its functions named as in NVIDIA's documentation. Its library is loaded once and kept
-/// for the process.
+/// for the process. A symbol's suffix is part of the binary interface: without it, several of these are older
+/// functions.
 struct Driver {
-    Driver();
+    static constexpr const char* library_name = platform::on_windows ? "nvcuda.dll" : "libcuda.so.1";
 
-    std::string why_not; ///< empty: it is there
-    platform::Library library;
-    Function<Status(unsigned flags)> cuInit{*this, "cuInit"};
-    Function<Status(int* version)> cuDriverGetVersion{*this, "cuDriverGetVersion"}; ///< 1000 * major + 10 * minor
-    Function<Status(Status status, const char** text)> cuGetErrorName{*this, "cuGetErrorName"};
-    Function<Status(Status status, const char** text)> cuGetErrorString{*this, "cuGetErrorString"};
-    Function<Status(int* count)> cuDeviceGetCount{*this, "cuDeviceGetCount"};
-    Function<Status(DeviceNumber* device, int index)> cuDeviceGet{*this, "cuDeviceGet"};
-    Function<Status(char* text, int size, DeviceNumber device)> cuDeviceGetName{*this, "cuDeviceGetName"};
-    Function<Status(char* text, int size, DeviceNumber device)> cuDeviceGetPCIBusId{*this, "cuDeviceGetPCIBusId"};
-    Function<Status(int* value, int attribute, DeviceNumber device)> cuDeviceGetAttribute{*this,
+    platform::Library library{library_name};
+    Function<Status(unsigned flags)> cuInit{library, "cuInit"};
+    Function<Status(int* version)> cuDriverGetVersion{library, "cuDriverGetVersion"}; ///< 1000 * major + 10 * minor
+    Function<Status(Status status, const char** text)> cuGetErrorName{library, "cuGetErrorName"};
+    Function<Status(Status status, const char** text)> cuGetErrorString{library, "cuGetErrorString"};
+    Function<Status(int* count)> cuDeviceGetCount{library, "cuDeviceGetCount"};
+    Function<Status(DeviceNumber* device, int index)> cuDeviceGet{library, "cuDeviceGet"};
+    Function<Status(char* text, int size, DeviceNumber device)> cuDeviceGetName{library, "cuDeviceGetName"};
+    Function<Status(char* text, int size, DeviceNumber device)> cuDeviceGetPCIBusId{library, "cuDeviceGetPCIBusId"};
+    Function<Status(int* value, int attribute, DeviceNumber device)> cuDeviceGetAttribute{library,
                                                                                           "cuDeviceGetAttribute"};
-    Function<Status(std::size_t* bytes, DeviceNumber device)> cuDeviceTotalMem{*this, "cuDeviceTotalMem_v2"};
-    Function<Status(ContextHandle* context, DeviceNumber device)> cuDevicePrimaryCtxRetain{*this,
+    Function<Status(std::size_t* bytes, DeviceNumber device)> cuDeviceTotalMem{library, "cuDeviceTotalMem_v2"};
+    Function<Status(ContextHandle* context, DeviceNumber device)> cuDevicePrimaryCtxRetain{library,
                                                                                            "cuDevicePrimaryCtxRetain"};
-    Function<Status(DeviceNumber device)> cuDevicePrimaryCtxRelease{*this, "cuDevicePrimaryCtxRelease_v2"};
-    Function<Status(ContextHandle context)> cuCtxPushCurrent{*this, "cuCtxPushCurrent_v2"};
-    Function<Status(ContextHandle* context)> cuCtxPopCurrent{*this, "cuCtxPopCurrent_v2"};
-    Function<Status(StreamHandle* stream, unsigned flags)> cuStreamCreate{*this, "cuStreamCreate"};
-    Function<Status(StreamHandle stream)> cuStreamSynchronize{*this, "cuStreamSynchronize"};
-    Function<Status(StreamHandle stream)> cuStreamDestroy{*this, "cuStreamDestroy_v2"};
-    Function<Status(EventHandle* event, unsigned flags)> cuEventCreate{*this, "cuEventCreate"};
-    Function<Status(EventHandle event, StreamHandle stream)> cuEventRecord{*this, "cuEventRecord"};
-    Function<Status(EventHandle event)> cuEventSynchronize{*this, "cuEventSynchronize"};
-    Function<Status(float* milliseconds, EventHandle begin, EventHandle end)> cuEventElapsedTime{*this,
+    Function<Status(DeviceNumber device)> cuDevicePrimaryCtxRelease{library, "cuDevicePrimaryCtxRelease_v2"};
+    Function<Status(ContextHandle context)> cuCtxPushCurrent{library, "cuCtxPushCurrent_v2"};
+    Function<Status(ContextHandle* context)> cuCtxPopCurrent{library, "cuCtxPopCurrent_v2"};
+    Function<Status(StreamHandle* stream, unsigned flags)> cuStreamCreate{library, "cuStreamCreate"};
+    Function<Status(StreamHandle stream)> cuStreamSynchronize{library, "cuStreamSynchronize"};
+    Function<Status(StreamHandle stream)> cuStreamDestroy{library, "cuStreamDestroy_v2"};
+    Function<Status(EventHandle* event, unsigned flags)> cuEventCreate{library, "cuEventCreate"};
+    Function<Status(EventHandle event, StreamHandle stream)> cuEventRecord{library, "cuEventRecord"};
+    Function<Status(EventHandle event)> cuEventSynchronize{library, "cuEventSynchronize"};
+    Function<Status(float* milliseconds, EventHandle begin, EventHandle end)> cuEventElapsedTime{library,
                                                                                                  "cuEventElapsedTime"};
-    Function<Status(EventHandle event)> cuEventDestroy{*this, "cuEventDestroy_v2"};
+    Function<Status(EventHandle event)> cuEventDestroy{library, "cuEventDestroy_v2"};
     Function<Status(ModuleHandle* module, const void* image, unsigned count, int* options, void** values)>
-        cuModuleLoadDataEx{*this, "cuModuleLoadDataEx"};
+        cuModuleLoadDataEx{library, "cuModuleLoadDataEx"};
     Function<Status(FunctionHandle* function, ModuleHandle module, const char* name)> cuModuleGetFunction{
-        *this, "cuModuleGetFunction"};
-    Function<Status(ModuleHandle module)> cuModuleUnload{*this, "cuModuleUnload"};
-    Function<Status(int* value, int attribute, FunctionHandle function)> cuFuncGetAttribute{*this,
+        library, "cuModuleGetFunction"};
+    Function<Status(ModuleHandle module)> cuModuleUnload{library, "cuModuleUnload"};
+    Function<Status(int* value, int attribute, FunctionHandle function)> cuFuncGetAttribute{library,
                                                                                             "cuFuncGetAttribute"};
-    Function<Status(Address* memory, std::size_t bytes)> cuMemAlloc{*this, "cuMemAlloc_v2"};
-    Function<Status(Address memory)> cuMemFree{*this, "cuMemFree_v2"};
-    Function<Status(void** memory, std::size_t bytes, unsigned flags)> cuMemHostAlloc{*this, "cuMemHostAlloc"};
-    Function<Status(void* memory)> cuMemFreeHost{*this, "cuMemFreeHost"};
+    Function<Status(Address* memory, std::size_t bytes)> cuMemAlloc{library, "cuMemAlloc_v2"};
+    Function<Status(Address memory)> cuMemFree{library, "cuMemFree_v2"};
+    Function<Status(void** memory, std::size_t bytes, unsigned flags)> cuMemHostAlloc{library, "cuMemHostAlloc"};
+    Function<Status(void* memory)> cuMemFreeHost{library, "cuMemFreeHost"};
     Function<Status(Address to, const void* from, std::size_t bytes, StreamHandle stream)> cuMemcpyHtoDAsync{
-        *this, "cuMemcpyHtoDAsync_v2"};
+        library, "cuMemcpyHtoDAsync_v2"};
     Function<Status(void* to, Address from, std::size_t bytes, StreamHandle stream)> cuMemcpyDtoHAsync{
-        *this, "cuMemcpyDtoHAsync_v2"};
+        library, "cuMemcpyDtoHAsync_v2"};
     Function<Status(Address to, Address from, std::size_t bytes, StreamHandle stream)> cuMemcpyDtoDAsync{
-        *this, "cuMemcpyDtoDAsync_v2"};
+        library, "cuMemcpyDtoDAsync_v2"};
     Function<Status(FunctionHandle function, unsigned blocks_x, unsigned blocks_y, unsigned blocks_z,
                     unsigned threads_x, unsigned threads_y, unsigned threads_z, unsigned shared_bytes,
                     StreamHandle stream, void** arguments, void** extra)>
-        cuLaunchKernel{*this, "cuLaunchKernel"};
-};
-const Driver& driver();
+        cuLaunchKernel{library, "cuLaunchKernel"};
 
-template <typename... Parameters>
-Function<Status(Parameters...)>::Function(Driver& driver, const char* symbol) {
-    if (!driver.library) return;
-    driver.library.find(symbol, function_);
-    if (!function_)
-        driver.why_not = "the CUDA driver is too old: it has no " + std::string(symbol) + "; install one of CUDA 11";
+    /// Why it cannot be used; empty: it can.
+    std::string why_not() const {
+        if (!library) return "no CUDA driver is installed here (" + std::string(library_name) + ")";
+        if (library.missing().empty()) return "";
+        return "the CUDA driver is too old: it has no " + library.missing() + "; install one of CUDA 11";
+    }
+};
+inline const Driver& driver() {
+    static const Driver installed;
+    return installed;
 }
 
 /// Throws DeviceError that names what failed, and how.
-void check(Status status, std::string_view what);
+inline void check(Status status, std::string_view what) {
+    if (status == 0) return;
+    const char *name = nullptr, *text = nullptr;
+    driver().cuGetErrorName(status, &name);
+    driver().cuGetErrorString(status, &text);
+    throw DeviceError(std::string(what) + ": " + (name ? name : "CUDA status " + std::to_string(status))
+                      + (text ? " (" + std::string(text) + ")" : ""));
+}
 
 } // namespace raycontact::cuda

@@ -5,6 +5,7 @@
 #include "device/device.h"
 
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 namespace raycontact::cuda {
@@ -64,27 +65,16 @@ inline Context::Context(DeviceNumber device) : device_(device) {
     }
 }
 
-/// A handle that is released in its context.
-template <typename Handle, Function<Status(Handle)> Driver::*release>
-class Owned {
-public:
-    Owned() = default;
-    Owned(std::shared_ptr<const Context> context, Handle handle) : context_(std::move(context)), handle_(handle) {}
-    ~Owned() {
-        if (context_) context_->when_current([&] { (driver().*release)(handle_); });
+/// Releases a handle in its context.
+template <auto release>
+struct Release {
+    std::shared_ptr<const Context> context;
+    void operator()(auto* handle) const {
+        context->when_current([&] { (driver().*release)(handle); });
     }
-    Owned(Owned&& other) noexcept : context_(std::move(other.context_)), handle_(other.handle_) {}
-    Owned& operator=(Owned&& other) noexcept {
-        std::swap(context_, other.context_);
-        std::swap(handle_, other.handle_);
-        return *this;
-    }
-    Handle get() const { return handle_; }
-
-private:
-    std::shared_ptr<const Context> context_;
-    Handle handle_{};
 };
+template <typename Handle, Function<Status(Handle)> Driver::*release>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release<release>>;
 
 using Event = Owned<EventHandle, &Driver::cuEventDestroy>;
 using Module = Owned<ModuleHandle, &Driver::cuModuleUnload>;
@@ -96,13 +86,13 @@ inline Event make_event(const std::shared_ptr<const Context>& context, bool time
     constexpr unsigned default_flags = 0, without_time = 2;
     EventHandle handle = nullptr;
     check(driver().cuEventCreate(&handle, timed ? default_flags : without_time), "cuEventCreate");
-    return {context, handle};
+    return Event(handle, {context});
 }
 
 inline HostMemory make_host_memory(const std::shared_ptr<const Context>& context, std::size_t bytes) {
     void* memory = nullptr;
     check(driver().cuMemHostAlloc(&memory, bytes, 0), "pinned host memory of " + std::to_string(bytes) + " bytes");
-    return {context, memory};
+    return HostMemory(memory, {context});
 }
 
 class DeviceBuffer : public Buffer {

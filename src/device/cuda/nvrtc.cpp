@@ -2,7 +2,6 @@
 #include "device/cuda/nvrtc.h"
 
 #include "device/device.h"
-#include "platform/library.h"
 #include "platform/system.h"
 
 #include <algorithm>
@@ -87,51 +86,32 @@ NvrtcPlaces nvrtc_places() {
 
 // The few functions used, declared as its binary interface is; status 0 is success.
 struct Nvrtc::Api {
-    using Program = void*;
-    int (*version)(int*, int*) = nullptr;
-    int (*architecture_count)(int*) = nullptr;
-    int (*architectures)(int*) = nullptr;
-    int (*create)(Program*, const char*, const char*, int, const char* const*, const char* const*) = nullptr;
-    int (*destroy)(Program*) = nullptr;
-    int (*compile)(Program, int, const char* const*) = nullptr;
-    int (*log_size)(Program, std::size_t*) = nullptr;
-    int (*log)(Program, char*) = nullptr;
-    int (*ptx_size)(Program, std::size_t*) = nullptr;
-    int (*ptx)(Program, char*) = nullptr;
-    int (*cubin_size)(Program, std::size_t*) = nullptr;
-    int (*cubin)(Program, char*) = nullptr;
-    const char* (*error_text)(int) = nullptr;
+    explicit Api(const std::string& path) : library(path) {}
 
-    /// Whether the library is there and has them all.
-    bool load(const std::string& path) {
-        const platform::Library library(path);
-        if (!library) return false;
-        bool complete = true;
-        const auto find = [&](auto& function, const char* name) {
-            library.find(name, function);
-            complete = complete && function;
-        };
-        find(version, "nvrtcVersion");
-        find(architecture_count, "nvrtcGetNumSupportedArchs");
-        find(architectures, "nvrtcGetSupportedArchs");
-        find(create, "nvrtcCreateProgram");
-        find(destroy, "nvrtcDestroyProgram");
-        find(compile, "nvrtcCompileProgram");
-        find(log_size, "nvrtcGetProgramLogSize");
-        find(log, "nvrtcGetProgramLog");
-        find(ptx_size, "nvrtcGetPTXSize");
-        find(ptx, "nvrtcGetPTX");
-        find(cubin_size, "nvrtcGetCUBINSize");
-        find(cubin, "nvrtcGetCUBIN");
-        find(error_text, "nvrtcGetErrorString");
-        return complete;
-    }
+    using Program = void*;
+    template <typename... Parameters>
+    using Call = platform::Function<int(Parameters...)>;
+    platform::Library library;
+    Call<int*, int*> version{library, "nvrtcVersion"};
+    Call<int*> architecture_count{library, "nvrtcGetNumSupportedArchs"};
+    Call<int*> architectures{library, "nvrtcGetSupportedArchs"};
+    Call<Program*, const char*, const char*, int, const char* const*, const char* const*> create{library,
+                                                                                                 "nvrtcCreateProgram"};
+    Call<Program*> destroy{library, "nvrtcDestroyProgram"};
+    Call<Program, int, const char* const*> compile{library, "nvrtcCompileProgram"};
+    Call<Program, std::size_t*> log_size{library, "nvrtcGetProgramLogSize"};
+    Call<Program, char*> log{library, "nvrtcGetProgramLog"};
+    Call<Program, std::size_t*> ptx_size{library, "nvrtcGetPTXSize"};
+    Call<Program, char*> ptx{library, "nvrtcGetPTX"};
+    Call<Program, std::size_t*> cubin_size{library, "nvrtcGetCUBINSize"};
+    Call<Program, char*> cubin{library, "nvrtcGetCUBIN"};
+    platform::Function<const char*(int)> error_text{library, "nvrtcGetErrorString"};
+
     void check(int status, const char* call) const {
         if (status != 0) throw DeviceError(std::string(call) + ": " + error_text(status));
     }
     /// Text or image of a program, in two calls.
-    std::string fetch(Program program, int (*size_of)(Program, std::size_t*), int (*get)(Program, char*),
-                      const char* call) const {
+    std::string fetch(Program program, const auto& size_of, const auto& get, const char* call) const {
         std::size_t size = 0;
         check(size_of(program, &size), call);
         std::string text(size, '\0');
@@ -144,11 +124,11 @@ Nvrtc::Nvrtc(int driver_major) {
     const NvrtcPlaces places = nvrtc_places();
     const auto take = [&](const std::vector<std::string>& paths, int newest) {
         for (const std::string& path : paths) {
-            Api api;
-            if (!api.load(path)) continue;
-            api.check(api.version(&major_, &minor_), "nvrtcVersion");
+            auto api = std::make_unique<const Api>(path);
+            if (!api->library || !api->library.missing().empty()) continue;
+            api->check(api->version(&major_, &minor_), "nvrtcVersion");
             if (major_ > newest) continue;
-            api_ = std::make_unique<const Api>(api);
+            api_ = std::move(api);
             return true;
         }
         return false;

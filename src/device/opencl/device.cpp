@@ -9,7 +9,6 @@
 
 #include <raycontact/error.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <mutex>
@@ -258,22 +257,11 @@ std::vector<DeviceInfo> describe() {
 
 std::unique_ptr<Device> open(std::string_view id, bool inexact, const std::function<void(Source&)>& change) {
     const Listed& listed = find(id);
-    const auto refuse = [&](const DeviceInfo& info) {
-        throw InputError("device '" + info.id + "' (" + info.name + ") cannot be used: " + info.why_not);
-    };
-    if (!listed.info.usable && !(inexact && listed.runs)) refuse(listed.info);
-    Source source = exact_source(listed.id);
-    if (change) change(source);
-    std::unique_ptr<DriverDevice> device;
-    try {
-        device = std::make_unique<DriverDevice>(listed, source);
-        if (device->info().usable || inexact) device->launch_all();
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error("device '" + listed.info.id + "' (" + listed.info.name
-                                 + ") did not open: " + error.what());
-    }
-    if (!device->info().usable && !inexact) refuse(device->info());
-    return device;
+    return gpu::open(listed.info, listed.runs, inexact, [&] {
+        Source source = exact_source(listed.id);
+        if (change) change(source);
+        return std::make_unique<DriverDevice>(listed, source);
+    });
 }
 
 } // namespace raycontact::opencl

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/opencl/program.h"
 
-#include "device/gpu/launches.h"
 #include "kernels_opencl.h"
 
 namespace raycontact::opencl {

@@ -31,7 +31,7 @@ TEST(SweepAndPrune, AgreesWithEveryPairTested) {
         std::vector<WorldBox> boxes;
         for (BodySlot body = 0; body < 80; ++body) {
             const Vec3 low{double(place(random)), double(place(random)), double(round % 3 ? place(random) : 0)};
-            boxes.push_back({body, low, {low.x + size(random), low.y + size(random), low.z + size(random)}});
+            boxes.push_back({{low, {low.x + size(random), low.y + size(random), low.z + size(random)}}, body});
         }
         const std::vector<SlotPair> expected = all_pairs(boxes);
         std::vector<SlotPair> pairs, again;
@@ -56,7 +56,7 @@ TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3 p = transform_point(
                 pose, {corner & 1 ? low.x : high.x, corner & 2 ? low.y : high.y, corner & 4 ? low.z : high.z});
-            ASSERT_TRUE(overlap(box, {0, p, p}));
+            ASSERT_TRUE(overlap(box, {{p, p}, 0}));
         }
     }
 }
