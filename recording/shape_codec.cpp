@@ -130,7 +130,8 @@ void check_claims(PreparedMesh& mesh) {
     MeshReport& said = mesh.report;
     MeshReport found;
     try {
-        found = measured_report(mesh);
+        Executor executor(0);
+        found = measured_report(mesh, executor);
     } catch (const InputError& error) {
         throw Damage(error.what());
     }

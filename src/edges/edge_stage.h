@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/by_pair.h"
-#include "edges/near_edges.h"
 #include "edges/pair_edges.h"
+#include "pairs/by_pair.h"
+#include "pairs/near_edges.h"
 #include "pairs/update.h"
 
 #include <span>

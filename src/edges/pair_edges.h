@@ -2,8 +2,8 @@
 #pragma once
 
 #include "edges/loops.h"
-#include "edges/near_edges.h"
 #include "mesh/disjoint_sets.h"
+#include "pairs/near_edges.h"
 
 #include <array>
 #include <span>

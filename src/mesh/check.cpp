@@ -118,10 +118,7 @@ void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<con
 std::string to_text(const MeshReport& report) {
     const auto yes = [](bool value) { return value ? "yes" : "no"; };
     std::string text;
-    const auto line = [&](const char* key, const std::string& value) {
-        text += key;
-        text += value + "\n";
-    };
+    const auto line = [&](const std::string& key, const std::string& value) { text += key + value + "\n"; };
     line("vertices           ",
          std::to_string(report.vertices) + " (file: " + std::to_string(report.file_vertices) + ")");
     line("triangles          ",

@@ -25,11 +25,8 @@ void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges);
 void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<const Vec3> snapped_vertices,
                    const MeshTree& tree, Executor& executor);
 
-/// Whether a closed and oriented mesh does not intersect itself and winds outward. Few triangles: on one thread.
-bool is_outward(const PreparedMesh& mesh, Executor& executor);
-
 /// What the report of a mesh should say; the counts of its file and its repairs are taken over. Its coordinates must be
 /// those that prepare_mesh() takes. Throws InputError where no triangle has an area.
-MeshReport measured_report(const PreparedMesh& mesh);
+MeshReport measured_report(const PreparedMesh& mesh, Executor& executor);
 
 } // namespace raycontact

@@ -117,11 +117,6 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTre
     return triangles != before;
 }
 
-/// Few triangles are done before other threads wake.
-Executor executor_for(std::size_t triangles, std::uint32_t threads) {
-    return Executor(triangles < 512 ? 1 : threads);
-}
-
 } // namespace
 
 PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Check check, std::uint32_t threads) {
@@ -139,7 +134,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
-    Executor executor = executor_for(prepared.triangles.size(), threads);
+    Executor executor(prepared.triangles.size() < 512 ? 1 : threads); // few are done before other threads wake
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");
@@ -161,32 +156,17 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     return prepared;
 }
 
-namespace {
-
-void check_anew(PreparedMesh& mesh, std::span<const HalfEdge> edges, Executor& executor) {
+MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {
+    const FloatEnvironment environment;
+    PreparedMesh measured(mesh);
+    const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
+    fill_report(measured, edges);
     const std::vector<Vec3> exact = all_snapped(mesh.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
     if (with_area.empty()) throw InputError("no triangle has an area");
     const MeshTree tree(exact, mesh.triangles, with_area, executor);
-    check_surface(mesh, find_patches(mesh.triangles, edges), exact, tree, executor);
-}
-
-} // namespace
-
-MeshReport measured_report(const PreparedMesh& mesh) {
-    const FloatEnvironment environment;
-    Executor executor = executor_for(mesh.triangles.size(), 0);
-    PreparedMesh measured(mesh);
-    const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
-    fill_report(measured, edges);
-    check_anew(measured, edges, executor);
+    check_surface(measured, find_patches(mesh.triangles, edges), exact, tree, executor);
     return measured.report;
-}
-
-bool is_outward(const PreparedMesh& mesh, Executor& executor) {
-    PreparedMesh checked(mesh);
-    check_anew(checked, sorted_half_edges(mesh.triangles), executor);
-    return checked.report.outward;
 }
 
 } // namespace raycontact

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/by_pair.h"
-#include "contacts/results.h"
-#include "edges/near_edges.h"
+#include "pairs/by_pair.h"
+#include "pairs/near_edges.h"
+#include "pairs/results.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
 #include "rays/edge_rays.h"

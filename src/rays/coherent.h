@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/predictions.h"
 #include "pairs/displacement.h"
 #include "pairs/pair_table.h"
 #include "rays/block_search.h"
@@ -12,6 +11,14 @@
 #include <cstddef>
 
 namespace raycontact {
+
+/// A ray that the next step follows.
+struct KeptRay {
+    SlotPair pair;
+    bool from_a = false;        ///< its vertex is one of the pair's first body
+    std::uint32_t vertex = 0;   ///< of the source's shape
+    std::uint32_t triangle = 0; ///< of the other shape, where the walk begins
+};
 
 /// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
 /// that moved less than a threshold since its last full look follows the rays it kept; others get a full look. If the

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/edge_lists.h"
 
-#include "edges/near_edges.h"
 #include "give_back.h"
+#include "pairs/near_edges.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>

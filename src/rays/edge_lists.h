@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/by_pair.h"
+#include "pairs/by_pair.h"
 #include "pairs/range_pool.h"
 #include "rays/edge_rays.h"
 #include "rays/wake_up.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/wake_up.h"
 
-#include "edges/near_edges.h"
 #include "give_back.h"
+#include "pairs/near_edges.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 

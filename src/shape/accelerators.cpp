@@ -18,7 +18,7 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     auto made = std::make_unique<Accelerators>();
     made->header = shape.header;
     if (!shape.mesh.report.checked && shape.header.closed != 0)
-        made->header.outward = is_outward(shape.mesh, executor) ? 1 : 0;
+        made->header.outward = measured_report(shape.mesh, executor).outward ? 1 : 0;
     build_outside_grid(shape, *made, stop);
     if (stop.stop_requested()) return nullptr;
     build_clearance_grid(shape, *made, executor, stop);

@@ -32,8 +32,7 @@ struct Lane {
 };
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
-// tree groups neighbours.
-// Returns how many come first.
+// tree groups neighbours. Returns how many come first.
 std::size_t split_by_place(Sources sources, std::span<uint> own, std::vector<Key>& keys) {
     Point3f low = sources[own[0]].place, high = low;
     for (const uint i : own) {

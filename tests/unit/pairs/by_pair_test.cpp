@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contacts/by_pair.h"
+#include "pairs/by_pair.h"
 
 #include "device/host_kernels.h"
 
