@@ -381,7 +381,8 @@ std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
     const SlotPair wanted = std::minmax({slot_of(a), slot_of(b)});
-    return std::ranges::equal_range(state_->contacts, wanted, {}, pair_of);
+    const auto first = std::ranges::lower_bound(state_->contacts, wanted, {}, pair_of);
+    return {first, std::ranges::upper_bound(state_->contacts, wanted, {}, pair_of)};
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();

@@ -94,8 +94,8 @@ bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
     const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
     std::ranges::sort(found.begin() + before, found.end(), {},
                       [&](const FeatureContact& c) { return std::tuple(edges(c), -c.depth); });
-    const auto doubled = std::ranges::unique(found.begin() + before, found.end(), {}, edges);
-    found.erase(doubled.begin(), doubled.end());
+    const auto same = [&](const FeatureContact& c, const FeatureContact& d) { return edges(c) == edges(d); };
+    found.erase(std::unique(found.begin() + before, found.end(), same), found.end());
     return true;
 }
 
