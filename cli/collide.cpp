@@ -138,8 +138,8 @@ void print_table(std::size_t index, const QueryPair& pair, bool intersecting, st
 
 /// Bodies 2i and 2i + 1 are a and b of pair i, so a is always the lower one. One batch is one step; its size bounds
 /// the memory of a query of any length.
-void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, ShapeCache& shapes, std::size_t first,
-                   bool json) {
+StepStats collide_batch(const Settings& settings, std::span<const QueryPair> pairs, ShapeCache& shapes,
+                        std::size_t first, bool json) {
     Scene scene(settings);
     std::vector<Pair> list;
     list.reserve(pairs.size());
@@ -163,6 +163,7 @@ void collide_batch(const Settings& settings, std::span<const QueryPair> pairs, S
              : print_table(first + i, pairs[i], intersecting, own, settings.direction == Direction::weighted);
         begin = end;
     }
+    return scene.stats();
 }
 
 /// Turned about x, then y, then z, all through its origin, and then moved.
@@ -211,11 +212,19 @@ void collide(const CollideCommand& options) {
     }
     const Scene checks_the_settings(options.settings);
     shapes.warn(options.settings);
+    std::uint64_t kept = 0, left_out = 0;
     constexpr std::size_t batch = 4096;
     for (std::size_t first = 0; first < pairs.size(); first += batch) {
         const std::size_t count = std::min(batch, pairs.size() - first);
-        collide_batch(options.settings, std::span(pairs).subspan(first, count), shapes, first, options.json);
+        const StepStats stats =
+            collide_batch(options.settings, std::span(pairs).subspan(first, count), shapes, first, options.json);
+        kept += stats.contacts;
+        left_out += stats.contacts_reduced;
     }
+    if (left_out > 0)
+        std::cerr << fmt::format("collide: {} of {} contacts are left out by --max-contacts-per-pair or "
+                                 "--max-contacts\n",
+                                 left_out, kept + left_out);
 }
 
 } // namespace

@@ -87,6 +87,7 @@ void add_length(CLI::App& command, raycontact::Settings& settings, std::optional
 
 void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     using namespace raycontact;
+    constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
     add_word(command, "--method",
              "how rays are kept from step to step: certified (what cannot touch yet is left alone; the contacts of "
              "standard), standard (every ray in full, every step), iterative (last step's contacts are followed), "
@@ -129,6 +130,10 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     command.add_flag("--walk-casts,!--no-walk-casts", settings.cast_lost_walks,
                      "predictive: cast a ray in full (the default) or give it up where following it ends "
                      "nowhere");
+    add_number(command, "--max-contacts-per-pair", settings.max_contacts_per_pair,
+               "of each pair keep the contacts that stand for all, no more than this; 0: all", 0u, most);
+    add_number(command, "--max-contacts", settings.max_contacts,
+               "the same for a whole step; each pair keeps its deepest; 0: all", 0u, most);
     add_word(command, "--devices",
              "auto, all (every GPU), or a list of devices as `raycontact devices` names them, which share the pairs; "
              "cpu/k and opencl:i/k are one core alone",
@@ -174,6 +179,8 @@ raycontact::Settings recorded_unless_given(const CLI::App& command, const raycon
     keep("--distance-extension", &Settings::distance_extension);
     keep("--max-iterations", &Settings::max_iterations);
     keep("--walk-casts", &Settings::cast_lost_walks);
+    keep("--max-contacts-per-pair", &Settings::max_contacts_per_pair);
+    keep("--max-contacts", &Settings::max_contacts);
     settings.skip_outside = recorded.skip_outside; // no option changes it
     check_common_options(settings);
     return settings;

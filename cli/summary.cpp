@@ -15,13 +15,22 @@ struct Count {
 
 /// In the order of steps.csv.
 constexpr Count counts[] = {
-    {"rays_cast", &StepStats::rays_cast},         {"walks", &StepStats::walks},
-    {"walks_lost", &StepStats::walks_lost},       {"walk_casts", &StepStats::walk_casts},
-    {"predictions", &StepStats::predictions},     {"pairs_full", &StepStats::pairs_full},
-    {"pairs_asleep", &StepStats::pairs_asleep},   {"pairs_as_standard", &StepStats::pairs_as_standard},
-    {"pair_bytes", &StepStats::pair_bytes},       {"contacts_new", &StepStats::contacts_new},
-    {"contacts_lost", &StepStats::contacts_lost}, {"pairs_moved", &StepStats::pairs_moved},
-    {"bytes_moved", &StepStats::bytes_moved},     {"devices_lost", &StepStats::devices_lost},
+    {"rays_cast", &StepStats::rays_cast},
+    {"walks", &StepStats::walks},
+    {"walks_lost", &StepStats::walks_lost},
+    {"walk_casts", &StepStats::walk_casts},
+    {"predictions", &StepStats::predictions},
+    {"pairs_full", &StepStats::pairs_full},
+    {"pairs_asleep", &StepStats::pairs_asleep},
+    {"pairs_as_standard", &StepStats::pairs_as_standard},
+    {"pair_bytes", &StepStats::pair_bytes},
+    {"contacts_new", &StepStats::contacts_new},
+    {"contacts_lost", &StepStats::contacts_lost},
+    {"contacts_reduced", &StepStats::contacts_reduced},
+    {"contacts_merged", &StepStats::contacts_merged},
+    {"pairs_moved", &StepStats::pairs_moved},
+    {"bytes_moved", &StepStats::bytes_moved},
+    {"devices_lost", &StepStats::devices_lost},
 };
 
 bool is_memory(const Count& count) {
@@ -52,6 +61,8 @@ void put_settings(Json& object, const Settings& settings) {
     object["distance_extension"] = length(settings.distance_extension);
     object["max_iterations"] = settings.max_iterations;
     object["cast_lost_walks"] = settings.cast_lost_walks;
+    object["max_contacts_per_pair"] = settings.max_contacts_per_pair;
+    object["max_contacts"] = settings.max_contacts;
 }
 
 std::string work_for_a_person(const Json& s) {

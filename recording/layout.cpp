@@ -72,6 +72,8 @@ Settings read_settings(const Json& document) {
     read_if_there(document, "max_iterations", settings.max_iterations);
     read_if_there(document, "cast_lost_walks", settings.cast_lost_walks);
     read_if_there(document, "skip_outside", settings.skip_outside);
+    read_if_there(document, "max_contacts_per_pair", settings.max_contacts_per_pair);
+    read_if_there(document, "max_contacts", settings.max_contacts);
     check_settings(settings);
     return settings;
 }
@@ -142,6 +144,8 @@ Bytes encode_info(const Info& info) {
                             {"max_iterations", info.settings.max_iterations},
                             {"cast_lost_walks", info.settings.cast_lost_walks},
                             {"skip_outside", info.settings.skip_outside},
+                            {"max_contacts_per_pair", info.settings.max_contacts_per_pair},
+                            {"max_contacts", info.settings.max_contacts},
                             {"mesh_source", info.mesh_source}});
     if (bytes.size() > most_text)
         throw InputError("recording: the scene's name and what its meshes are need more than "

@@ -76,7 +76,9 @@ double WrongRays::percent() const {
 
 bool must_agree(const Settings& recorded, const Settings& used) {
     const auto exact = [](Method method) { return method == Method::standard || method == Method::certified; };
-    if (used.direction != recorded.direction || used.features != recorded.features) return false;
+    if (used.direction != recorded.direction || used.features != recorded.features
+        || used.max_contacts_per_pair != recorded.max_contacts_per_pair || used.max_contacts != recorded.max_contacts)
+        return false;
     if (exact(used.method) && exact(recorded.method)) return true;
     return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
            && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance
@@ -89,6 +91,9 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
     Follower follower(reader, options.settings);
     std::optional<Follower> reference;
     if (options.compare) {
+        if (options.settings.max_contacts_per_pair != 0 || options.settings.max_contacts != 0)
+            throw InputError("replay: rays cannot be compared while some contacts are left out; set "
+                             "max_contacts_per_pair and max_contacts to 0");
         Settings standard = options.settings;
         standard.method = Method::standard;
         standard.skip_outside = false; // the reference casts every ray

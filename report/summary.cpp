@@ -69,6 +69,9 @@ constexpr Known known[] = {
     {"distance_extension", "Distance extension", "mm", "by which predictive bounds are widened", 1000},
     {"max_iterations", "Triangles of a walk", "", "a ray may visit so many when it is followed"},
     {"cast_lost_walks", "Lost walks are cast", "", "in full, where following a ray ended nowhere"},
+    {"max_contacts_per_pair", "Contacts a pair", "", "at most, those that stand for all; 0: all"},
+    {"max_contacts", "Contacts a step", "", "at most, but the deepest of each pair; 0: all"},
+    {"contacts_reduced", "Contacts left out", "", "by these limits, in all steps together"},
     {"devices", "Devices", "", "that cast the rays"},
     {"schedule", "Schedule", "", "which device a pair is on"},
     {"pairs_moved", "Pairs moved", "pairs", "from one device to another, in all steps together"},
@@ -154,6 +157,9 @@ std::string thresholds(const Json& summary) {
     if (differs("distance_extension", nullptr)) text += option(summary, "distance_extension", "--distance-extension");
     if (differs("max_iterations", usual.max_iterations)) text += option(summary, "max_iterations", "--max-iterations");
     if (differs("cast_lost_walks", usual.cast_lost_walks)) text += " --no-walk-casts";
+    if (differs("max_contacts_per_pair", 0))
+        text += option(summary, "max_contacts_per_pair", "--max-contacts-per-pair");
+    if (differs("max_contacts", 0)) text += option(summary, "max_contacts", "--max-contacts");
     return text;
 }
 

@@ -206,7 +206,7 @@ struct Scene::State {
 
     void find_coming() {
         const auto start = std::chrono::steady_clock::now();
-        coming.run(narrow.parts()[0].executor(), narrow.settings().direction, bodies, next, slot_pairs);
+        coming.run(narrow.parts().executor(), narrow.settings().direction, bodies, next, slot_pairs);
         next_poses.step_done(bodies);
         stats.contacts_coming = coming.contacts().size();
         stats.narrow_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -403,7 +403,8 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
     return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
 }
 std::vector<Prediction> Scene::predictions() const {
-    return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies, state_->contacts);
+    return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies,
+                            {{state_->contacts, state_->narrow.left_out()}});
 }
 
 } // namespace raycontact

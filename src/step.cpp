@@ -57,15 +57,19 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
             parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
         while (!failed.empty()) failed = replace(failed, stats);
         if (!alone) merge(contacts);
+        reducer_.run(parts_.executor(), settings_, bodies, changes_, contacts);
         changes_.mark(contacts);
     } catch (...) {
         parts_.forget(); // the step failed half-way: what it kept may be wrong
         contacts.clear();
+        reducer_.clear();
         throw;
     }
 
     count(pairs.size(), stats);
     stats.contacts = contacts.size();
+    stats.contacts_reduced = reducer_.left_out().size();
+    stats.contacts_merged = reducer_.merged();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();
     for (const Contact& contact : contacts) {

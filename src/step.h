@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contacts/changes.h"
+#include "contacts/reduce.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
 
@@ -26,6 +27,8 @@ public:
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
+    /// Contacts of the last step that the settings leave out.
+    std::span<const Contact> left_out() const { return reducer_.left_out(); }
 
 private:
     /// What a part found in a step.
@@ -47,6 +50,7 @@ private:
     Assignment assignment_;
     std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
     std::vector<std::span<const Contact>> rest_; ///< still to be merged
+    ContactReducer reducer_;
     Changes changes_;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
     unsigned trims_ = 0;           ///< still to be done, one a step

@@ -46,6 +46,9 @@ struct StepStats {
     std::uint64_t contacts_new = 0;    ///< whose key the last step did not have
     std::uint64_t contacts_lost = 0;   ///< of the last step, whose key this step does not have
     std::uint64_t contacts_coming = 0; ///< Scene::coming_contacts()
+    /// Found, but left out by Settings::max_contacts_per_pair or max_contacts.
+    std::uint64_t contacts_reduced = 0;
+    std::uint64_t contacts_merged = 0; ///< of those, how many say what one that was chosen says
     double ray_length = 0;             ///< sum of the contacts' ray lengths, metres (paper section 5.2)
     double depth_max = 0;              ///< metres
     double broad_ms = 0;               ///< our broad phase; 0 when pairs were given

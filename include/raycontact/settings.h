@@ -75,6 +75,11 @@ struct Settings {
     /// Also finds Scene::coming_contacts(): vertices that enter the other body on their way to the next step, so that a
     /// fast body can be stopped before a thin wall (docs/continuous.md). No contact depends on it.
     bool continuous = false;
+    /// Of each pair the contacts that stand for all of them, no more than this (docs/reduction.md); at least the
+    /// deepest. 0: all contacts. The rest is counted in StepStats.
+    std::uint32_t max_contacts_per_pair = 0;
+    /// The same for the whole scene: each pair in contact keeps its deepest, if need be beyond the limit.
+    std::uint32_t max_contacts = 0;
     /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
     /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
     /// where the driver divides the device, is its k-th core alone.

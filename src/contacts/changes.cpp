@@ -3,21 +3,9 @@
 
 #include "give_back.h"
 
-#include <cstdint>
-#include <tuple>
-
 namespace raycontact {
 
 namespace {
-
-// What contacts are sorted by, in three words.
-using Order = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
-
-Order order_of(const LostContact& key) {
-    const std::uint64_t source =
-        static_cast<std::uint64_t>(key.feature) << 8 | static_cast<std::uint8_t>(key.vertex_body);
-    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.other};
-}
 
 LostContact key_of(const Contact& c) {
     return {c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.other()};
@@ -25,12 +13,22 @@ LostContact key_of(const Contact& c) {
 
 } // namespace
 
+ContactOrder order_of(const LostContact& key) {
+    const std::uint64_t source =
+        static_cast<std::uint64_t>(key.feature) << 8 | static_cast<std::uint8_t>(key.vertex_body);
+    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.other};
+}
+
+ContactOrder order_of(const Contact& contact) {
+    return order_of(key_of(contact));
+}
+
 void Changes::mark(std::span<Contact> contacts) {
     lost_.clear();
     new_count_ = 0;
     std::size_t old = 0;
     for (Contact& contact : contacts) {
-        const Order order = order_of(key_of(contact));
+        const ContactOrder order = order_of(contact);
         while (old < previous_.size() && order_of(previous_[old]) < order) lost_.push_back(previous_[old++]);
         contact.is_new = old == previous_.size() || order_of(previous_[old]) != order;
         if (contact.is_new)

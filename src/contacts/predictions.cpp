@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/predictions.h"
 
+#include "contacts/changes.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
@@ -10,9 +11,8 @@ namespace raycontact {
 
 namespace {
 
-template <class T>
-auto key_of(const T& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
+auto key_of(const Prediction& p) {
+    return std::tuple(p.body_a, p.body_b, p.vertex_body, p.vertex);
 }
 
 // Where the vertex's outward normal meets the plane of the triangle; the vertex itself where they are parallel.
@@ -30,7 +30,7 @@ Vec3 meeting_point(const PlacedBody& source, const PlacedBody& target, const Kep
 } // namespace
 
 std::vector<Prediction> find_predictions(std::span<const KeptRay> rays, std::span<const PlacedBody> bodies,
-                                         std::span<const Contact> contacts) {
+                                         const std::array<std::span<const Contact>, 2>& contacts) {
     std::vector<Prediction> found;
     for (const KeptRay& ray : rays) {
         const auto [a, b] = ray.pair;
@@ -40,14 +40,18 @@ std::vector<Prediction> find_predictions(std::span<const KeptRay> rays, std::spa
         prediction.body_b = b;
         prediction.vertex_body = ray.from_a ? VertexBody::a : VertexBody::b;
         prediction.vertex = source.shape->vertex_index()[ray.vertex];
-        const auto same = std::ranges::lower_bound(contacts, key_of(prediction), {}, key_of<Contact>);
-        if (same != contacts.end() && key_of(*same) == key_of(prediction)) continue;
+        const ContactOrder own =
+            order_of(LostContact{a, b, prediction.vertex_body, Feature::vertex, prediction.vertex, 0});
+        const auto has_it = [&](std::span<const Contact> list) {
+            return std::ranges::binary_search(list, own, {}, [](const Contact& c) { return order_of(c); });
+        };
+        if (std::ranges::any_of(contacts, has_it)) continue;
         prediction.triangle = target.shape->triangle_index()[ray.triangle];
         prediction.point = transform_point(source.pose, source.shape->vertices()[ray.vertex]);
         prediction.ahead = meeting_point(source, target, ray, prediction.point);
         found.push_back(prediction);
     }
-    std::ranges::sort(found, {}, key_of<Prediction>);
+    std::ranges::sort(found, {}, key_of);
     return found;
 }
 

@@ -5,13 +5,14 @@
 
 #include <raycontact/prediction.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
-/// The kept rays that are no contacts, sorted as contacts. contacts: of the same step.
+/// The kept rays that are no contacts, sorted as contacts. contacts: of the same step, two sorted lists.
 std::vector<Prediction> find_predictions(std::span<const KeptRay> rays, std::span<const PlacedBody> bodies,
-                                         std::span<const Contact> contacts);
+                                         const std::array<std::span<const Contact>, 2>& contacts);
 
 } // namespace raycontact

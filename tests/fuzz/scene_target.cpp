@@ -61,6 +61,8 @@ void change(Settings& settings, fuzz::Source& source) {
     settings.skip_outside = source.below(2) == 0;
     settings.cast_lost_walks = source.below(2) == 0;
     settings.max_iterations = source.get<std::uint16_t>();
+    settings.max_contacts_per_pair = source.below(4) == 0 ? 1 + source.below(8) : 0;
+    settings.max_contacts = source.below(4) == 0 ? 1 + source.below(64) : 0;
     settings.displacement_threshold.reset();
     settings.culling_distance.reset();
     settings.distance_extension.reset();

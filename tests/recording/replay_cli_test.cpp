@@ -222,8 +222,9 @@ TEST_F(ReplayProgram, ContactsThatShouldBeTheRunsAndAreNotAreStatus1) {
 TEST_F(ReplayProgram, OldRecordingsAreRead) {
     const json run = record("a.glb", {"--method", "standard"});
     edit_json(folder_.path() / "a.glb", BlockType::info, [](auto& info) {
-        for (const char* key : {"displacement_threshold", "confidence", "culling_distance", "distance_extension",
-                                "max_iterations", "cast_lost_walks", "skip_outside"})
+        for (const char* key :
+             {"displacement_threshold", "confidence", "culling_distance", "distance_extension", "max_iterations",
+              "cast_lost_walks", "skip_outside", "max_contacts_per_pair", "max_contacts"})
             info.erase(key);
     });
     const json again = replayed({"a.glb"});

@@ -169,6 +169,8 @@ TEST(Replay, WhatMustAgree) {
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
         EXPECT_FALSE(agrees(&Settings::features, Features::vertices));
+        EXPECT_FALSE(agrees(&Settings::max_contacts_per_pair, 4u));
+        EXPECT_FALSE(agrees(&Settings::max_contacts, 4u));
         EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
         EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
         EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);

@@ -137,8 +137,9 @@ TEST(RoundTrip, OldRecordingsHaveDefaults) {
     const TemporaryFile file;
     record(sample, file.path(), true);
     edit_json(file.path(), BlockType::info, [](nlohmann::ordered_json& info) {
-        for (const char* key : {"displacement_threshold", "confidence", "culling_distance", "distance_extension",
-                                "max_iterations", "cast_lost_walks", "skip_outside"})
+        for (const char* key :
+             {"displacement_threshold", "confidence", "culling_distance", "distance_extension", "max_iterations",
+              "cast_lost_walks", "skip_outside", "max_contacts_per_pair", "max_contacts"})
             EXPECT_EQ(info.erase(key), 1u) << key;
         info["method"] = "standard";
     });
@@ -152,6 +153,8 @@ TEST(RoundTrip, OldRecordingsHaveDefaults) {
     old.max_iterations = fresh.max_iterations;
     old.cast_lost_walks = fresh.cast_lost_walks;
     old.skip_outside = fresh.skip_outside;
+    old.max_contacts_per_pair = fresh.max_contacts_per_pair;
+    old.max_contacts = fresh.max_contacts;
     EXPECT_EQ(difference(sample, reader, 5), "");
     EXPECT_EQ(reader.hash(), sample.hash);
 }

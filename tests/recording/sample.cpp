@@ -61,6 +61,8 @@ Sample make_sample(std::uint32_t steps) {
     sample.info.settings.max_iterations = 5;
     sample.info.settings.cast_lost_walks = false;
     sample.info.settings.skip_outside = false;
+    sample.info.settings.max_contacts_per_pair = 7;
+    sample.info.settings.max_contacts = 400;
     sample.shapes = {Shape::make(crooked("torus", 60)), Shape::make(crooked("knot", 60)),
                      Shape::make(crooked("sphere", 40))};
     sample.bodies = {{0, 0, Body::never}, {1, 0, Body::never}, {1, 0, 12}, {0, 0, Body::never},
@@ -149,7 +151,9 @@ bool same_info(const Info& p, const Info& q) {
            && p.settings.distance_extension == q.settings.distance_extension
            && p.settings.max_iterations == q.settings.max_iterations
            && p.settings.cast_lost_walks == q.settings.cast_lost_walks
-           && p.settings.skip_outside == q.settings.skip_outside;
+           && p.settings.skip_outside == q.settings.skip_outside
+           && p.settings.max_contacts_per_pair == q.settings.max_contacts_per_pair
+           && p.settings.max_contacts == q.settings.max_contacts;
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <patches.h>
 
-#include <cluster.h>
+#include <vectors.h>
+
+#include <raycontact/manifold.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
@@ -25,6 +27,7 @@ int absent_steps(const btManifoldPoint& p) {
 
 /// Cosine from which on two normals at one place count as one.
 constexpr btScalar like_normals = btScalar(0.9);
+constexpr double one_place = 0.04; // of the reach
 
 /// A point of the step before, moved along with its bodies.
 struct Old {
@@ -38,9 +41,7 @@ struct Old {
 
 struct Patch {
     btPersistentManifold* manifold = nullptr;
-    btVector3 normal, centre;
-    std::vector<std::size_t> members; ///< candidates
-    std::vector<std::size_t> held;    ///< old points without a contact
+    std::vector<std::size_t> held; ///< old points without a contact
 };
 
 btVector3 middle(const btVector3& a, const btVector3& b) {
@@ -123,21 +124,6 @@ Old* predecessor_of(std::vector<Old>& old, const Candidate& c, const std::vector
     return found;
 }
 
-/// The patch that suits a contact best, among those that suit at all; patches.size() when none does.
-std::size_t suitable(const std::vector<Patch>& patches, const Candidate& c, const ManifoldSettings& settings) {
-    std::size_t found = patches.size();
-    btScalar top = settings.patch_cosine;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        const btScalar cosine = patches[i].normal.dot(c.normal);
-        const btScalar away = (patches[i].centre - middle(c.on0, c.on1)).length2();
-        if (cosine >= top && away <= c.reach * c.reach) {
-            top = cosine;
-            found = i;
-        }
-    }
-    return found;
-}
-
 } // namespace
 
 void Patches::clear() {
@@ -152,26 +138,25 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
 
     // The old points, where they are now.
     std::vector<Patch> patches;
+    std::vector<ManifoldPatch> groups; // of the same patches, the contacts of this step
     std::vector<Old> old;
     for (btPersistentManifold* m : manifolds_) {
-        Patch patch;
-        patch.manifold = m;
-        patch.normal.setZero();
-        patch.centre.setZero();
+        btVector3 normal(0, 0, 0), centre(0, 0, 0);
         const int count = m->getNumContacts();
         for (int i = 0; i < count; ++i) {
             const btManifoldPoint& p = m->getContactPoint(i);
             Old o{p, patches.size(), CollisionDispatcher::key(p), pose0(p.m_localPointA), pose1(p.m_localPointB), 0};
             o.distance = (o.on0 - o.on1).dot(p.m_normalWorldOnB);
-            patch.normal += p.m_normalWorldOnB;
-            patch.centre += middle(o.on0, o.on1);
+            normal += p.m_normalWorldOnB;
+            centre += middle(o.on0, o.on1);
             old.push_back(o);
         }
         if (count > 0) {
-            patch.normal.safeNormalize();
-            patch.centre /= btScalar(count);
+            normal.safeNormalize();
+            centre /= btScalar(count);
         }
-        patches.push_back(patch);
+        patches.push_back({m, {}});
+        groups.push_back({to_vec(normal), to_vec(centre), {}});
     }
 
     // Each contact joins the patch that its key was in, else the most suitable one, else it begins a new patch.
@@ -191,21 +176,24 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
             before[c] = o;
         }
     }
+    std::vector<ManifoldPoint> points;
+    points.reserve(candidates.size());
     for (std::size_t c = 0; c < candidates.size(); ++c) {
         const Candidate& contact = candidates[c];
-        std::size_t home = patches.size();
+        ManifoldPoint& point = points.emplace_back();
+        point.position = to_vec(middle(contact.on0, contact.on1));
+        point.normal = to_vec(contact.normal);
+        point.depth = double(-contact.distance);
+        point.reach = double(contact.reach);
+        point.place = one_place * double(contact.reach);
+        point.present = before[c] != nullptr;
         // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
-        if (before[c] && patches[before[c]->patch].normal.dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
-            home = before[c]->patch;
-        if (home == patches.size()) home = suitable(patches, contact, settings);
-        if (home == patches.size()) {
-            Patch patch;
-            patch.normal = contact.normal;
-            patch.centre = middle(contact.on0, contact.on1);
-            patches.push_back(patch);
-        }
-        patches[home].members.push_back(c);
+        if (before[c]
+            && to_bullet(groups[before[c]->patch].normal).dot(contact.normal) >= settings.patch_cosine * btScalar(0.9))
+            point.patch = static_cast<std::uint32_t>(before[c]->patch);
     }
+    join_patches(points, double(settings.patch_cosine), groups);
+    patches.resize(groups.size());
     for (std::size_t i = 0; i < old.size(); ++i) {
         const Old& o = old[i];
         if (o.matched || absent_steps(o.point) >= settings.keep_steps) continue;
@@ -215,14 +203,12 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
     }
 
     manifolds_.clear();
-    for (Patch& patch : patches) {
-        std::vector<Applicant> applicants;
-        for (const std::size_t c : patch.members) {
-            const Old* o = before[c];
-            applicants.push_back({middle(candidates[c].on0, candidates[c].on1), -candidates[c].distance, o != nullptr});
-        }
-        const std::vector<int> chosen = choose_points(applicants);
-        stats.reduced_away += applicants.size() - chosen.size();
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        Patch& patch = patches[g];
+        const std::vector<std::uint32_t>& members = groups[g].points;
+        std::vector<std::uint32_t> chosen = choose_points(points, members);
+        std::ranges::sort(chosen);
+        stats.reduced_away += members.size() - chosen.size();
         const std::size_t room = 4 - chosen.size();
         if (patch.held.size() > room) {
             std::stable_sort(patch.held.begin(), patch.held.end(),
@@ -239,11 +225,10 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
 
         std::vector<PointKey> wanted;
         wanted.reserve(chosen.size() + patch.held.size());
-        for (const int i : chosen) wanted.push_back(candidates[patch.members[static_cast<std::size_t>(i)]].key);
+        for (const std::uint32_t c : chosen) wanted.push_back(candidates[c].key);
         for (const std::size_t i : patch.held) wanted.push_back(old[i].key);
         // Survivors are written first so that the manifold never runs empty in between: that would be an "ended" event.
-        for (const int i : chosen) {
-            const std::size_t c = patch.members[static_cast<std::size_t>(i)];
+        for (const std::uint32_t c : chosen) {
             const int at = index_of(m, candidates[c].key);
             if (at < 0) continue;
             btManifoldPoint p = to_point(candidates[c], pose0, pose1, object0_, object1_);
@@ -262,10 +247,8 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
             ++stats.points_held;
         }
         std::vector<std::size_t> arriving;
-        for (const int i : chosen) {
-            const std::size_t c = patch.members[static_cast<std::size_t>(i)];
+        for (const std::uint32_t c : chosen)
             if (index_of(m, candidates[c].key) < 0) arriving.push_back(c);
-        }
         const auto leave = [&](bool down_to_one) {
             for (int i = m.getNumContacts() - 1; i >= 0; --i) {
                 if (down_to_one && m.getNumContacts() == 1) return;
@@ -287,9 +270,9 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
         for (int i = 0; i < m.getNumContacts() && adds_are_told(*object0_, *object1_); ++i) {
             btManifoldPoint& point = m.getContactPoint(i);
             if (absent_steps(point) != 0) continue;
-            const auto c = std::ranges::find(patch.members, CollisionDispatcher::key(point),
-                                             [&](std::size_t member) { return candidates[member].key; });
-            if (c != patch.members.end()) call_added(point, candidates[*c], object0_, object1_);
+            const auto c = std::ranges::find(members, CollisionDispatcher::key(point),
+                                             [&](std::uint32_t member) { return candidates[member].key; });
+            if (c != members.end()) call_added(point, candidates[*c], object0_, object1_);
         }
         if (was_empty && gContactStartedCallback) gContactStartedCallback(patch.manifold);
         // Bullet calls it when it refreshes a manifold, in every step for every point, the last one first.

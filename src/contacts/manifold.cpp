@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/manifold.h>
+
+#include "mesh/vector.h"
+#include "shape/mesh_rays.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace raycontact {
+
+namespace {
+
+constexpr std::size_t most_points = 4;
+constexpr double like_normals = 0.98;
+constexpr double advantage = 1.3; // of points that are present, on a squared distance
+
+// The patch that suits a point best; their number when none does.
+std::size_t suitable(const ManifoldPoint& point, double cosine, std::span<const ManifoldPatch> patches) {
+    if (point.patch < patches.size()) return point.patch;
+    std::size_t found = patches.size();
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        const Vec3 away = patches[i].centre - point.position;
+        const double like = dot(patches[i].normal, point.normal);
+        if (like < cosine || dot(away, away) > point.reach * point.reach) continue;
+        if (found < patches.size() && like == cosine) continue;
+        cosine = like;
+        found = i;
+    }
+    return found;
+}
+
+// Squared, from the convex hull of at most three points.
+double distance2_from_hull(const Vec3& p, std::span<const Vec3> hull) {
+    const Vec3 off = p - (hull.size() == 1 ? hull[0] : nearest_point(p, hull[0], hull[1], hull.back()));
+    return dot(off, off);
+}
+
+Vec3 middle_of(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch) {
+    Vec3 sum;
+    for (const std::uint32_t i : patch) sum = sum + points[i].position;
+    return (1.0 / double(patch.size())) * sum;
+}
+
+} // namespace
+
+bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b) {
+    const Vec3 away = a.position - b.position;
+    const double place = std::min(a.place, b.place);
+    return dot(away, away) <= place * place && dot(a.normal, b.normal) >= like_normals;
+}
+
+void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vector<ManifoldPatch>& patches) {
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::uint32_t i) { return points[i].depth; });
+    for (const std::uint32_t i : order) {
+        const std::size_t home = suitable(points[i], cosine, patches);
+        if (home == patches.size()) patches.push_back({points[i].normal, points[i].position, {}});
+        patches[home].points.push_back(i);
+    }
+}
+
+std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch) {
+    if (patch.size() < 2) return {patch.begin(), patch.end()};
+    const auto by_depth = [&](std::uint32_t i) { return std::pair(points[i].depth, points[i].present); };
+    const auto by_presence = [&](std::uint32_t i) { return std::pair(points[i].present, points[i].depth); };
+    const std::uint32_t deepest = *std::ranges::max_element(patch, {}, by_depth);
+
+    // The extremes first, whatever their depths: a body that rocks keeps them while now one is deepest, now another.
+    std::vector<std::uint32_t> left(patch.begin(), patch.end()), chosen;
+    std::vector<Vec3> hull{middle_of(points, patch)};
+    const auto score = [&](std::uint32_t i) {
+        const double away2 = distance2_from_hull(points[i].position, hull);
+        return away2 > points[i].place * points[i].place ? (points[i].present ? advantage : 1) * away2 : 0;
+    };
+    const auto take = [&](std::uint32_t taken) {
+        chosen.push_back(taken);
+        std::erase_if(left, [&](std::uint32_t i) { return i == taken || say_the_same(points[i], points[taken]); });
+    };
+    while (!left.empty() && chosen.size() < most_points) {
+        const std::uint32_t farthest = *std::ranges::max_element(left, {}, score);
+        if (!(score(farthest) > 0)) break;
+        std::uint32_t speaker = farthest; // of those that say the same
+        for (const std::uint32_t i : left)
+            if (say_the_same(points[i], points[farthest]) && by_presence(i) > by_presence(speaker)) speaker = i;
+        take(speaker);
+        if (chosen.size() == 1) hull.clear(); // the middle is no point
+        hull.push_back(points[speaker].position);
+    }
+
+    // Then the deepest, in place of what says the same, else of the extreme that the others miss least.
+    auto gone = std::ranges::find_if(
+        chosen, [&](std::uint32_t i) { return i == deepest || say_the_same(points[i], points[deepest]); });
+    if (gone == chosen.end() && chosen.size() == most_points)
+        gone = std::ranges::min_element(chosen, {}, [&](std::uint32_t i) {
+            double least = std::numeric_limits<double>::infinity();
+            for (const std::uint32_t without : chosen) {
+                if (without == i) continue;
+                hull.assign(1, points[deepest].position);
+                for (const std::uint32_t other : chosen)
+                    if (other != i && other != without) hull.push_back(points[other].position);
+                least = std::min(least, distance2_from_hull(points[i].position, hull));
+            }
+            return least;
+        });
+    if (gone != chosen.end()) chosen.erase(gone);
+    take(deepest);
+    std::ranges::rotate(chosen, chosen.end() - 1);
+    while (!left.empty() && chosen.size() < most_points) take(*std::ranges::max_element(left, {}, by_depth));
+    return chosen;
+}
+
+} // namespace raycontact

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contacts/reduce.h"
+
+#include "mesh/vector.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace raycontact {
+
+namespace {
+
+constexpr double patch_cosine = 0.8;
+constexpr double one_place = 0.01; // of the smaller body's size
+
+constexpr std::uint32_t not_chosen = std::numeric_limits<std::uint32_t>::max(), merged_away = not_chosen - 1;
+
+ManifoldPoint point_of(const Contact& contact, double place) {
+    return {0.5 * (point_on_a(contact) + point_on_b(contact)),
+            {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])},
+            double(contact.depth),
+            std::numeric_limits<double>::infinity(),
+            place};
+}
+
+} // namespace
+
+// The patches take turns, the one with the deepest contact first: each gives its next point.
+void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const Changes& changes,
+                          std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const {
+    const auto [a, b] = pair_of(contacts.front());
+    const double place = one_place * smaller_size(bodies[a], bodies[b]);
+    work.points.clear();
+    const auto previous = changes.previous();
+    auto old = std::ranges::lower_bound(previous, order_of(contacts.front()), {},
+                                        [](const LostContact& key) { return order_of(key); });
+    for (const Contact& contact : contacts) {
+        ManifoldPoint& point = work.points.emplace_back(point_of(contact, place));
+        while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
+        point.present = old != previous.end() && order_of(*old) == order_of(contact);
+    }
+    work.patches.clear();
+    join_patches(work.points, patch_cosine, work.patches);
+    work.chosen.clear();
+    std::size_t most = 0;
+    for (const ManifoldPatch& patch : work.patches) {
+        work.chosen.push_back(choose_points(work.points, patch.points));
+        most = std::max(most, work.chosen.back().size());
+    }
+    std::ranges::fill(ranks, not_chosen);
+    std::uint32_t rank = 0;
+    for (std::size_t turn = 0; turn < most; ++turn)
+        for (const auto& chosen : work.chosen)
+            if (turn < chosen.size()) ranks[chosen[turn]] = rank++;
+    for (std::size_t p = 0; p < work.patches.size(); ++p)
+        for (const std::uint32_t i : work.patches[p].points)
+            if (ranks[i] == not_chosen && std::ranges::any_of(work.chosen[p], [&](std::uint32_t kept) {
+                    return say_the_same(work.points[i], work.points[kept]);
+                }))
+                ranks[i] = merged_away;
+}
+
+// First ranks, then depths, then the order of the contacts say who stays.
+void ContactReducer::keep_budget(std::uint64_t most, std::span<const Contact> contacts) {
+    std::uint64_t room = most;
+    rest_.clear();
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        if (ranks_[i] == 0) room -= std::min<std::uint64_t>(room, 1);
+        if (ranks_[i] != 0 && ranks_[i] < merged_away) rest_.push_back(i);
+    }
+    if (rest_.size() <= room) return;
+    const auto first_out = rest_.begin() + static_cast<std::ptrdiff_t>(room);
+    std::ranges::nth_element(rest_, first_out, {},
+                             [&](std::uint32_t i) { return std::tuple(ranks_[i], -contacts[i].depth, i); });
+    std::for_each(first_out, rest_.end(), [&](std::uint32_t i) { ranks_[i] = not_chosen; });
+}
+
+void ContactReducer::run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
+                         const Changes& changes, std::vector<Contact>& contacts) {
+    clear();
+    if (settings.max_contacts_per_pair == 0 && settings.max_contacts == 0) return;
+    const auto count = static_cast<std::uint32_t>(contacts.size());
+    begins_.clear();
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (i == 0 || pair_of(contacts[i]) != pair_of(contacts[i - 1])) begins_.push_back(i);
+    begins_.push_back(count);
+    ranks_.resize(count);
+    const std::uint32_t most_of_pair =
+        settings.max_contacts_per_pair == 0 ? merged_away : settings.max_contacts_per_pair;
+    executor.run(static_cast<std::uint32_t>(begins_.size() - 1), 16, [&](std::uint32_t begin, std::uint32_t end) {
+        Work work;
+        for (std::uint32_t p = begin; p < end; ++p) {
+            const std::span own(contacts.begin() + begins_[p], contacts.begin() + begins_[p + 1]);
+            const std::span ranks(ranks_.begin() + begins_[p], own.size());
+            rank(work, bodies, changes, own, ranks);
+            for (std::uint32_t& one : ranks)
+                if (one >= most_of_pair && one < merged_away) one = not_chosen;
+        }
+    });
+    if (settings.max_contacts != 0) keep_budget(settings.max_contacts, contacts);
+    std::size_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (ranks_[i] < merged_away)
+            contacts[kept++] = contacts[i];
+        else
+            left_out_.push_back(contacts[i]);
+        if (ranks_[i] == merged_away) ++merged_;
+    }
+    contacts.resize(kept);
+    give_back(ranks_, begins_, rest_, left_out_);
+}
+
+void ContactReducer::clear() {
+    left_out_.clear();
+    merged_ = 0;
+}
+
+} // namespace raycontact

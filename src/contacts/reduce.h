@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "contacts/changes.h"
+#include "executor/executor.h"
+#include "give_back.h"
+#include "pairs/directed_pairs.h"
+
+#include <raycontact/manifold.h>
+#include <raycontact/settings.h>
+
+#include <array>
+#include <vector>
+
+namespace raycontact {
+
+/// Leaves the contacts that stand for all, where the settings ask for fewer (docs/reduction.md). Each pair is looked at
+/// alone, its contacts in their order, so no device and no thread changes what stays.
+class ContactReducer {
+public:
+    /// contacts: sorted; changes: of the last step, for the points that were there. Contacts that stay keep their
+    /// order.
+    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const Changes& changes,
+             std::vector<Contact>& contacts);
+    /// Of the last run: those that say what another says, and those left out.
+    std::uint64_t merged() const { return merged_; }
+    /// Sorted.
+    std::span<const Contact> left_out() const { return left_out_; }
+    void clear();
+
+private:
+    struct Work {
+        std::vector<ManifoldPoint> points;
+        std::vector<ManifoldPatch> patches;
+        std::vector<std::vector<std::uint32_t>> chosen; ///< by patch
+    };
+    void rank(Work& work, std::span<const PlacedBody> bodies, const Changes& changes, std::span<const Contact> contacts,
+              std::span<std::uint32_t> ranks) const;
+    void keep_budget(std::uint64_t most, std::span<const Contact> contacts);
+
+    std::vector<std::uint32_t> ranks_;  ///< of each contact in its pair: 0 for the deepest; a name below for others
+    std::vector<std::uint32_t> begins_; ///< of the pairs
+    std::vector<std::uint32_t> rest_;   ///< contacts that the budget may leave out
+    std::vector<Contact> left_out_;
+    std::uint64_t merged_ = 0;
+};
+
+} // namespace raycontact
