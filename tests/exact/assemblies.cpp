@@ -283,8 +283,11 @@ FlushPair flush_pair(std::uint32_t kind, double overlap, Random& random) {
         break;
     case 1: // a narrow beam at a wide one, flush on two sides
         pair.a = block(-left, 0, 0, 0, width, height);
-        pair.b = block(-d, 0, 0, right, random.uniform(0.6, 0.9) * width, random.uniform(0.6, 0.9) * height);
-        break;
+        {
+            const double h = random.uniform(0.6, 0.9) * height, w = random.uniform(0.6, 0.9) * width;
+            pair.b = block(-d, 0, 0, right, w, h);
+            break;
+        }
     case 2: // the leg of an L goes on as a beam
         pair.a = wall(shifted(l_outline(left, width + thick, thick), -left, 0));
         pair.b = block(-d, 0, 0, right, thick, height);
