@@ -327,9 +327,7 @@ struct Renderer::State {
 /// Camera and what goes with it.
 void Renderer::State::look_at(const std::vector<Ball>& balls, std::uint32_t width, std::uint32_t height,
                               View& view) const {
-    std::optional<float> ground;
-    if (view.stage.ground) ground = view.stage.ground->height;
-    view.camera = frame_balls(balls, ground, width, height);
+    view.camera = frame_balls(balls, view.stage.ground, width, height);
     view.pixel = 2 * view.camera.half_height / static_cast<float>(height);
     for (const Ball& ball : balls) {
         view.middle.x += ball.centre.x / static_cast<float>(balls.size());
