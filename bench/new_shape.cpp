@@ -4,8 +4,9 @@
 // copies, the same with their files read, and what is made beside later steps.
 // Milliseconds, medians, by turns.
 // Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
-// raycontact_bench_new_shape --floor N [--ahead]: a static mesh of about N triangles, that has been in a running world
-// for a while, meets its first body: how long that step takes, with --ahead after add_body(), and the memory.
+// raycontact_bench_new_shape --floor N [--ahead]: a ball of about N triangles, static, that has been in a running world
+// for a while, meets its first body: how long that step takes, with --ahead after add_body(), and the memory. --sheet
+// N: the same for open ground.
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
 #include <raycontact/collide.h>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -170,17 +172,33 @@ void forget_peak() {
     std::ofstream("/proc/self/clear_refs") << 5;
 }
 
+/// A square of hills, open, of about so many triangles.
+rc::Mesh sheet(std::uint32_t triangles) {
+    rc::Mesh mesh;
+    const auto side = static_cast<std::uint32_t>(std::sqrt(triangles / 2.0));
+    for (std::uint32_t i = 0; i <= side; ++i)
+        for (std::uint32_t j = 0; j <= side; ++j)
+            mesh.vertices.push_back(
+                {20.0 * i / side - 10, 20.0 * j / side - 10, 0.1 * std::sin(0.05 * i) * std::sin(0.05 * j)});
+    for (std::uint32_t i = 0; i < side; ++i)
+        for (std::uint32_t j = 0; j < side; ++j) {
+            const std::uint32_t a = i * (side + 1) + j, b = a + side + 1;
+            mesh.triangles.push_back({a, b, a + 1});
+            mesh.triangles.push_back({a + 1, b, b + 1});
+        }
+    return mesh;
+}
+
 /// A small ball of triangles falls on the middle of a static mesh of Bullet's.
-void measure_floor(std::uint32_t triangles, bool ahead) {
-    const auto sphere = rc::scenes::scene_model("sphere", triangles).mesh;
-    BulletMesh mesh(sphere);
-    const auto size = double(sphere.triangles.size());
+void measure_floor(const rc::Mesh& given, bool ahead) {
+    BulletMesh mesh(given);
+    const auto size = double(given.triangles.size());
     double before = resident("VmRSS:");
     btBvhTriangleMeshShape floor_shape(&mesh.array, true);
     std::printf("%.0f triangles; of Bullet's own tree: %.0f bytes a triangle kept\n", size,
                 (resident("VmRSS:") - before) / size);
     double high = 0;
-    for (const rc::Vec3& v : sphere.vertices) high = std::max(high, v.z);
+    for (const rc::Vec3& v : given.vertices) high = std::max(high, v.z);
 
     btDefaultCollisionConfiguration configuration;
     rc::bullet::CollisionDispatcher dispatcher(&configuration);
@@ -217,12 +235,15 @@ int main(int argc, char** argv) try {
     int rounds = 5;
     if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0)
         rounds = std::max(1, std::atoi(argv[2]));
-    else if (argc >= 3 && std::strcmp(argv[1], "--floor") == 0) {
-        measure_floor(static_cast<std::uint32_t>(std::atoi(argv[2])),
+    else if (argc >= 3 && (std::strcmp(argv[1], "--floor") == 0 || std::strcmp(argv[1], "--sheet") == 0)) {
+        const auto triangles = static_cast<std::uint32_t>(std::atoi(argv[2]));
+        const bool open = std::strcmp(argv[1], "--sheet") == 0;
+        measure_floor(open ? sheet(triangles) : rc::scenes::scene_model("sphere", triangles).mesh,
                       argc == 4 && std::strcmp(argv[3], "--ahead") == 0);
         return 0;
     } else if (argc > 1)
-        throw std::runtime_error("usage: raycontact_bench_new_shape [--rounds N | --floor N [--ahead]]");
+        throw std::runtime_error(
+            "usage: raycontact_bench_new_shape [--rounds N | --floor N [--ahead] | --sheet N [--ahead]]");
     std::printf("triangles  Bullet BVH  Shape::make       a world waits    a new one waits  two, a query  files read  "
                 "prepare()  "
                 "(ms)\n");

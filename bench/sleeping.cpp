@@ -46,8 +46,9 @@ double run(Kind kind, const std::shared_ptr<const rc::Shape>& mesh, btTriangleMe
     const auto shape = make_shape(kind, mesh, triangles);
     std::vector<std::unique_ptr<btRigidBody>> all;
     for (int i = 0; i < bodies; ++i) {
+        const int column = i % 10, row = i / 10 % 10, layer = i / 100;
         btTransform pose(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(i)),
-                         btVector3(btScalar(2 * (i % 10)), btScalar(2 * (i / 10 % 10)), btScalar(2 * (i / 100))));
+                         btVector3(btScalar(2 * column), btScalar(2 * row), btScalar(2 * layer)));
         all.push_back(std::make_unique<btRigidBody>(
             btRigidBody::btRigidBodyConstructionInfo(1, nullptr, shape.get(), btVector3(1, 1, 1))));
         all.back()->setWorldTransform(pose);

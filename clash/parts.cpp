@@ -24,7 +24,7 @@ WorldBox box_of(const AssemblyPart& part, BodySlot number) {
     placed.reserve(part.mesh->vertices.size());
     for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
     const Box box = raycontact::box_of(placed);
-    return world_box(number, box.low, box.high, {}, 1e-6 * length(box.high - box.low));
+    return {world_box(box, {}, 1e-6 * length(box.high - box.low)), number};
 }
 
 /// Names that several files have get the file before them, then names that several parts have a number.

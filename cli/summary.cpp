@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/summary.h"
 
+#include <report/counted.h>
+
 #include <fmt/format.h>
+
+#include <cmath>
 
 using namespace raycontact;
 using Json = nlohmann::ordered_json;
@@ -74,8 +78,8 @@ std::string work_for_a_person(const Json& s) {
         text += fmt::format("walks      {}, of them {} ended nowhere, {} of those cast in full; {} predictions\n",
                             count("walks"), count("walks_lost"), count("walk_casts"), count("predictions"));
     return text
-           + fmt::format("changes    {} contacts came, {} went; {:.3g} MB kept for pairs at most\n",
-                         count("contacts_new"), count("contacts_lost"),
+           + fmt::format("changes    {} came, {} went; {:.3g} MB kept for pairs at most\n",
+                         report::counted(count("contacts_new"), "contact", "contacts"), count("contacts_lost"),
                          static_cast<double>(count("pair_bytes_max")) / 1e6);
 }
 
@@ -83,11 +87,14 @@ std::string devices_for_a_person(const Json& list) {
     std::string text;
     for (const Json& entry : list) {
         const auto median = [&](const char* key) { return entry.at(key).at("median").get<double>(); };
-        text += fmt::format("device     {}: {:.0f} pairs, load {:.0f}, {:.0f} launches, {:.0f} reads, {:.3g} kB up and "
-                            "{:.3g} kB down, busy for {:.2f} ms of {:.2f} a step (medians)\n",
-                            entry.at("device").get<std::string>(), median("pairs"), median("load"), median("launches"),
-                            median("reads"), median("bytes_up") / 1e3, median("bytes_down") / 1e3, median("busy_ms"),
-                            median("ms"));
+        const auto counted = [&](const char* key, const char* one, const char* many) {
+            return report::counted(static_cast<std::uint64_t>(std::llround(median(key))), one, many);
+        };
+        text += fmt::format("device     {}: {}, load {:.0f}, {}, {}, {:.3g} kB up and {:.3g} kB down, busy for "
+                            "{:.2f} ms of {:.2f} a step (medians)\n",
+                            entry.at("device").get<std::string>(), counted("pairs", "pair", "pairs"), median("load"),
+                            counted("launches", "launch", "launches"), counted("reads", "read", "reads"),
+                            median("bytes_up") / 1e3, median("bytes_down") / 1e3, median("busy_ms"), median("ms"));
     }
     return text;
 }

@@ -6,10 +6,16 @@
 namespace raycontact::report {
 namespace {
 
+float median(const std::vector<Ball>& balls, float Float3::*axis) {
+    std::vector<float> values;
+    for (const Ball& ball : balls) values.push_back(ball.centre.*axis);
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
+
 /// A body that rolled far away must not make the pile small: strays are 2.5 times as far from the middle as most are.
 std::vector<Ball> without_strays(std::vector<Ball> balls) {
-    Float3 middle;
-    for (const Ball& ball : balls) middle += (1 / static_cast<float>(balls.size())) * ball.centre;
+    const Float3 middle{median(balls, &Float3::x), median(balls, &Float3::y), median(balls, &Float3::z)};
     const auto away = [&](const Ball& ball) { return length(ball.centre - middle); };
     std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) { return away(a) < away(b); });
     const float most = 2.5f * away(balls[balls.size() / 2]) + balls.front().radius;
@@ -17,9 +23,18 @@ std::vector<Ball> without_strays(std::vector<Ball> balls) {
     return balls;
 }
 
+/// Without those that fell off the ground, unless all did: most may have.
+std::vector<Ball> on(const std::optional<Ground>& ground, std::vector<Ball> balls) {
+    const auto is_off = [&](const Ball& ball) {
+        return ball.centre.z + ball.radius < ground->height || !ground->holds(ball.centre);
+    };
+    if (ground && !std::ranges::all_of(balls, is_off)) std::erase_if(balls, is_off);
+    return balls;
+}
+
 } // namespace
 
-Camera frame_balls(const std::vector<Ball>& all, std::optional<float> ground, std::uint32_t width,
+Camera frame_balls(const std::vector<Ball>& all, const std::optional<Ground>& ground, std::uint32_t width,
                    std::uint32_t height) {
     Camera camera;
     camera.half_height = 0.25f; // a vertical field of view of 28 degrees
@@ -28,7 +43,7 @@ Camera frame_balls(const std::vector<Ball>& all, std::optional<float> ground, st
     camera.right = unit(cross(camera.forward, {0, 0, 1}));
     camera.up = cross(camera.right, camera.forward);
     const std::vector<Ball> balls =
-        all.empty() ? std::vector<Ball>{{{0, 0, ground.value_or(0)}, 1}} : without_strays(all);
+        all.empty() ? std::vector<Ball>{{{0, 0, ground ? ground->height : 0}, 1}} : without_strays(on(ground, all));
 
     // Aim and distance by turns until the balls' extent on the picture is centred and fills it to 92 %.
     Float3 aim = balls.front().centre;
@@ -50,7 +65,7 @@ Camera frame_balls(const std::vector<Ball>& all, std::optional<float> ground, st
         distance *= 0.3f + 0.7f * fill / 0.92f;
     }
     camera.eye = aim - distance * camera.forward;
-    if (ground) camera.eye.z = std::max(camera.eye.z, *ground + 0.2f);
+    if (ground) camera.eye.z = std::max(camera.eye.z, ground->height + 0.2f);
     return camera;
 }
 

@@ -15,8 +15,9 @@ struct Camera {
     }
 };
 
-/// Looks down on the balls from one side, near enough that all but a few strays just fill the picture.
-Camera frame_balls(const std::vector<Ball>& balls, std::optional<float> ground, std::uint32_t width,
+/// Looks down on the balls from one side, near enough that all but strays, and those that fell off the ground, just
+/// fill the picture.
+Camera frame_balls(const std::vector<Ball>& balls, const std::optional<Ground>& ground, std::uint32_t width,
                    std::uint32_t height);
 
 } // namespace raycontact::report

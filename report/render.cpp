@@ -213,8 +213,9 @@ void add_sample(const View& view, std::uint32_t x, std::uint32_t y, const Layers
     constexpr std::uint32_t side = 2; // of the square of samples
     const std::uint32_t here = y * size.width + x, k = pixel.samples++;
     const Point2 jitter = Sampler(here, 2)(k);
-    const float u = static_cast<float>(x) + (static_cast<float>(k % side) + jitter.x) / float(side);
-    const float v = static_cast<float>(y) + (static_cast<float>(k / side) + jitter.y) / float(side);
+    const std::uint32_t column = k % side, row = k / side;
+    const float u = static_cast<float>(x) + (static_cast<float>(column) + jitter.x) / float(side);
+    const float v = static_cast<float>(y) + (static_cast<float>(row) + jitter.y) / float(side);
     const Float3 direction =
         view.camera.direction(u / static_cast<float>(size.width), v / static_cast<float>(size.height));
     const Shade s = shade(view, direction, here, k);
@@ -326,9 +327,7 @@ struct Renderer::State {
 /// Camera and what goes with it.
 void Renderer::State::look_at(const std::vector<Ball>& balls, std::uint32_t width, std::uint32_t height,
                               View& view) const {
-    std::optional<float> ground;
-    if (view.stage.ground) ground = view.stage.ground->height;
-    view.camera = frame_balls(balls, ground, width, height);
+    view.camera = frame_balls(balls, view.stage.ground, width, height);
     view.pixel = 2 * view.camera.half_height / static_cast<float>(height);
     for (const Ball& ball : balls) {
         view.middle.x += ball.centre.x / static_cast<float>(balls.size());

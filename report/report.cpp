@@ -161,6 +161,8 @@ std::string film_of(const scenes::RunLog& log, const std::vector<std::size_t>& f
 void claim_report(output::OutFolder& folder) {
     folder.claim(page_name);
     folder.claim(film_name);
+    folder.supersede("pictures/step-", ".png");
+    folder.supersede("pictures/film", ".webp");
 }
 
 std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <scenes/meshes_in_words.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -9,6 +11,12 @@ namespace raycontact::scenes {
 
 namespace {
 
+/// Tells one file in two sizes apart.
+std::string with_size(const SceneShape& shape) {
+    const Vec3 low = shape.shape->box_min(), high = shape.shape->box_max();
+    return fmt::format("{}, {:.3g} m long", shape.source, std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
+}
+
 /// Each mesh of the moving, or of the resting, bodies that come within the planned steps, and how many there are.
 std::vector<std::pair<std::string, std::size_t>> kinds_of(const SceneDescription& scene, bool moving) {
     std::vector<std::pair<std::string, std::size_t>> kinds;
@@ -16,7 +24,10 @@ std::vector<std::pair<std::string, std::size_t>> kinds_of(const SceneDescription
         const auto count = std::count_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodyStart& body) {
             return body.shape == k && (body.density > 0) == moving && body.step < scene.steps;
         });
-        if (count > 0 && !scene.shapes[k].source.empty()) kinds.emplace_back(scene.shapes[k].source, count);
+        const SceneShape& shape = scene.shapes[k];
+        if (count == 0 || shape.source.empty()) continue;
+        const bool alone = std::ranges::count(scene.shapes, shape.source, &SceneShape::source) == 1;
+        kinds.emplace_back(alone ? shape.source : with_size(shape), count);
     }
     return kinds;
 }

@@ -136,9 +136,9 @@ struct Scene::State {
             const Shape& shape = *bodies[i].shape;
             const bool open = !shape.has_inside();
             const auto box_at = [&](const Pose& pose) {
-                return world_box(i, shape.box_min(), shape.box_max(), pose, open ? double(reach) : 0);
+                return world_box({shape.box_min(), shape.box_max()}, pose, open ? double(reach) : 0);
             };
-            boxes.push_back(box_at(bodies[i].pose));
+            boxes.push_back({box_at(bodies[i].pose), i});
             if (!next.empty()) boxes.back().add(box_at(next[i]));
         }
         pairs_stand = false;

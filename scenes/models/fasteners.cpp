@@ -91,7 +91,7 @@ Mesh bolt() {
     bolt.add_ring(head, hexagon);
     bolt.add_ring(head, round(crest));
     bolt.add_ring(shank_end, round(crest));
-    const auto rings = static_cast<std::uint32_t>((end - 1 - thread_from) / pitch * rings_a_turn + 0.5);
+    const auto rings = static_cast<std::uint32_t>(std::lround((end - 1 - thread_from) / pitch * rings_a_turn));
     for (std::uint32_t k = 0; k <= rings; ++k) {
         const double z = thread_from + k * pitch / rings_a_turn;
         bolt.add_ring(z, thread(z, 0));
@@ -105,7 +105,7 @@ Mesh bolt() {
 Mesh nut() {
     constexpr double from = 22, height = 9;
     Turned nut("nut", false);
-    const auto rings = static_cast<std::uint32_t>(height / pitch * rings_a_turn + 0.5);
+    const auto rings = static_cast<std::uint32_t>(std::lround(height / pitch * rings_a_turn));
     for (std::uint32_t k = 0; k <= rings; ++k) {
         const double z = from + height - k * pitch / rings_a_turn;
         nut.add_ring(z, thread(z, air));

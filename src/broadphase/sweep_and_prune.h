@@ -14,7 +14,7 @@ struct WorldBox : Box {
 };
 
 /// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.
-WorldBox world_box(BodySlot body, const Vec3& box_min, const Vec3& box_max, const Pose& pose, double grow);
+Box world_box(const Box& own, const Pose& pose, double grow);
 
 /// Sweep and prune along the axis on which the boxes lie farthest apart: O(n log n) plus the overlaps on that axis.
 /// Touching boxes count. The result is sorted and does not depend on the order of the input.

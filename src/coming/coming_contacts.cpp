@@ -17,8 +17,7 @@ constexpr std::size_t pairs_in_block = 32;
 constexpr double least_motion = 0.005;
 
 Box box_of(const ShapeData& shape, const Pose& pose) {
-    const Box own = box_of(shape);
-    return world_box(0, own.low, own.high, pose, 0);
+    return world_box(box_of(shape), pose, 0);
 }
 
 // One direction of a pair, by the target's centred frame.

@@ -73,7 +73,7 @@ public:
 
 private:
     // About a box of a's tree, in b's frame.
-    Box turned(const Box& own) const { return world_box(0, own.low, own.high, pose_, 0); }
+    Box turned(const Box& own) const { return world_box(own, pose_, 0); }
 
     // Calls test(child, box) for the children of a node that reach into a box until it returns true; whether it did.
     template <class Place, class Test>

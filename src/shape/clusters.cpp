@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace raycontact {
 
@@ -16,14 +15,12 @@ using kernels::uint;
 constexpr std::size_t lanes = VERTEX_LANES;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-using Key = std::pair<float, uint>; // a coordinate and its source
-
 // A vertex or an edge, by its name in a block, and the place by which it is ordered.
 struct Source {
     Point3f place;
     uint name;
 };
-using Sources = std::span<const Source>;
+using Sources = std::span<Source>;
 
 // What else a lane of a block holds (kernels::VertexBlock).
 struct Lane {
@@ -32,11 +29,11 @@ struct Lane {
 };
 
 // Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
-// tree groups neighbours. Returns how many come first.
-std::size_t split_by_place(Sources sources, std::span<uint> own, std::vector<Key>& keys) {
-    Point3f low = sources[own[0]].place, high = low;
-    for (const uint i : own) {
-        const Point3f& p = sources[i].place;
+// tree groups neighbours. Returns how many come first. In place: a large mesh has few bytes to spare.
+std::size_t split_by_place(Sources own) {
+    Point3f low = own[0].place, high = low;
+    for (const Source& source : own) {
+        const Point3f& p = source.place;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -46,37 +43,30 @@ std::size_t split_by_place(Sources sources, std::span<uint> own, std::vector<Key
     std::size_t unit = lanes;
     while (unit * lanes < own.size()) unit *= lanes;
     const std::size_t units = (own.size() + unit - 1) / unit, left = unit * (units / 2);
-    keys.clear();
-    for (const uint i : own) keys.emplace_back(sources[i].place.*longest, i);
-    std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(left), keys.end());
-    for (std::size_t i = 0; i < keys.size(); ++i) own[i] = keys[i].second;
+    std::ranges::nth_element(own, own.begin() + static_cast<std::ptrdiff_t>(left), {},
+                             [&](const Source& s) { return std::pair(s.place.*longest, s.name); });
     return left;
 }
 
-void order_below(Sources sources, std::span<uint> own, std::vector<Key>& keys) {
+void order_below(Sources own) {
     if (own.size() <= lanes) {
-        std::ranges::sort(own);
+        std::ranges::sort(own, {}, &Source::name);
         return;
     }
-    const std::size_t left = split_by_place(sources, own, keys);
-    order_below(sources, own.first(left), keys);
-    order_below(sources, own.subspan(left), keys);
+    const std::size_t left = split_by_place(own);
+    order_below(own.first(left));
+    order_below(own.subspan(left));
 }
 
-void order_by_place(Sources sources, std::span<uint> all, Executor& executor) {
+void order_by_place(Sources all, Executor& executor) {
     constexpr std::size_t large = 1 << 13;
-    using Part = std::span<uint>;
     const auto parts = divide(
-        executor, all, [](const Part& part) { return part.size() > large; },
-        [&](const Part& part) {
-            std::vector<Key> keys;
-            const std::size_t left = split_by_place(sources, part, keys);
+        executor, all, [](const Sources& part) { return part.size() > large; },
+        [](const Sources& part) {
+            const std::size_t left = split_by_place(part);
             return std::array{part.first(left), part.subspan(left)};
         });
-    for_each_part(executor, parts, [&](const Part& part) {
-        std::vector<Key> keys;
-        order_below(sources, part, keys);
-    });
+    for_each_part(executor, parts, order_below);
 }
 
 // Empty (NaN) until something is added.
@@ -107,12 +97,19 @@ std::array<Vec3, 2> ends_of(const ShapeData& shape, uint edge) {
     return {shape.corner(edge / 3, edge % 3), shape.corner(edge / 3, (edge + 1) % 3)};
 }
 // Each edge once, by its lowest triangle.
+bool is_first(const ShapeData& shape, uint edge) {
+    return shape.neighbours[edge / 3][edge % 3] >= edge / 3;
+}
+std::size_t edge_count(const ShapeData& shape) {
+    std::size_t count = 0;
+    for (uint edge = 0; edge < 3 * shape.mesh.triangles.size(); ++edge) count += is_first(shape, edge);
+    return count;
+}
 std::vector<Source> edges_of(const ShapeData& shape) {
     std::vector<Source> sources;
-    sources.reserve(3 * shape.mesh.triangles.size() / 2);
+    sources.reserve(edge_count(shape));
     for (uint edge = 0; edge < 3 * shape.mesh.triangles.size(); ++edge) {
-        const uint across = shape.neighbours[edge / 3][edge % 3];
-        if (across < edge / 3) continue;
+        if (!is_first(shape, edge)) continue;
         const auto [from, to] = ends_of(shape, edge);
         sources.push_back({rounded(0.5 * (from + to)), edge});
     }
@@ -129,21 +126,19 @@ std::size_t blocks_of(std::size_t sources) {
 }
 
 // reach: how far a source reaches from its place, in lengths of its direction.
-void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Lane (*lane_of)(const ShapeData&, uint),
-           float reach, Executor& executor) {
-    std::vector<uint> order(sources.size());
-    std::iota(order.begin(), order.end(), 0U);
-    order_by_place(sources, order, executor);
+void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sources,
+           Lane (*lane_of)(const ShapeData&, uint), float reach, Executor& executor) {
+    order_by_place(sources, executor);
 
     tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
-    below.reserve(blocks_of(order.size()));
-    for (std::size_t first = 0; first < order.size(); first += lanes) {
+    below.reserve(blocks_of(sources.size()));
+    for (std::size_t first = 0; first < sources.size(); first += lanes) {
         kernels::VertexBlock& block = shape.vertex_blocks.emplace_back();
         Bounds& bounds = below.emplace_back();
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const bool empty = first + lane >= order.size();
-            const Source own = empty ? Source{{nan, nan, nan}, NONE} : sources[order[first + lane]];
+            const bool empty = first + lane >= sources.size();
+            const Source own = empty ? Source{{nan, nan, nan}, NONE} : sources[first + lane];
             const Lane more = empty ? Lane{} : lane_of(shape, own.name);
             const float place[] = {own.place.x, own.place.y, own.place.z};
             const float direction[] = {more.direction.x, more.direction.y, more.direction.z};
@@ -187,8 +182,7 @@ void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Lane (*
 } // namespace
 
 void build_clusters(ShapeData& shape, Executor& executor) {
-    const std::size_t edges = 3 * shape.mesh.triangles.size() / 2; // of a closed mesh
-    shape.vertex_blocks.reserve(blocks_of(shape.points.size()) + blocks_of(edges));
+    shape.vertex_blocks.reserve(blocks_of(shape.points.size()) + blocks_of(edge_count(shape)));
     build(shape, shape.header.vertices, vertices_of(shape), vertex_lane, 0, executor);
     build(shape, shape.header.edges, edges_of(shape), edge_lane, 1, executor);
     shape.vertex_blocks.shrink_to_fit();

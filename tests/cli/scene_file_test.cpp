@@ -106,8 +106,10 @@ TEST_F(SceneFile, LostBodiesAreCounted) {
     json scene = one_cube();
     scene["meshes"]["table"] = {{"file", "cube.obj"}, {"size", 8}};
     scene["bodies"] = json::array();
-    for (int i = 0; i < 14; ++i)
-        scene["bodies"].push_back({{"mesh", "cube"}, {"position", {1.5 * (i % 5) - 3, 1.5 * (i / 5) - 1.5, 1}}});
+    for (int i = 0; i < 14; ++i) {
+        const int column = i % 5, row = i / 5;
+        scene["bodies"].push_back({{"mesh", "cube"}, {"position", {1.5 * column - 3, 1.5 * row - 1.5, 1}}});
+    }
     for (int i = 0; i < 10; ++i) // beside the table, whose edge is at x = 4
         scene["bodies"].push_back({{"mesh", "cube"}, {"position", {5 + 1.5 * i, 0, 1}}});
     scene["bodies"].push_back({{"mesh", "table"}, {"static", true}, {"position", {0, 0, -4}}});

@@ -133,7 +133,8 @@ struct Thread {
                 const double radius = thread_radius + wider - (row % knots < 2 ? depth : 0);
                 const double turn = double(side) / sides;
                 const auto [sine, cosine] = scenes::sine_cosine(turn);
-                const double height = row / knots + up[row % knots] + turn;
+                const std::uint32_t turns = row / knots;
+                const double height = turns + up[row % knots] + turn;
                 vertices.resize(std::max<std::size_t>(vertices.size(), row * sides + side + 1));
                 vertices[row * sides + side] = {radius * cosine, radius * sine, height * thread_pitch};
             }
@@ -153,7 +154,10 @@ struct Thread {
         for (std::uint32_t k = knots; k > 0; --k) loop.push_back(at(0, row + k));
         return loop;
     }
-    double height() const { return (rows - 1) / knots * thread_pitch; }
+    double height() const {
+        const std::uint32_t turns = (rows - 1) / knots;
+        return turns * thread_pitch;
+    }
 };
 
 void drop_unused(Mesh& mesh) {
@@ -283,8 +287,11 @@ FlushPair flush_pair(std::uint32_t kind, double overlap, Random& random) {
         break;
     case 1: // a narrow beam at a wide one, flush on two sides
         pair.a = block(-left, 0, 0, 0, width, height);
-        pair.b = block(-d, 0, 0, right, random.uniform(0.6, 0.9) * width, random.uniform(0.6, 0.9) * height);
-        break;
+        {
+            const double h = random.uniform(0.6, 0.9) * height, w = random.uniform(0.6, 0.9) * width;
+            pair.b = block(-d, 0, 0, right, w, h);
+            break;
+        }
     case 2: // the leg of an L goes on as a beam
         pair.a = wall(shifted(l_outline(left, width + thick, thick), -left, 0));
         pair.b = block(-d, 0, 0, right, thick, height);
@@ -378,7 +385,8 @@ Mesh nut_mesh(std::uint32_t pitches, double clearance) {
     for (const double z : {-0.5 * thread_pitch, thread.height() + 1.5 * thread_pitch})
         for (std::uint32_t side = 0; side < sides; ++side) {
             const Corner &p = hexagon[side * 6 / sides], &q = hexagon[(side * 6 / sides + 1) % 6];
-            const double part = side % (sides / 6) / double(sides / 6);
+            const std::uint32_t sixth = sides / 6, along = side % sixth;
+            const double part = double(along) / sixth;
             mesh.vertices.push_back({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1]), z});
         }
     for (std::uint32_t side = 0; side < sides; ++side) {

@@ -100,10 +100,14 @@ Mesh unit_coarse(Random& random) {
         return named(box_mesh({0.1, 0.1, 1}), "bar");
     case 4:
         return named(box_mesh({0.8, 0.8, 0.03}), "plate");
-    case 5:
-        return prism_solid(3 + random.below(22), 0.6, random.uniform(0.05, 1));
-    case 6:
-        return cone_solid(3 + random.below(30), random.uniform(0.2, 0.8), random.uniform(0.3, 2));
+    case 5: {
+        const double height = random.uniform(0.05, 1);
+        return prism_solid(3 + random.below(22), 0.6, height);
+    }
+    case 6: {
+        const double height = random.uniform(0.3, 2), radius = random.uniform(0.2, 0.8);
+        return cone_solid(3 + random.below(30), radius, height);
+    }
     case 7: {
         std::vector<double> radii(2 * (3 + random.below(10)), 1);
         const double inner = random.uniform(0.3, 0.8);
@@ -112,8 +116,10 @@ Mesh unit_coarse(Random& random) {
     }
     case 8:
         return spiked(box_mesh({0.3, 0.3, 0.3}), random.uniform(1.5, 4));
-    case 9:
-        return spiked(bumpy_octahedron_mesh(1 + random.below(2)), random.uniform(1.2, 3));
+    case 9: {
+        const double length = random.uniform(1.2, 3);
+        return spiked(bumpy_octahedron_mesh(1 + random.below(2)), length);
+    }
     case 10:
         return named(scenes::gear(even(random, 48, 200)), "gear");
     case 11:

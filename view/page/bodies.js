@@ -86,8 +86,19 @@ class Bodies {
       balls.push([this.pose[0], this.pose[1], this.pose[2], this.shapes[body.shape].radius]);
       radii.push(this.shapes[body.shape].radius);
     });
-    const middle = radii.sort((a, b) => a - b)[radii.length >> 1];
+    const middle = median(radii);
     const small = balls.filter(ball => ball[3] <= 6 * middle);
     return small.length > 1 ? small : balls;
+  }
+
+  // Those of a step that have not fallen or flown far from where all began.
+  gathered(k, step) {
+    const first = this.balls(0, 0), now = this.balls(k, step);
+    if (!first.length || !now.length) return now;
+    const both = first.concat(now), centre = [0, 1, 2].map(axis => median(both.map(ball => ball[axis])));
+    const away = ball => Math.hypot(...centre.map((c, axis) => ball[axis] - c)) - ball[3];
+    const most = 2.5 * Math.max(median(first.map(away)), 2 * median(first.map(ball => ball[3])));
+    const near = now.filter(ball => away(ball) <= most);
+    return near.length ? near : now;
   }
 }

@@ -87,7 +87,7 @@ class Controls {
   say(recording, layerStep) {
     const kept = this.kept() * this.stride, layers = recording.layers;
     let text = `step ${kept} of ${recording.steps} · ${(kept * recording.dt).toFixed(2)} s`;
-    if (layers) text += ` · ${layers.pairs[kept]} pairs · ${layers.contacts[kept]} contacts` + (layers.contacts[kept] ? `, the deepest ${metres(layers.depths[kept])}` : '');
+    if (layers) text += ` · ${counted(layers.pairs[kept], 'pair', 'pairs')} · ${counted(layers.contacts[kept], 'contact', 'contacts')}` + (layers.contacts[kept] ? `, the deepest ${metres(layers.depths[kept])}` : '');
     if (layerStep !== null && layerStep !== kept) text += ` · layers of step ${layerStep}`;
     element('said').textContent = text;
   }

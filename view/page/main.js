@@ -7,19 +7,18 @@ if (!gl) throw new Error('This page needs WebGL 2, which this browser does not o
 const shapes = await Promise.all(recording.shapes.map(decodeShape));
 const motion = await decodeMotion(recording.motion, recording.bodies.length);
 const bodies = new Bodies(gl, shapes, recording.bodies, motion);
-const radii = recording.bodies.map(([shape]) => shapes[shape].radius).sort((a, b) => a - b);
-const layers = recording.layers ? new Layers(gl, recording.layers, radii[radii.length >> 1]) : null;
+const radius = median(recording.bodies.map(([shape]) => shapes[shape].radius));
+const layers = recording.layers ? new Layers(gl, recording.layers, radius) : null;
 if (layers) await layers.ramp();
 
 let dirty = true, moved = 0, detail = 1, before = null, frames = 0;
 const changed = () => { dirty = true; moved = performance.now(); };
 const camera = new Camera(canvas, changed);
 const controls = new Controls(recording, motion, changed);
-const fit = () => camera.fit(bodies.balls(motion.kept - 1, recording.steps - 1));
+const fit = () => camera.fit(bodies.gathered(motion.kept - 1, recording.steps - 1));
 element('frame').onclick = canvas.ondblclick = fit;
 new ResizeObserver(changed).observe(canvas);
 
-const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
 const finest = recording.shapes.reduce((sum, s) => sum + s.triangles, 0);
 element('about').textContent = `${recording.scene}: ${counted(recording.bodies.length - recording.standing, 'moving body', 'moving bodies')}, ${recording.standing} standing still, ${counted(recording.shapes.length, 'shape', 'shapes')} of ${finest} triangles in all, ${counted(recording.steps, 'step', 'steps')} of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
   + (motion.stride > 1 ? ` Every ${motion.stride}th step is here.` : '')

@@ -1,5 +1,7 @@
 // A page that cannot be shown says why.
 const element = id => document.getElementById(id);
+const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
+const median = values => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 function fail(error) {
   element('problem').textContent = error && error.message ? error.message : String(error);

@@ -56,6 +56,7 @@ public:
 private:
     template <typename Value>
     static void set_argument(cl_kernel kernel, cl_uint at, Value value) {
+        // NOLINTNEXTLINE(bugprone-sizeof-expression): of a buffer the argument is its handle
         check(clSetKernelArg(kernel, at, sizeof value, &value), "clSetKernelArg");
     }
     static cl_ulong time_of(const Event& event, cl_profiling_info what) {

@@ -52,11 +52,11 @@ TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
         const Pose pose = pose_from_quaternion({1e4 * any(random), any(random), any(random)}, any(random), any(random),
                                                any(random), any(random));
         const Vec3 low{-1, -0.2, 0.3}, high{0.5, 0.1, 2};
-        const WorldBox box = world_box(3, low, high, pose, 0);
+        const Box box = world_box({low, high}, pose, 0);
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3 p = transform_point(
                 pose, {corner & 1 ? low.x : high.x, corner & 2 ? low.y : high.y, corner & 4 ? low.z : high.z});
-            ASSERT_TRUE(overlap(box, {{p, p}, 0}));
+            ASSERT_TRUE(box.touches({p, p}));
         }
     }
 }
@@ -65,7 +65,7 @@ TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
 TEST(WorldBox, HoldsTheCornersOfTheWidenedBox) {
     const Pose pose = pose_from_quaternion({1, 2, 3}, 0.9, 0.2, -0.3, 0.25);
     const double grow = 0.7;
-    const WorldBox box = world_box(0, {-1, -2, -3}, {1, 2, 3}, pose, grow);
+    const Box box = world_box({{-1, -2, -3}, {1, 2, 3}}, pose, grow);
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner{(i & 1 ? 1 : -1) * (1 + grow), (i & 2 ? 1 : -1) * (2 + grow), (i & 4 ? 1 : -1) * (3 + grow)};
         const Vec3 p = transform_point(pose, corner);

@@ -38,6 +38,18 @@ TEST(MeshesInWords, SeveralAre) {
     EXPECT_EQ(meshes_in_words(scene), "1 x bolt.obj; 1 x nut.obj; standing still: 2 x tray.obj");
 }
 
+TEST(MeshesInWords, OneFileInTwoSizesHasThem) {
+    SceneDescription scene = scene_of({"box.obj", "nut.obj", "box.obj"});
+    for (const double size : {2.0, 0.5}) {
+        Mesh mesh;
+        mesh.vertices = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
+        mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+        scene.shapes[size == 2 ? 0 : 2].shape = Shape::make(mesh);
+    }
+    for (std::uint32_t shape = 0; shape < 3; ++shape) add(scene, shape, 1);
+    EXPECT_EQ(meshes_in_words(scene), "1 x box.obj, 2 m long; 1 x nut.obj; 1 x box.obj, 0.5 m long");
+}
+
 TEST(MeshesInWords, BodiesThatDoNotComeAreNot) {
     SceneDescription scene = scene_of({"bolt.obj", "nut.obj"});
     add(scene, 0, 3);
