@@ -76,6 +76,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         stats.ray_length += double(contact.ray_length);
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     }
+    for (const Contact& contact : reducer_.left_out())
+        stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     give_back(contacts);
     trim(stats.pair_bytes);
     stats.narrow_ms = milliseconds_since(start);

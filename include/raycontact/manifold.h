@@ -40,10 +40,10 @@ void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vec
 bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b);
 
 /// Chooses at most four points of a patch: up to four extremes, each the one that lies farthest from the convex hull of
-/// those before (of points that were there by a factor of 1.14 farther; the first is farthest from the middle); then
-/// the deepest, if it is not among four extremes in place of the last; then the deepest of the rest. None says what
-/// another says. So the forces of a solver keep what torque four points can keep, and the points stay while a body
-/// rocks. The deepest comes first, then the extremes.
+/// those before (of points that were there by a factor of two farther; the first is farthest from the middle); then
+/// the deepest (one that was there counts as a tenth deeper) in place of the extreme that adds least, if it is not
+/// among them; then the deepest of the rest. None says what another says. So the forces of a solver keep what torque
+/// four points can keep, and the points stay while a body rocks. The deepest comes first, then the extremes.
 std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch);
 
 } // namespace raycontact

@@ -50,7 +50,7 @@ struct StepStats {
     std::uint64_t contacts_reduced = 0;
     std::uint64_t contacts_merged = 0; ///< of those, how many say what one that was chosen says
     double ray_length = 0;             ///< sum of the contacts' ray lengths, metres (paper section 5.2)
-    double depth_max = 0;              ///< metres
+    double depth_max = 0;              ///< of all contacts, those left out as well, metres
     double broad_ms = 0;               ///< our broad phase; 0 when pairs were given
     double narrow_ms = 0;              ///< everything after the broad phase
     std::uint64_t pairs_moved = 0;     ///< from one device to another

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t most_points = 4;
 constexpr double like_normals = 0.98;
-constexpr double advantage = 1.3; // of points that are present, on a squared distance
+// Of points that are present, on a squared distance and on a depth.
+constexpr double farther = 4, deeper = 1.1;
 
 // The patch that suits a point best; their number when none does.
 std::size_t suitable(const ManifoldPoint& point, double cosine, std::span<const ManifoldPatch> patches) {
@@ -63,7 +64,10 @@ void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vec
 
 std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch) {
     if (patch.size() < 2) return {patch.begin(), patch.end()};
-    const auto by_depth = [&](std::uint32_t i) { return std::pair(points[i].depth, points[i].present); };
+    const auto by_depth = [&](std::uint32_t i) {
+        const double depth = points[i].depth;
+        return points[i].present ? std::max(deeper * depth, depth / deeper) : depth;
+    };
     const auto by_presence = [&](std::uint32_t i) { return std::pair(points[i].present, points[i].depth); };
     const std::uint32_t deepest = *std::ranges::max_element(patch, {}, by_depth);
 
@@ -72,7 +76,7 @@ std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, 
     std::vector<Vec3> hull{middle_of(points, patch)};
     const auto score = [&](std::uint32_t i) {
         const double away2 = distance2_from_hull(points[i].position, hull);
-        return away2 > points[i].place * points[i].place ? (points[i].present ? advantage : 1) * away2 : 0;
+        return away2 > points[i].place * points[i].place ? (points[i].present ? farther : 1) * away2 : 0;
     };
     const auto take = [&](std::uint32_t taken) {
         chosen.push_back(taken);

@@ -94,7 +94,8 @@ TEST(Reduction, KeepsSomeOfAllAndTheDeepestOfEachPair) {
             ASSERT_EQ(pairs.size(), kept_pairs.size());
             for (const auto& [pair, own] : kept_pairs) {
                 EXPECT_LE(own.size(), most);
-                EXPECT_EQ(deepest(own), deepest(pairs.at(pair)));
+                // One that was there counts as a tenth deeper.
+                EXPECT_GE(deepest(own), deepest(pairs.at(pair)) / (step == 0 ? 1 : 1.1001f));
             }
             const StepStats& stats = fewer.scene().stats();
             EXPECT_EQ(stats.contacts, kept.size());
@@ -140,7 +141,8 @@ TEST(Reduction, ABudgetLeavesEachPairItsDeepest) {
             EXPECT_EQ(kept.size(), std::max(pairs.size(), std::min<std::size_t>(chosen, budget)));
             const auto kept_pairs = by_pair(kept);
             ASSERT_EQ(kept_pairs.size(), pairs.size());
-            for (const auto& [pair, own] : kept_pairs) EXPECT_EQ(deepest(own), deepest(pairs.at(pair)));
+            for (const auto& [pair, own] : kept_pairs)
+                EXPECT_GE(deepest(own), deepest(pairs.at(pair)) / (step == 0 ? 1 : 1.1001f));
             // No pair gets another point while one that has fewer goes without its next.
             std::size_t most = 0, least = chosen;
             for (const auto& [pair, own] : kept_pairs) {
