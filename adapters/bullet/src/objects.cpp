@@ -10,6 +10,16 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+bool unmoved(const btTransform& a, const btTransform& b) {
+    bool all = alike(a.getOrigin(), b.getOrigin());
+    for (int i = 0; i < 3; ++i) all = all && alike(a.getBasis()[i], b.getBasis()[i]);
+    return all;
+}
+
+} // namespace
+
 Pose to_pose(const btTransform& transform) {
     Pose pose;
     for (int i = 0; i < 3; ++i) {
@@ -41,7 +51,7 @@ bool Objects::unchanged(const btCollisionObject& object, const Object& record) c
                   same = same && count < record.leaves.size();
                   if (!same) return;
                   const Leaf& leaf = record.leaves[count++];
-                  same = leaf.shape == &shape && leaf.local == local && leaf.kind == kind_for_us(shape)
+                  same = leaf.shape == &shape && unmoved(leaf.local, local) && leaf.kind == kind_for_us(shape)
                          && (!in_scene(leaf.kind) || leaf.form == form_of(shape));
               });
     return same && count == record.leaves.size();
@@ -119,6 +129,13 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
     }
     if (leaf.unusable) return;
+    if (!in_scene(leaf.kind)) {
+        try {
+            check_numbers(*leaf.shape); // read anew in every step
+        } catch (const InputError& error) {
+            return leave_out(error, false);
+        }
+    }
     leaf.fault.clear();
     if (!in_scene(leaf.kind) || leaf.flat) return;
     if (leaf.body != Leaf::no_body) {

@@ -51,6 +51,7 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
                   try {
+                      if (placed.leaf.kind == Kind::round || placed.leaf.kind == Kind::plane) check_numbers(shape);
                       const Placement placement = place(pose);
                       placed.leaf.pose = placement.pose;
                       placed.leaf.stretch = stretch_of(placed.leaf.kind, placement);

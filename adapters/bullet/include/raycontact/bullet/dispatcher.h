@@ -59,8 +59,8 @@ struct DispatcherStats {
     /// Shapes whose transform is scaled, sheared or mirrored: their mesh is made anew, scaled. Each other scale, in
     /// steps of about 1e-3, makes another; balls and capsules are left to Bullet.
     std::uint64_t scaled = 0;
-    /// Objects of which a shape took no part: its transform is not finite or flat, or no mesh can be made of it. Each
-    /// such fault is told to on_fault() once.
+    /// Objects of which a shape took no part: its transform is not finite or flat, a number of its own not
+    /// finite, or no mesh can be made of it. Each such fault is told to on_fault() once.
     std::vector<const btCollisionObject*> left_out;
 };
 
