@@ -132,8 +132,7 @@ void name_places(PairState& state) {
 
 struct CollisionDispatcher::State {
     State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m, ConvexShapes c)
-        : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c),
-          queries(settings, objects.shapes(), objects.faults(), c, d) {
+        : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c), queries(settings, objects, c, d) {
         objects.faults().set_callback(print);
     }
 

@@ -18,6 +18,11 @@ bool unmoved(const btTransform& a, const btTransform& b) {
     return all;
 }
 
+/// What a new stretch is compared with; that of a plane is not rounded.
+const Stretch& kept_stretch(const Leaf& leaf) {
+    return leaf.kind == Kind::plane ? no_stretch : leaf.stretch;
+}
+
 } // namespace
 
 Pose to_pose(const btTransform& transform) {
@@ -62,6 +67,14 @@ Object* Objects::find(const btCollisionObject& object) {
     return i == records_.end() ? nullptr : &i->second;
 }
 
+const Stretch& Objects::kept_stretch_of(const btCollisionObject& object, std::size_t leaf,
+                                        const btCollisionShape& shape) const {
+    const auto i = records_.find(&object);
+    if (i == records_.end() || leaf >= i->second.leaves.size()) return no_stretch;
+    const Leaf& known = i->second.leaves[leaf];
+    return known.shape == &shape ? kept_stretch(known) : no_stretch;
+}
+
 Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
     try {
         return refresh(object, records_[&object], dispatch);
@@ -84,7 +97,8 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     Placement whole;
     record.fault.clear();
     try {
-        whole = place(object.getWorldTransform());
+        const bool alone = !object.getCollisionShape()->isCompound();
+        whole = place(object.getWorldTransform(), alone ? kept_stretch(record.leaves.front()) : no_stretch);
     } catch (const InputError& error) {
         record.fault = error.what();
     }
@@ -114,7 +128,8 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     };
     Placement placed = whole;
     try {
-        if (object.getCollisionShape()->isCompound()) placed = place(object.getWorldTransform() * leaf.local);
+        if (object.getCollisionShape()->isCompound())
+            placed = place(object.getWorldTransform() * leaf.local, kept_stretch(leaf));
     } catch (const InputError& error) {
         return leave_out(error, false);
     }

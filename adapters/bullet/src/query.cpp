@@ -52,7 +52,8 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
                   try {
                       if (placed.leaf.kind == Kind::round || placed.leaf.kind == Kind::plane) check_numbers(shape);
-                      const Placement placement = place(pose);
+                      const Placement placement =
+                          place(pose, objects_.kept_stretch_of(*wrap.getCollisionObject(), leaves.size(), shape));
                       placed.leaf.pose = placement.pose;
                       placed.leaf.stretch = stretch_of(placed.leaf.kind, placement);
                   } catch (const InputError& error) {
