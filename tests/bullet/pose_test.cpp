@@ -487,6 +487,29 @@ TEST(BulletFaults, AnotherObjectAtTheSameAddressIsToldOf) {
     EXPECT_EQ(told.faults.size(), 2u);
 }
 
+TEST(BulletFaults, OneThatIsAddedAgainIsToldOfAgain) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    const btBvhTriangleMeshShape bad(flat.get(), false);
+    TestWorld w;
+    Told told(w);
+    btRigidBody& body = w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+    for (std::size_t i = 1; i <= 3; ++i) {
+        btCollisionObject object; // at one address each time
+        object.setCollisionShape(const_cast<btBvhTriangleMeshShape*>(&bad));
+        w.world.addCollisionObject(&object);
+        for (int k = 0; k < 4; ++k) { // it meets nothing in between, which is no reason to tell it again
+            w.world.performDiscreteCollisionDetection();
+            EXPECT_EQ(w.dispatcher.stats().left_out.size(), 1u);
+            w.world.removeRigidBody(&body);
+            w.world.performDiscreteCollisionDetection();
+            EXPECT_EQ(w.dispatcher.stats().left_out.size(), 0u);
+            w.world.addRigidBody(&body);
+        }
+        w.world.removeCollisionObject(&object); // without remove_body
+        EXPECT_EQ(told.faults.size(), i);
+    }
+}
+
 TEST(BulletFaults, ObjectsThatAreGoneForLongAreForgotten) {
     bullet::Faults faults;
     int told = 0;

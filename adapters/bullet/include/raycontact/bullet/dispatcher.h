@@ -110,8 +110,11 @@ public:
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
-    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts. It may
-    /// throw (the others are told next time) and put another in its place. At first it prints a line on stderr; an
+    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts and the object
+    /// stays in its world: added again it is told of again, and so is another object that has its address. (btAxisSweep3
+    /// gives numbers of proxies again, and objects that are only asked about have none: call remove_body() for an
+    /// object that goes, or the new one may count as the old one for 600 dispatches.) It may throw (the others are told
+    /// next time) and put another in its place. At first it prints a line on stderr; an
     /// empty function says nothing.
     void on_fault(std::function<void(const Fault&)> callback);
 
