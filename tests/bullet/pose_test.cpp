@@ -311,6 +311,26 @@ TEST(BulletPose, WhatCannotBePlacedIsLeftOutAndNamed) {
     }
 }
 
+std::string fault_of(const btMatrix3x3& basis) {
+    try {
+        bullet::place(with_basis(basis, {0, 0, 0}));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(BulletPose, FaultsSayWhatIsWrong) {
+    for (const btMatrix3x3& flat : {diagonal(0, 1, 1), diagonal(0, 0, 0), diagonal(-1, 0, 1), diagonal(1e-10, 1, 1)}) {
+        EXPECT_NE(fault_of(flat).find("flat"), std::string::npos) << fault_of(flat);
+        EXPECT_EQ(fault_of(flat).find("mirrored"), std::string::npos) << fault_of(flat); // it may be
+        EXPECT_EQ(fault_of(flat).find("rotation"), std::string::npos) << fault_of(flat);
+    }
+    EXPECT_NE(fault_of(diagonal(1, double(nan), 1)).find("not a finite number"), std::string::npos);
+    // Mirrored and small: the determinant is none of float's numbers.
+    EXPECT_EQ(fault_of(diagonal(-1e-16, 1e-16, 1e-16)), "");
+}
+
 TEST(BulletPose, MeshesOfWhichNoneCanBeMadeAreLeftOutAndNamed) {
     const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
     const auto point = triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0});

@@ -25,6 +25,13 @@ bool is_rigid(const btTransform& transform) {
     return placed && off <= rigid_to && transform.getBasis().determinant() > 0; // a NaN is not
 }
 
+/// In double: the volume of a small scale is no float.
+bool is_mirrored(const Pose& pose) {
+    const std::array<double, 9>& r = pose.rotation;
+    return r[0] * (r[4] * r[8] - r[5] * r[7]) + r[1] * (r[5] * r[6] - r[3] * r[8]) + r[2] * (r[3] * r[7] - r[4] * r[6])
+           < 0;
+}
+
 /// rotation^T * given, made symmetric.
 Stretch stretch_between(const Pose& rigid, const Pose& given) {
     Stretch stretch;
@@ -97,7 +104,7 @@ Placement place(const btTransform& transform, const Stretch& kept) {
     if (is_rigid(transform)) return placement;
     const Pose given = to_pose(transform);
     Pose upright = given;
-    if (transform.getBasis().determinant() < 0)
+    if (is_mirrored(given))
         for (double& x : upright.rotation) x = -x;
     const Pose rigid = nearest_rigid_pose(upright);
     const std::array<double, 9>& r = rigid.rotation;
