@@ -111,11 +111,11 @@ public:
     void refresh(const btCollisionObject& object);
 
     /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts and the object
-    /// stays in its world: added again it is told of again, and so is another object that has its address. (btAxisSweep3
-    /// gives numbers of proxies again, and objects that are only asked about have none: call remove_body() for an
-    /// object that goes, or the new one may count as the old one for 600 dispatches.) It may throw (the others are told
-    /// next time) and put another in its place. At first it prints a line on stderr; an
-    /// empty function says nothing.
+    /// stays in its world: added again it is told of again, and so is another object that has its address.
+    /// (btAxisSweep3 gives numbers of proxies again, and objects that are only asked about have none: call
+    /// remove_body() for an object that goes, or the new one may count as the old one for 600 dispatches.) It may throw
+    /// (the others are told next time) and put another in its place. At first it prints a line on stderr; an empty
+    /// function says nothing.
     void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a
