@@ -86,7 +86,10 @@ Pose nearest_rigid_pose(const Pose& pose) {
     for (const double x : pose.rotation) largest = std::max(largest, std::fabs(x));
     Pose rigid = pose;
     for (double& x : rigid.rotation) x /= largest; // Newton's iteration halves what is too large, round by round
-    if (!(determinant(rigid.rotation) > 1e-9)) throw InputError("pose: it is mirrored or flat; give a rotation");
+    const double volume = determinant(rigid.rotation);
+    if (volume < -1e-9) throw InputError("pose: it is mirrored; give a rotation");
+    if (!(volume > 1e-9))
+        throw InputError("pose: it is flat, which scales a direction to nothing, or nearly; give one that is not");
     rigid.rotation = nearest_rotation(rigid.rotation, 64);
     return rigid;
 }

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace raycontact::test {
 namespace {
 
@@ -85,30 +87,85 @@ TEST(Continuous, NothingIsTouchedEarly) {
     EXPECT_GT(coming, 0u);
 }
 
+struct Impact {
+    double restitution, speed; ///< down, m/s
+    double slop = 0.002;
+    int split_impulse = 1;
+    std::shared_ptr<const Shape> shape = table();
+    bool soft = false;
+};
+
 /// The part of its speed that a body has after it hit a slab, with and without `continuous`.
-double bounce(bool continuous, double restitution, double speed) {
+double bounce(bool continuous, const Impact& impact) {
     Settings settings;
     settings.continuous = continuous;
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, 0));
+    w.world.getSolverInfo().m_linearSlop = btScalar(impact.slop);
+    w.world.getSolverInfo().m_splitImpulse = impact.split_impulse;
     w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5)).setRestitution(1);
-    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 1));
-    body.setRestitution(btScalar(restitution));
-    body.setLinearVelocity(btVector3(0, 0, btScalar(-speed)));
-    w.steps(60);
-    return double(body.getLinearVelocity().z()) / speed;
+    btRigidBody& body = w.add_mesh(impact.shape, 5, at(0, 0, 1));
+    body.setRestitution(btScalar(impact.restitution));
+    body.setLinearVelocity(btVector3(0, 0, btScalar(-impact.speed)));
+    if (impact.soft) body.setContactStiffnessAndDamping(10, 100);
+    w.steps(static_cast<int>(std::ceil(60 * 1.5 / impact.speed)));
+    return double(body.getLinearVelocity().z()) / impact.speed;
 }
 
 TEST(Continuous, BodiesBounceAsWithoutIt) {
     for (const double restitution : {0.0, 0.3, 0.9}) {
         for (const double speed : {2.0, 5.0, 12.0}) {
-            const double without = bounce(false, restitution, speed), with = bounce(true, restitution, speed);
-            EXPECT_NEAR(with, restitution, 0.07) << speed;
-            if (restitution > 0) {
-                EXPECT_NEAR(without, restitution, 0.07) << speed;
+            const Impact impact{restitution, speed};
+            EXPECT_NEAR(bounce(true, impact), restitution, 0.005) << speed;
+            if (restitution > 0) { // Bullet's solver adds what pushes it out
+                EXPECT_NEAR(bounce(false, impact), restitution, 0.07) << speed;
             }
         }
     }
+}
+
+// Nor does the way that splits depth from speed, nor how soft the contact is.
+TEST(Continuous, NoSlopTakesFromTheRebound) {
+    const auto small = Shape::make(box_mesh(0.1, 0.1, 0.1));
+    for (const double slop : {0.0, 0.001, 0.005, 0.01, 0.1}) {
+        for (const double speed : {1.0, 3.0}) {
+            for (const int split : {0, 1})
+                EXPECT_NEAR(bounce(true, {0.9, speed, slop, split}), 0.9, 0.005)
+                    << slop << ' ' << speed << ' ' << split;
+            EXPECT_NEAR(bounce(true, {0.9, speed, slop, 1, small}), 0.9, 0.005) << slop << ' ' << speed;
+        }
+    }
+    // Slower than 0.2 m/s after the impact.
+    EXPECT_NEAR(bounce(true, {0.3, 0.5, 0.01, 1, small}), 0.3, 0.005);
+    const Impact soft{0.9, 1, 0, 1, table(), true};
+    EXPECT_LT(bounce(false, soft), 0.85) << "else nothing is shown";
+    EXPECT_NEAR(bounce(true, soft), bounce(false, soft), 0.01);
+}
+
+// What the solver is told is no depth: the point's places and what the callbacks get are true.
+TEST(Continuous, APointThatBouncesIsWhereItIs) {
+    Settings settings;
+    settings.continuous = true;
+    TestWorld w(settings);
+    w.world.setGravity(btVector3(0, 0, 0));
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5)).setRestitution(1);
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.41));
+    body.setRestitution(1);
+    body.setLinearVelocity(btVector3(0, 0, -3));
+    static btScalar least; // a callback has no state
+    least = 1;
+    gContactProcessedCallback = [](btManifoldPoint& point, void*, void*) {
+        least = btMin(least, point.getDistance());
+        return true;
+    };
+    w.steps(1);
+    gContactProcessedCallback = nullptr;
+    EXPECT_NEAR(double(least), 0.01, 1e-4);
+    ASSERT_GT(w.touching(), 0);
+    const btManifoldPoint& point = w.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0);
+    const btVector3 gap = point.m_positionWorldOnA - point.m_positionWorldOnB;
+    EXPECT_NEAR(double(btFabs(gap.z())), 0.01, 1e-4);
+    EXPECT_LT(double(point.getDistance()), -0.1);
 }
 
 } // namespace

@@ -114,6 +114,70 @@ TEST(BulletPose, DriftScaleAndWhatCannotBeUsed) {
     EXPECT_THROW(bullet::place(with_basis(diagonal(1, 1, double(INFINITY)), origin)), InputError);
 }
 
+// Fresh rotations by a scale that lies between two steps: the last bits of each decide to which it is rounded.
+TEST(BulletPose, AScaleBetweenTwoStepsMakesOneMesh) {
+    TestWorld w;
+    btRigidBody& wheel = w.add_mesh(torus(), 0, at(0, 0, 0));
+    wheel.setCollisionFlags(wheel.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    btRigidBody& rod = w.add_mesh(Shape::make(box_mesh(3, 0.2, 0.2)), 1, at(0, 0, 0));
+    std::uint64_t made = 0, changes = 0;
+    const double scale = 1 + 1.5 / 1024;
+    for (int i = 0; i < 1000; ++i) {
+        wheel.setWorldTransform(with_basis(in_float(turned(0.01 * i) * diagonal(scale, scale, scale)), {0, 0, 0}));
+        w.world.performDiscreteCollisionDetection();
+        made += w.dispatcher.stats().shapes_made;
+        ASSERT_GT(w.dispatcher.stats().points, 0u);
+        changes += w.dispatcher.stats().points_matched == 0;
+        if (i % 10 == 0) { // a query takes the same mesh
+            struct Ignore : btCollisionWorld::ContactResultCallback {
+                btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                                         const btCollisionObjectWrapper*, int, int) override {
+                    return 0;
+                }
+            } ignore;
+            w.world.contactPairTest(&wheel, &rod, ignore);
+        }
+    }
+    w.world.performDiscreteCollisionDetection();
+    made += w.dispatcher.stats().shapes_made;
+    EXPECT_LE(made, 2u);
+    EXPECT_LE(changes, 2u);
+}
+
+TEST(BulletPose, AScaleThatDriftsMakesOneMeshAStep) {
+    TestWorld w;
+    btRigidBody& wheel = w.add_mesh(torus(), 0, at(0, 0, 0));
+    wheel.setCollisionFlags(wheel.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    w.add_mesh(Shape::make(box_mesh(3, 0.2, 0.2)), 1, at(0, 0, 0));
+    std::uint64_t made = 0, mended = 0;
+    for (int i = 0; i < 2000; ++i) { // over the border of what is dropped, to 1.004 and back
+        const double scale = 1 + 0.004 * (1 - std::fabs(i / 1000.0 - 1));
+        wheel.setWorldTransform(with_basis(in_float(turned(0.01 * i) * diagonal(scale, scale, scale)), {0, 0, 0}));
+        w.world.performDiscreteCollisionDetection();
+        made += w.dispatcher.stats().shapes_made;
+        mended += w.dispatcher.stats().made_rigid;
+    }
+    EXPECT_LE(made, 10u);
+    EXPECT_GT(mended, 200u);
+}
+
+TEST(BulletPose, AStretchIsKeptWithinAStep) {
+    const auto by = [](double scale, const bullet::Stretch& kept) {
+        return bullet::place(with_basis(turned(1) * diagonal(scale, 1, 1), {0, 0, 0}), kept);
+    };
+    const bullet::Stretch kept = by(1.01, bullet::no_stretch).stretch;
+    for (const double near : {1.0093, 1.0105}) EXPECT_EQ(by(near, kept).stretch, kept) << near;
+    EXPECT_NEAR(by(1.0093, kept).unrounded[0], 1.0093, 1e-5); // planes
+    for (const double far : {1.0085, 1.0115, 2.0, -1.01}) EXPECT_NE(by(far, kept).stretch, kept) << far;
+    EXPECT_EQ(by(1, kept).stretch, bullet::no_stretch);
+    // At the border of what is dropped, either way.
+    const bullet::Stretch first = by(1.0011, bullet::no_stretch).stretch;
+    EXPECT_NE(first, bullet::no_stretch);
+    EXPECT_EQ(by(1.0009, first).stretch, first);
+    EXPECT_FALSE(by(1.0009, first).drifted);
+    EXPECT_TRUE(by(1.0009, bullet::no_stretch).drifted);
+}
+
 TEST(BulletPose, ThinScalesStayThin) {
     using bullet::Stretch;
     const Stretch thin = bullet::place(with_basis(turned(1) * diagonal(1, 1, 4e-4), {0, 0, 0})).stretch;
@@ -245,6 +309,26 @@ TEST(BulletPose, WhatCannotBePlacedIsLeftOutAndNamed) {
         EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
         EXPECT_GT(w.touching(), 0);
     }
+}
+
+std::string fault_of(const btMatrix3x3& basis) {
+    try {
+        bullet::place(with_basis(basis, {0, 0, 0}));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(BulletPose, FaultsSayWhatIsWrong) {
+    for (const btMatrix3x3& flat : {diagonal(0, 1, 1), diagonal(0, 0, 0), diagonal(-1, 0, 1), diagonal(1e-10, 1, 1)}) {
+        EXPECT_NE(fault_of(flat).find("flat"), std::string::npos) << fault_of(flat);
+        EXPECT_EQ(fault_of(flat).find("mirrored"), std::string::npos) << fault_of(flat); // it may be
+        EXPECT_EQ(fault_of(flat).find("rotation"), std::string::npos) << fault_of(flat);
+    }
+    EXPECT_NE(fault_of(diagonal(1, double(nan), 1)).find("not a finite number"), std::string::npos);
+    // Mirrored and small: the determinant is none of float's numbers.
+    EXPECT_EQ(fault_of(diagonal(-1e-16, 1e-16, 1e-16)), "");
 }
 
 TEST(BulletPose, MeshesOfWhichNoneCanBeMadeAreLeftOutAndNamed) {
@@ -421,6 +505,29 @@ TEST(BulletFaults, AnotherObjectAtTheSameAddressIsToldOf) {
     meet();
     meet();
     EXPECT_EQ(told.faults.size(), 2u);
+}
+
+TEST(BulletFaults, OneThatIsAddedAgainIsToldOfAgain) {
+    const auto flat = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    const btBvhTriangleMeshShape bad(flat.get(), false);
+    TestWorld w;
+    Told told(w);
+    btRigidBody& body = w.add_mesh(table(), 5, at(0.5, 0, 0.35));
+    for (std::size_t i = 1; i <= 3; ++i) {
+        btCollisionObject object; // at one address each time
+        object.setCollisionShape(const_cast<btBvhTriangleMeshShape*>(&bad));
+        w.world.addCollisionObject(&object);
+        for (int k = 0; k < 4; ++k) { // it meets nothing in between, which is no reason to tell it again
+            w.world.performDiscreteCollisionDetection();
+            EXPECT_EQ(w.dispatcher.stats().left_out.size(), 1u);
+            w.world.removeRigidBody(&body);
+            w.world.performDiscreteCollisionDetection();
+            EXPECT_EQ(w.dispatcher.stats().left_out.size(), 0u);
+            w.world.addRigidBody(&body);
+        }
+        w.world.removeCollisionObject(&object); // without remove_body
+        EXPECT_EQ(told.faults.size(), i);
+    }
 }
 
 TEST(BulletFaults, ObjectsThatAreGoneForLongAreForgotten) {

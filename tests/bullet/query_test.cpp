@@ -88,9 +88,9 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
     Settings settings;
     settings.threads = 1;
-    bullet::ShapeCache shapes(1);
-    bullet::Faults faults;
-    bullet::Queries queries(settings, shapes, faults, bullet::ConvexShapes::ours, w.dispatcher);
+    Scene scene(settings);
+    bullet::Objects objects(scene, bullet::ConvexShapes::ours);
+    bullet::Queries queries(settings, objects, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
     btPersistentManifold* manifold = w.dispatcher.getNewManifold(&low, &high);
@@ -175,9 +175,9 @@ TEST(Query, WhatThrowsLeavesNoBody) {
     TestWorld w;
     btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
     btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
-    bullet::ShapeCache shapes(1);
-    bullet::Faults faults;
-    bullet::Queries queries({}, shapes, faults, bullet::ConvexShapes::ours, w.dispatcher);
+    Scene scene{Settings{}};
+    bullet::Objects objects(scene, bullet::ConvexShapes::ours);
+    bullet::Queries queries({}, objects, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, high.getCollisionShape(), &high, high.getWorldTransform(), -1, -1);
     Throwing result(&a, &b);
@@ -229,11 +229,12 @@ TEST(Query, AMeshOfBulletsIsReadOnce) {
 TEST(Query, WithoutADispatchOldShapesAreForgotten) {
     TestWorld w;
     btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
-    bullet::ShapeCache shapes(1);
     Settings settings;
     settings.threads = 1;
-    bullet::Faults faults;
-    bullet::Queries queries(settings, shapes, faults, bullet::ConvexShapes::ours, w.dispatcher);
+    Scene scene(settings);
+    bullet::Objects objects(scene, bullet::ConvexShapes::ours);
+    bullet::ShapeCache& shapes = objects.shapes();
+    bullet::Queries queries(settings, objects, bullet::ConvexShapes::ours, w.dispatcher);
     const btCollisionObjectWrapper a(nullptr, low.getCollisionShape(), &low, low.getWorldTransform(), -1, -1);
     std::vector<std::weak_ptr<const Shape>> made;
     btBoxShape first(btVector3(1, 1, 1));

@@ -91,6 +91,41 @@ TEST(Serialize, AWorldIsReadBack) {
     }
     importer.deleteAllData();
 }
+
+// As mesh_shape.h says, and no more.
+TEST(Serialize, ABodyThatIsReadBackFalls) {
+    TestWorld before;
+    before.add(std::make_unique<btBoxShape>(btVector3(5, 5, btScalar(0.5))), 0, at(0, 0, -0.5));
+    btRigidBody& was = before.add_mesh(torus(), 5, at(0, 0, 4));
+    before.steps(1);
+    btDefaultSerializer serializer;
+    before.world.serialize(&serializer);
+    const unsigned char* const written = serializer.getBufferPointer();
+    std::vector<char> file(written, written + serializer.getCurrentBufferSize());
+
+    TestWorld after;
+    btBulletWorldImporter importer(&after.world);
+    ASSERT_TRUE(importer.loadFileFromMemory(file.data(), static_cast<int>(file.size())));
+    auto* const body = static_cast<btRigidBody*>(importer.getRigidBodyByIndex(1));
+    const btVector3 start = body->getWorldTransform().getOrigin();
+    after.steps(30);
+    EXPECT_EQ(body->getWorldTransform().getOrigin(), start); // static
+
+    after.world.removeRigidBody(body);
+    body->setMassProps(5, inertia_of(was));
+    body->updateInertiaTensor();
+    body->setCollisionFlags(0);
+    after.world.addRigidBody(body);
+    body->activate(true);
+    after.steps(30);
+    EXPECT_NEAR(double(start.z() - body->getWorldTransform().getOrigin().z()), 9.81 * 0.5 * 0.5 / 2, 0.05);
+    after.steps(240);
+    EXPECT_GT(after.touching(), 0);
+    btVector3 low, high;
+    body->getCollisionShape()->getAabb(body->getWorldTransform(), low, high);
+    EXPECT_NEAR(double(low.z()), 0, 0.05);
+    importer.deleteAllData();
+}
 #endif
 
 } // namespace

@@ -197,6 +197,18 @@ TEST_F(Collide, EveryMethodAndThresholdGivesTheSameBits) {
     }
 }
 
+TEST_F(Collide, FewerContactsSayHowManyAreLeftOut) {
+    const json pairs = json::array({corner_pair(), corner_pair()});
+    const auto all = run(pairs), one = run(pairs, {"--json", "--max-contacts-per-pair", "1"});
+    ASSERT_EQ(one.status, 0) << one.err;
+    std::size_t count = 0;
+    for (const json& line : lines_of(all.out)) count += line.at("contacts").size();
+    for (const json& line : lines_of(one.out)) EXPECT_EQ(line.at("contacts").size(), 1u);
+    EXPECT_NE(one.err.find(fmt::format("collide: {} of {} contacts are left out", count - 2, count)), std::string::npos)
+        << one.err;
+    EXPECT_EQ(run(pairs, {"--max-contacts", "no"}).status, 2);
+}
+
 TEST_F(Collide, DirectionRayIsTheRayItself) {
     const auto lines = json_lines(run_vertices(json::array({corner_pair()}), {"--json", "--direction", "ray"}).out);
     ASSERT_EQ(lines.size(), 1u);

@@ -57,7 +57,11 @@ TEST_F(Run, HasItsKeys) {
                             "culling_distance",
                             "distance_extension",
                             "max_iterations",
-                            "cast_lost_walks"}) {
+                            "cast_lost_walks",
+                            "max_contacts_per_pair",
+                            "max_contacts",
+                            "contacts_reduced",
+                            "contacts_merged"}) {
         EXPECT_TRUE(run_log.contains(key)) << key;
     }
     for (const char* key : {"step_ms", "narrow_ms"}) {
@@ -122,6 +126,16 @@ TEST_F(Run, TellsItsSettings) {
     EXPECT_EQ(log["distance_extension"], 0.025);
     EXPECT_EQ(log["max_iterations"], 7);
     EXPECT_EQ(log["cast_lost_walks"], false);
+}
+
+// Bullet's manifolds are made of the same points, more or less: the pile lies as it does with all contacts.
+TEST_F(Run, FewerContactsAreCounted) {
+    const json all = run({}), few = run({"--max-contacts-per-pair", "8"});
+    EXPECT_EQ(few["max_contacts_per_pair"], 8);
+    EXPECT_EQ(all["contacts_reduced"], 0);
+    EXPECT_GT(few["contacts_reduced"].get<int>(), few["contacts"].get<int>() / 4);
+    EXPECT_LT(few["penetration_max"].get<double>(), 3 * all["penetration_max"].get<double>());
+    EXPECT_EQ(run({"--max-contacts-per-pair", "8", "--method", "standard"})["hash"], few["hash"]);
 }
 
 TEST_F(Run, OutHoldsTheReport) {

@@ -49,10 +49,11 @@ class ReplayOfMethod : public ReplayProgram, public testing::WithParamInterface<
 const std::vector<std::string> settings_keys{
     "method",         "caster",           "direction",          "displacement_threshold",
     "confidence",     "culling_distance", "distance_extension", "max_iterations",
-    "cast_lost_walks"};
+    "cast_lost_walks", "max_contacts_per_pair", "max_contacts"};
 const std::vector<std::string> summed{"rays",         "rays_cast",         "contacts",     "walks",
                                       "walks_lost",   "walk_casts",        "predictions",  "pairs_full",
-                                      "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost"};
+                                      "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost",
+                                      "contacts_reduced"};
 
 } // namespace
 
@@ -236,6 +237,19 @@ TEST_F(ReplayProgram, IsAMeshFileToo) {
     record("a.glb");
     const auto result = run_program({"mesh", "a.glb", "--json"}, folder_.path());
     EXPECT_EQ(result.status, 0) << result.err;
+}
+
+TEST_F(ReplayProgram, ContactsLeftOutAreLeftOutAgain) {
+    const json run = record("a.glb", {"--max-contacts-per-pair", "2"});
+    EXPECT_GT(run.at("contacts_reduced").get<int>(), 0);
+    EXPECT_EQ(replayed({"a.glb"}).at("hash_reproduced"), true);
+    const json all = replayed({"a.glb", "--max-contacts-per-pair", "0"});
+    EXPECT_EQ(all.at("hash_expected"), false);
+    EXPECT_EQ(all.at("contacts"), run.at("contacts").get<int>() + run.at("contacts_reduced").get<int>());
+    const auto compared = replay({"a.glb", "--compare", "standard"});
+    EXPECT_EQ(compared.status, 2);
+    EXPECT_NE(compared.err.find("--max-contacts-per-pair 0"), std::string::npos) << compared.err;
+    EXPECT_EQ(replay({"a.glb", "--compare", "standard", "--max-contacts-per-pair", "0"}).status, 0);
 }
 
 TEST_F(ReplayProgram, BadInputIsStatus2) {

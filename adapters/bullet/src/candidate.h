@@ -15,6 +15,7 @@ struct Candidate {
     btScalar distance{};    ///< negative: the depth
     btScalar reach{};       ///< size of a patch it may join
     PlaceName name0, name1; ///< only where gContactAddedCallback will be called
+    bool coming = false;    ///< no contact yet: the distance will be closed before the next step
 };
 
 } // namespace raycontact::bullet

@@ -7,6 +7,7 @@
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
@@ -14,6 +15,8 @@
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletCollision/CollisionShapes/btStridingMeshInterface.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
@@ -197,6 +200,25 @@ std::array<std::uint64_t, 2> content_hashes(const Mesh& mesh) {
     return {one, two};
 }
 
+/// Shape::make has the same limit.
+constexpr btScalar most_metres = btScalar(1e9);
+
+void check_point(const btCollisionShape& shape, const btVector3& p, const char* what, int number) {
+    const auto fail = [&](const char* why) {
+        throw InputError(std::string(shape.getName()) + ": " + what + ' ' + std::to_string(number) + why);
+    };
+    for (int k = 0; k < 3; ++k) {
+        if (!std::isfinite(p[k])) fail(", scaled, is not finite; correct it");
+        if (btFabs(p[k]) > most_metres) fail(" is further than 1e9 m from the origin; scale the shape");
+    }
+}
+
+void check_radius(const btCollisionShape& shape, btScalar radius) {
+    if (!(radius >= 0 && radius <= most_metres))
+        throw InputError(std::string(shape.getName()) + ": the radius " + std::to_string(radius)
+                         + " is not from 0 to 1e9 m; correct it");
+}
+
 /// Whether anyone beside the cache has it. Its tree has its shape, too.
 bool in_use(const Converted& converted) {
     return converted.tree.use_count() > 1;
@@ -346,6 +368,47 @@ Form form_of(const btCollisionShape& shape) {
     return form;
 }
 
+void check_numbers(const btCollisionShape& shape) {
+    switch (shape.getShapeType()) {
+    case SPHERE_SHAPE_PROXYTYPE:
+        check_radius(shape, static_cast<const btSphereShape&>(shape).getRadius());
+        break;
+    case CAPSULE_SHAPE_PROXYTYPE: {
+        const auto& s = static_cast<const btCapsuleShape&>(shape);
+        check_radius(shape, s.getRadius());
+        if (!(s.getHalfHeight() >= 0 && s.getHalfHeight() <= most_metres))
+            throw InputError(std::string(shape.getName()) + ": half the height is not from 0 to 1e9 m; correct it");
+        break;
+    }
+    case MULTI_SPHERE_SHAPE_PROXYTYPE: {
+        const auto& s = static_cast<const btMultiSphereShape&>(shape);
+        for (int i = 0; i < s.getSphereCount(); ++i) {
+            check_radius(shape, s.getSphereRadius(i));
+            const btScalar radius = s.getSphereRadius(i);
+            const btVector3 reach(radius, radius, radius);
+            check_point(shape, (s.getSpherePosition(i).absolute() + reach) * s.getLocalScaling(), "sphere", i);
+        }
+        break;
+    }
+    case CONVEX_HULL_SHAPE_PROXYTYPE: {
+        const auto& s = static_cast<const btConvexHullShape&>(shape);
+        for (int i = 0; i < s.getNumPoints(); ++i) check_point(shape, s.getScaledPoint(i), "point", i);
+        break;
+    }
+    case STATIC_PLANE_PROXYTYPE: {
+        const auto& s = static_cast<const btStaticPlaneShape&>(shape);
+        const btVector3& n = s.getPlaneNormal();
+        if (!(std::isfinite(n.x()) && std::isfinite(n.y()) && std::isfinite(n.z()) && !n.isZero()))
+            throw InputError(std::string(shape.getName()) + ": the normal is zero or not finite; correct it");
+        if (!std::isfinite(s.getPlaneConstant()))
+            throw InputError(std::string(shape.getName()) + ": the plane constant is not finite; correct it");
+        break;
+    }
+    default:
+        break;
+    }
+}
+
 Converted ShapeCache::convert(Mesh mesh, Repair repair) {
     ++made_;
     PreparedMesh prepared = prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_);
@@ -365,6 +428,7 @@ Converted ShapeCache::get_convex(const btCollisionShape& shape) {
             return i->second.converted;
         }
     }
+    check_numbers(shape); // Bullet's hull of points that are not finite never ends
     sweep();
     Entry entry;
     Mesh mesh = stand_in(shape);

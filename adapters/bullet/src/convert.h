@@ -58,6 +58,17 @@ btVector3 scaling_of(const btCollisionShape& shape);
 /// Of a mesh. triangle: counted through all sub-parts.
 PlaceName name_of_triangle(const btCollisionShape& shape, int triangle);
 
+/// Throws InputError where a point, radius, height or normal of a ball, capsule, plane, hull or multi-sphere is of no
+/// use: not finite, negative or out of range. Of other shapes meshes are made, which are checked then.
+void check_numbers(const btCollisionShape& shape);
+
+/// Equal, or not a number in the same places: what is not usable has not changed either.
+inline bool alike(const btVector3& a, const btVector3& b) {
+    for (int k = 0; k < 3; ++k)
+        if (!(a[k] == b[k] || (a[k] != a[k] && b[k] != b[k]))) return false;
+    return true;
+}
+
 /// What can be compared in every step: if it changes, the shape must be converted again. A new shape may have the
 /// address of a deleted one; where all of this is the same, too, refresh() must be called.
 struct Form {
@@ -68,8 +79,8 @@ struct Form {
     const void* data = nullptr;            ///< a mesh's interface, or Shape
     const void* vertices = nullptr;        ///< of its first part, where the interface tells without a lock
     friend bool operator==(const Form& a, const Form& b) {
-        return a.type == b.type && a.size == b.size && a.count == b.count && a.low == b.low && a.high == b.high
-               && a.data == b.data && a.vertices == b.vertices;
+        return a.type == b.type && alike(a.size, b.size) && a.count == b.count && alike(a.low, b.low)
+               && alike(a.high, b.high) && a.data == b.data && a.vertices == b.vertices;
     }
 };
 Form form_of(const btCollisionShape& shape);

@@ -76,13 +76,45 @@ btVector3 velocity_at(const btCollisionObject& object, const btVector3& point) {
     return body ? body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition()) : btVector3(0, 0, 0);
 }
 
-// Of a contact to come. Bullet takes what closes the gap off the speed that restitution gives back: such bodies turn
-// round before the gap is closed.
-bool bounces(const PairState& state, const Candidate& c) {
-    const btScalar restitution = btManifoldResult::calculateCombinedRestitution(state.object0, state.object1);
-    if (!(restitution > 0)) return false;
-    const btVector3 speed = velocity_at(*state.object0, c.on0) - velocity_at(*state.object1, c.on1);
-    return -speed.dot(c.normal) * restitution > btScalar(0.2); // Bullet's own bodies do not bounce below that speed
+// As Bullet's solver asks, with its own m_restitutionVelocityThreshold.
+bool bounces(const btManifoldPoint& point, const PairState& state) {
+    if (!(point.m_combinedRestitution > 0)) return false;
+    const btVector3 speed =
+        velocity_at(*state.object0, point.m_positionWorldOnA) - velocity_at(*state.object1, point.m_positionWorldOnB);
+    return -speed.dot(point.m_normalWorldOnB) > btScalar(0.2);
+}
+
+// Bullet takes gap and slop, by the length of the step, off the speed that restitution gives back; nothing of a depth
+// that no slop reaches. The depth itself must not be undone.
+void turn_round(btManifoldPoint& point, btScalar depth, btScalar seconds) {
+    constexpr int both = BT_CONTACT_FLAG_HAS_CONTACT_ERP | BT_CONTACT_FLAG_HAS_CONTACT_CFM;
+    if ((point.m_contactPointFlags & (both | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING))
+        == BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING) {
+        // Bullet would pass over stiffness and damping now; and they lie where the two numbers go.
+        point.m_contactCFM = 1
+                             / btMax(seconds * point.m_combinedContactStiffness1 + point.m_combinedContactDamping1,
+                                     btScalar(SIMD_EPSILON));
+        point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_CFM;
+    }
+    point.m_contactERP = 0;
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
+    point.m_distance1 = -depth;
+}
+
+void turn_round_what_bounces(const PairState& state, btScalar seconds) {
+    for (btPersistentManifold* manifold : state.patches.manifolds()) {
+        for (int i = 0; i < manifold->getNumContacts(); ++i) {
+            btManifoldPoint& point = manifold->getContactPoint(i);
+            if (point.getDistance() < 0 || !bounces(point, state)) continue;
+            const PointKey key = CollisionDispatcher::key(point);
+            const bool coming =
+                std::ranges::any_of(state.candidates, [&](const Candidate& c) { return c.coming && c.key == key; });
+            if (!coming) continue; // held, or touching: as without `continuous`
+            const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(key.child0)];
+            const Leaf& leaf1 = state.record1.leaves[static_cast<std::size_t>(key.child1)];
+            turn_round(point, btMin(diagonal(leaf0), diagonal(leaf1)), seconds);
+        }
+    }
 }
 
 void name_places(PairState& state) {
@@ -100,8 +132,7 @@ void name_places(PairState& state) {
 
 struct CollisionDispatcher::State {
     State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m, ConvexShapes c)
-        : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c),
-          queries(settings, objects.shapes(), objects.faults(), c, d) {
+        : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c), queries(settings, objects, c, d) {
         objects.faults().set_callback(print);
     }
 
@@ -118,7 +149,7 @@ struct CollisionDispatcher::State {
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
-    void hand_out(std::span<const Contact> contacts);
+    void hand_out(std::span<const Contact> contacts, bool coming);
 
     CollisionDispatcher& dispatcher;
     ManifoldSettings manifolds;
@@ -180,8 +211,8 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
     if (s.recorder) s.recorder->step();
-    s.hand_out(s.scene.contacts());
-    s.hand_out(s.scene.coming_contacts());
+    s.hand_out(s.scene.contacts(), false);
+    s.hand_out(s.scene.coming_contacts(), true);
     for (PairState* state : s.work)
         if (adds_are_told(*state->object0, *state->object1)) name_places(*state);
     for (std::size_t i = 0; i < s.work.size(); ++i) {
@@ -190,6 +221,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
         PairState& pair = *s.work[i];
         pair.patches.update(pair.candidates, pair.record0.pose, pair.record1.pose, s.manifolds, s.stats);
+        if (s.scene.settings().continuous) turn_round_what_bounces(pair, info.m_timeStep); // after the callbacks
     }
     s.stats.shapes_made = s.objects.shapes().made() - made_before;
     s.stats.made_rigid = s.objects.mended().made_rigid;
@@ -432,7 +464,7 @@ void CollisionDispatcher::State::sort_batch() {
     for (const auto& [slots, index] : order) pairs.push_back(batch[index].pair);
 }
 
-void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
+void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts, bool coming) {
     std::size_t at = 0;
     for (const Contact& c : contacts) {
         const Slots slots{c.body_a, c.body_b};
@@ -458,7 +490,7 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);
-        if (c.depth <= 0 && bounces(*entry->state, candidate)) candidate.distance = 0;
+        candidate.coming = coming;
         candidate.reach = entry->reach;
         entry->state->candidates.push_back(candidate);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <faults.h>
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
@@ -9,10 +10,25 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+/// Bullet numbers proxies from 1; 0 is an object that is in no world.
+int stay_of(const btCollisionObject& object) {
+    const btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+    return proxy ? proxy->getUid() : 0;
+}
+
+} // namespace
+
 void Faults::add(Fault fault) {
     if (known_.size() > most_known) known_.clear();
     Known& known = known_[fault.object];
     known.seen = now_;
+    // It was taken out of the world in between, or is another object where the old one lay.
+    if (const int stay = stay_of(*fault.object); known.stay != stay) {
+        known.texts.clear();
+        known.stay = stay;
+    }
     if (std::ranges::find(known.texts, fault.text) != known.texts.end()) return;
     known.texts.push_back(fault.text);
     waiting_.push_back(std::move(fault));

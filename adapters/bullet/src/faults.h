@@ -13,7 +13,7 @@
 
 namespace raycontact::bullet {
 
-/// The faults of objects: each is told once, as long as it lasts.
+/// The faults of objects: each is told once, as long as it lasts and the object stays in its world.
 class Faults {
 public:
     using Callback = std::function<void(const Fault&)>;
@@ -41,6 +41,7 @@ private:
     struct Known {
         std::vector<std::string> texts;
         std::uint64_t seen = 0;
+        int stay = 0; ///< the number of its broad-phase proxy, of which an object has another each time it is added
     };
     static constexpr std::uint64_t keep_dispatches = 600;
     static constexpr std::size_t most_known = 10'000; ///< where nothing is dispatched, only queried

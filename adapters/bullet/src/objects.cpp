@@ -10,6 +10,21 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+bool unmoved(const btTransform& a, const btTransform& b) {
+    bool all = alike(a.getOrigin(), b.getOrigin());
+    for (int i = 0; i < 3; ++i) all = all && alike(a.getBasis()[i], b.getBasis()[i]);
+    return all;
+}
+
+/// What a new stretch is compared with; that of a plane is not rounded.
+const Stretch& kept_stretch(const Leaf& leaf) {
+    return leaf.kind == Kind::plane ? no_stretch : leaf.stretch;
+}
+
+} // namespace
+
 Pose to_pose(const btTransform& transform) {
     Pose pose;
     for (int i = 0; i < 3; ++i) {
@@ -41,7 +56,7 @@ bool Objects::unchanged(const btCollisionObject& object, const Object& record) c
                   same = same && count < record.leaves.size();
                   if (!same) return;
                   const Leaf& leaf = record.leaves[count++];
-                  same = leaf.shape == &shape && leaf.local == local && leaf.kind == kind_for_us(shape)
+                  same = leaf.shape == &shape && unmoved(leaf.local, local) && leaf.kind == kind_for_us(shape)
                          && (!in_scene(leaf.kind) || leaf.form == form_of(shape));
               });
     return same && count == record.leaves.size();
@@ -50,6 +65,14 @@ bool Objects::unchanged(const btCollisionObject& object, const Object& record) c
 Object* Objects::find(const btCollisionObject& object) {
     const auto i = records_.find(&object);
     return i == records_.end() ? nullptr : &i->second;
+}
+
+const Stretch& Objects::kept_stretch_of(const btCollisionObject& object, std::size_t leaf,
+                                        const btCollisionShape& shape) const {
+    const auto i = records_.find(&object);
+    if (i == records_.end() || leaf >= i->second.leaves.size()) return no_stretch;
+    const Leaf& known = i->second.leaves[leaf];
+    return known.shape == &shape ? kept_stretch(known) : no_stretch;
 }
 
 Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
@@ -74,7 +97,8 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     Placement whole;
     record.fault.clear();
     try {
-        whole = place(object.getWorldTransform());
+        const bool alone = !object.getCollisionShape()->isCompound();
+        whole = place(object.getWorldTransform(), alone ? kept_stretch(record.leaves.front()) : no_stretch);
     } catch (const InputError& error) {
         record.fault = error.what();
     }
@@ -104,7 +128,8 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     };
     Placement placed = whole;
     try {
-        if (object.getCollisionShape()->isCompound()) placed = place(object.getWorldTransform() * leaf.local);
+        if (object.getCollisionShape()->isCompound())
+            placed = place(object.getWorldTransform() * leaf.local, kept_stretch(leaf));
     } catch (const InputError& error) {
         return leave_out(error, false);
     }
@@ -119,6 +144,13 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
     }
     if (leaf.unusable) return;
+    if (!in_scene(leaf.kind)) {
+        try {
+            check_numbers(*leaf.shape); // read anew in every step
+        } catch (const InputError& error) {
+            return leave_out(error, false);
+        }
+    }
     leaf.fault.clear();
     if (!in_scene(leaf.kind) || leaf.flat) return;
     if (leaf.body != Leaf::no_body) {

@@ -93,6 +93,9 @@ public:
     /// The same for a record that is known.
     Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
     Object* find(const btCollisionObject& object);
+    /// That a query may take, for the mesh that the dispatches have; no_stretch where none is known.
+    const Stretch& kept_stretch_of(const btCollisionObject& object, std::size_t leaf,
+                                   const btCollisionShape& shape) const;
     /// The record stays, at the same address, until it is released.
     Object& acquire(const btCollisionObject& object) {
         Object& record = records_.at(&object);

@@ -22,8 +22,9 @@ struct Placement {
 };
 
 /// Beyond 1e-3 what is not rigid is scale: the stretch holds it, in steps of about 1e-3 in each direction, so that a
-/// basis that drifts on does not need a new mesh in every step. Mirrored: the stretch has a negative determinant.
-/// Throws InputError where the transform is not finite or flat.
-Placement place(const btTransform& transform);
+/// basis that drifts on does not need a new mesh in every step. kept: the stretch that it had; it stays while it is
+/// within one step, or the last bits of a basis could change it in every step. Mirrored: the stretch has a negative
+/// determinant. Throws InputError where the transform is not finite or flat.
+Placement place(const btTransform& transform, const Stretch& kept = no_stretch);
 
 } // namespace raycontact::bullet

@@ -51,7 +51,9 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
                   try {
-                      const Placement placement = place(pose);
+                      if (placed.leaf.kind == Kind::round || placed.leaf.kind == Kind::plane) check_numbers(shape);
+                      const Placement placement =
+                          place(pose, objects_.kept_stretch_of(*wrap.getCollisionObject(), leaves.size(), shape));
                       placed.leaf.pose = placement.pose;
                       placed.leaf.stretch = stretch_of(placed.leaf.kind, placement);
                   } catch (const InputError& error) {

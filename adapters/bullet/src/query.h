@@ -15,9 +15,9 @@ namespace raycontact::bullet {
 /// What contactTest and contactPairTest need: the contacts of two objects of which RayContact handles a pair of leaves.
 class Queries {
 public:
-    Queries(const Settings& settings, ShapeCache& shapes, Faults& faults, ConvexShapes convex,
-            btCollisionDispatcher& dispatcher)
-        : scene_(settings), shapes_(shapes), faults_(faults), convex_(convex), dispatcher_(dispatcher) {}
+    Queries(const Settings& settings, Objects& objects, ConvexShapes convex, btCollisionDispatcher& dispatcher)
+        : scene_(settings), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()), convex_(convex),
+          dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
@@ -43,6 +43,7 @@ private:
                     const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
 
     Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
+    const Objects& objects_;
     ShapeCache& shapes_;
     Faults& faults_;
     ConvexShapes convex_;

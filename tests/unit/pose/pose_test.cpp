@@ -48,11 +48,11 @@ TEST(Pose, TheNearestRigidPoseDropsDriftAndScale) {
                                            std::array<double, 9>{1e9, 0, 0, 0, 1e9, 0, 0, 0, 1e9},
                                            std::array<double, 9>{100, 0, 0, 0, 1, 0, 0, 0, 0.1}}) {
         Pose given = turned;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j) {
                 given.rotation[3 * i + j] = 0;
-                for (int k = 0; k < 3; ++k)
-                    given.rotation[3 * i + j] += turned.rotation[3 * i + k] * s[static_cast<std::size_t>(3 * k + j)];
+                for (std::size_t k = 0; k < 3; ++k)
+                    given.rotation[3 * i + j] += turned.rotation[3 * i + k] * s[3 * k + j];
             }
         const Pose mended = nearest_rigid_pose(given);
         EXPECT_EQ(mended.translation, turned.translation);

@@ -59,8 +59,8 @@ struct DispatcherStats {
     /// Shapes whose transform is scaled, sheared or mirrored: their mesh is made anew, scaled. Each other scale, in
     /// steps of about 1e-3, makes another; balls and capsules are left to Bullet.
     std::uint64_t scaled = 0;
-    /// Objects of which a shape took no part: its transform is not finite or flat, or no mesh can be made of it. Each
-    /// such fault is told to on_fault() once.
+    /// Objects of which a shape took no part: its transform is not finite or flat, a number of its own not
+    /// finite, or no mesh can be made of it. Each such fault is told to on_fault() once.
     std::vector<const btCollisionObject*> left_out;
 };
 
@@ -110,9 +110,12 @@ public:
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
-    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts. It may
-    /// throw (the others are told next time) and put another in its place. At first it prints a line on stderr; an
-    /// empty function says nothing.
+    /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts and the object
+    /// stays in its world: added again it is told of again, and so is another object that has its address.
+    /// (btAxisSweep3 gives numbers of proxies again, and objects that are only asked about have none: call
+    /// remove_body() for an object that goes, or the new one may count as the old one for 600 dispatches.) It may throw
+    /// (the others are told next time) and put another in its place. At first it prints a line on stderr; an empty
+    /// function says nothing.
     void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a

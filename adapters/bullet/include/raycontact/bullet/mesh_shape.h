@@ -55,8 +55,10 @@ public:
         return "RayContactMesh";
     }
     /// As a btBvhTriangleMeshShape, with the vertices and triangles of the mesh after its repairs. Bullet's importers
-    /// read it back as one, which the dispatcher takes as it takes this. They make bodies of such meshes static: one
-    /// that moved needs setMassProps(), cleared collision flags, and to be added to its world again.
+    /// read it back as one, which the dispatcher takes as it takes this. They make bodies of such meshes static, and
+    /// a world puts those to sleep. One that moved needs, in this order: removeRigidBody(body);
+    /// body->setMassProps(mass, inertia), with the inertia of a MeshShape, since Bullet's meshes have none;
+    /// body->updateInertiaTensor(); body->setCollisionFlags(0); addRigidBody(body); body->activate(true).
     int calculateSerializeBufferSize() const override;
     const char* serialize(void* data, btSerializer* serializer) const override;
 
