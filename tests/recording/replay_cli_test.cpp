@@ -46,14 +46,21 @@ protected:
 
 class ReplayOfMethod : public ReplayProgram, public testing::WithParamInterface<const char*> {};
 
-const std::vector<std::string> settings_keys{
-    "method",         "caster",           "direction",          "displacement_threshold",
-    "confidence",     "culling_distance", "distance_extension", "max_iterations",
-    "cast_lost_walks", "max_contacts_per_pair", "max_contacts"};
-const std::vector<std::string> summed{"rays",         "rays_cast",         "contacts",     "walks",
-                                      "walks_lost",   "walk_casts",        "predictions",  "pairs_full",
-                                      "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost",
-                                      "contacts_reduced"};
+const std::vector<std::string> settings_keys{"method",
+                                             "caster",
+                                             "direction",
+                                             "displacement_threshold",
+                                             "confidence",
+                                             "culling_distance",
+                                             "distance_extension",
+                                             "max_iterations",
+                                             "cast_lost_walks",
+                                             "max_contacts_per_pair",
+                                             "max_contacts"};
+const std::vector<std::string> summed{
+    "rays",         "rays_cast",     "contacts",        "walks",        "walks_lost",
+    "walk_casts",   "predictions",   "pairs_full",      "pairs_asleep", "pairs_as_standard",
+    "contacts_new", "contacts_lost", "contacts_reduced"};
 
 } // namespace
 
