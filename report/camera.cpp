@@ -8,6 +8,7 @@ namespace {
 
 float median(const std::vector<Ball>& balls, float Float3::*axis) {
     std::vector<float> values;
+    values.reserve(balls.size());
     for (const Ball& ball : balls) values.push_back(ball.centre.*axis);
     std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
     return values[values.size() / 2];
