@@ -206,7 +206,7 @@ struct Scene::State {
 
     void find_coming() {
         const auto start = std::chrono::steady_clock::now();
-        coming.run(narrow.parts()[0].executor(), narrow.settings().direction, bodies, next, slot_pairs);
+        coming.run(narrow.parts().executor(), narrow.settings().direction, bodies, next, slot_pairs);
         next_poses.step_done(bodies);
         stats.contacts_coming = coming.contacts().size();
         stats.narrow_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

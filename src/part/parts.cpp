@@ -19,6 +19,10 @@ std::size_t Parts::left() const {
     return parts_.size() - static_cast<std::size_t>(std::count(parts_.begin(), parts_.end(), nullptr));
 }
 
+Executor& Parts::executor() {
+    return (*std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; }))->executor();
+}
+
 void Parts::attempt(std::size_t number, const Function& work) {
     if (!has(number)) return;
     try {

@@ -21,6 +21,8 @@ public:
     bool has(std::size_t number) const { return parts_[number] != nullptr; }
     std::size_t left() const;
     Part& operator[](std::size_t number) { return *parts_[number]; }
+    /// Of the first that is left: for work on the host.
+    Executor& executor();
     const std::string& device(std::size_t number) const { return devices_[number]; }
 
     /// Calls work(number) for every part that is left, each on a thread of its own. Returns those dropped in doing so.
