@@ -101,15 +101,6 @@ struct Told {
     std::vector<bullet::Fault> faults;
 };
 
-struct Count : btCollisionWorld::ContactResultCallback {
-    int points = 0;
-    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-        ++points;
-        return 0;
-    }
-};
-
 // Inside a compound, whose box stays finite: Bullet pairs no object with a box that is not.
 TEST(OddShapes, TheChildIsLeftOutAndNamedTheOtherStays) {
     int met = 0;
