@@ -53,12 +53,15 @@ void OutFolder::remove_superseded() const {
     for (const auto& [begin, end] : superseded_) {
         const fs::path parent = fs::path(begin).parent_path();
         std::error_code ignored;
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / parent, ignored)) {
-            const std::string name = (parent / entry.path().filename()).string();
+        std::vector<fs::path> gone; // first: removing from a folder while it is read may skip entries
+        for (fs::directory_iterator entry(folder_ / parent, ignored), last; !ignored && entry != last;
+             entry.increment(ignored)) {
+            const std::string name = (parent / entry->path().filename()).string();
             if (!name.starts_with(begin) || !name.ends_with(end) || name.size() < begin.size() + end.size()) continue;
             const auto written = files_.find(name);
-            if (written == files_.end() || !written->second.written) fs::remove(entry.path(), ignored);
+            if (written == files_.end() || !written->second.written) gone.push_back(entry->path());
         }
+        for (const fs::path& file : gone) fs::remove(file, ignored);
     }
 }
 

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <report/camera.h>
 
+#include <scenes/quantile.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace raycontact::report {
 namespace {
 
 float median(const std::vector<Ball>& balls, float Float3::*axis) {
-    std::vector<float> values;
-    for (const Ball& ball : balls) values.push_back(ball.centre.*axis);
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    return values[values.size() / 2];
+    std::vector<double> values;
+    values.reserve(balls.size());
+    for (const Ball& ball : balls) values.push_back(double(ball.centre.*axis));
+    return static_cast<float>(scenes::quantile(std::move(values), 0.5));
 }
 
 /// A body that rolled far away must not make the pile small: strays are 2.5 times as far from the middle as most are.

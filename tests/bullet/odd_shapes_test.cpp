@@ -29,7 +29,7 @@ struct Odd {
 
 std::unique_ptr<btCollisionShape> hull(const btVector3& last, const btVector3& scaling = btVector3(1, 1, 1)) {
     auto shape = std::make_unique<btConvexHullShape>();
-    for (int i = 0; i < 7; ++i) shape->addPoint(btVector3(btScalar(i & 1), btScalar(i / 2 & 1), btScalar(i / 4)));
+    for (int i = 0; i < 7; ++i) shape->addPoint(btVector3(btScalar(i & 1), btScalar(i >> 1 & 1), btScalar(i >> 2)));
     shape->addPoint(last);
     shape->setLocalScaling(scaling);
     return shape;
@@ -99,15 +99,6 @@ struct Told {
         world.dispatcher.on_fault([this](const bullet::Fault& fault) { faults.push_back(fault); });
     }
     std::vector<bullet::Fault> faults;
-};
-
-struct Count : btCollisionWorld::ContactResultCallback {
-    int points = 0;
-    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-        ++points;
-        return 0;
-    }
 };
 
 // Inside a compound, whose box stays finite: Bullet pairs no object with a box that is not.

@@ -354,14 +354,6 @@ TEST(BulletPose, MeshesOfWhichNoneCanBeMadeAreLeftOutAndNamed) {
 }
 
 TEST(BulletPose, QueriesTakeThemToo) {
-    struct Count : btCollisionWorld::ContactResultCallback {
-        int points = 0;
-        btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                                 const btCollisionObjectWrapper*, int, int) override {
-            ++points;
-            return 0;
-        }
-    };
     TestWorld w;
     Told told(w);
     btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));

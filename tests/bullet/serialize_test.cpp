@@ -47,6 +47,13 @@ btVector3 inertia_of(const btRigidBody& body) {
     return inertia;
 }
 
+std::vector<char> file_of(TestWorld& world) {
+    btDefaultSerializer serializer;
+    world.world.serialize(&serializer);
+    const unsigned char* const written = serializer.getBufferPointer();
+    return {written, written + serializer.getCurrentBufferSize()};
+}
+
 TEST(Serialize, AWorldIsReadBack) {
     TestWorld before;
     before.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
@@ -55,10 +62,7 @@ TEST(Serialize, AWorldIsReadBack) {
     before.add_mesh(table(), 5, at(0, 0, 0.5));
     before.add(std::move(scaled), 5, at(2, 0, 1));
     before.steps(120); // they lie still
-    btDefaultSerializer serializer;
-    before.world.serialize(&serializer);
-    const unsigned char* const written = serializer.getBufferPointer();
-    std::vector<char> file(written, written + serializer.getCurrentBufferSize());
+    std::vector<char> file = file_of(before);
 
     TestWorld after;
     btBulletWorldImporter importer(&after.world);
@@ -98,10 +102,7 @@ TEST(Serialize, ABodyThatIsReadBackFalls) {
     before.add(std::make_unique<btBoxShape>(btVector3(5, 5, btScalar(0.5))), 0, at(0, 0, -0.5));
     btRigidBody& was = before.add_mesh(torus(), 5, at(0, 0, 4));
     before.steps(1);
-    btDefaultSerializer serializer;
-    before.world.serialize(&serializer);
-    const unsigned char* const written = serializer.getBufferPointer();
-    std::vector<char> file(written, written + serializer.getCurrentBufferSize());
+    std::vector<char> file = file_of(before);
 
     TestWorld after;
     btBulletWorldImporter importer(&after.world);

@@ -53,4 +53,14 @@ struct TestWorld {
     std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
 
+/// Counts the points that a query finds.
+struct Count : btCollisionWorld::ContactResultCallback {
+    int points = 0;
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        ++points;
+        return 0;
+    }
+};
+
 } // namespace raycontact::test

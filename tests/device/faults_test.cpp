@@ -189,6 +189,19 @@ TEST(Faults, OneDeviceAfterAnother) {
     }
 }
 
+// Work on the host goes on with the threads of one that is left.
+TEST(Faults, WithoutTheFirstDeviceTheHostHasAnother) {
+    MovingCrowd crowd(10, 0.8);
+    Rig rig(crowd, Method::standard, 3);
+    EXPECT_EQ(&rig.narrow.parts().executor(), &rig.narrow.parts()[0].executor());
+    rig.step(crowd);
+    crowd.move();
+    rig.scripts[0]->start(Fault::lost, 1);
+    rig.step(crowd);
+    ASSERT_FALSE(rig.narrow.parts().has(0));
+    EXPECT_EQ(&rig.narrow.parts().executor(), &rig.narrow.parts()[1].executor());
+}
+
 TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
     for (const Method method : methods) {
         MovingCrowd crowd(10, 0.8);

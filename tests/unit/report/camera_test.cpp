@@ -10,8 +10,10 @@ namespace {
 
 std::vector<Ball> pile() {
     std::vector<Ball> balls;
-    for (int i = 0; i < 24; ++i)
-        balls.push_back({{float(i % 4) - 1.5f, float(i / 4 % 3) - 1, 0.5f + float(i / 12)}, 0.6f});
+    balls.reserve(24);
+    for (const float z : {0.5f, 1.5f})
+        for (const float y : {-1.0f, 0.0f, 1.0f})
+            for (const float x : {-1.5f, -0.5f, 0.5f, 1.5f}) balls.push_back({{x, y, z}, 0.6f});
     return balls;
 }
 
