@@ -20,12 +20,13 @@ using raycontact::InputError;
 namespace {
 
 /// As check_settings names them, and as a user does.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> spelt{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> spelt{
     {{"displacement_threshold", "--displacement-threshold"},
      {"confidence", "--confidence"},
      {"culling_distance", "--culling-distance"},
      {"distance_extension", "--distance-extension"},
-     {"max_iterations", "--max-iterations"}}};
+     {"max_iterations", "--max-iterations"},
+     {"speculative_margin", "--speculative"}}};
 
 std::string with_options(std::string text) {
     for (const auto& [setting, option] : spelt) {
@@ -152,6 +153,21 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
                      "also use a device that rounds otherwise, whose contacts may differ from all others'");
     add_number(command, "--threads", settings.threads, "threads of the host, 0: one per core; changes no result", 0u,
                1024u);
+}
+
+void add_speculative_option(CLI::App& command, raycontact::Settings& settings) {
+    add_word(command, "--speculative",
+             "contacts before anything touches, so that bodies stop at surfaces: auto (a margin for each pair), a "
+             "margin in metres, or off (docs/speculative.md)",
+             "auto|METRES|off", settings.is_speculative() ? "auto" : "off", [&](const std::string& word) {
+                 raycontact::Settings alone;
+                 alone.speculative = word != "off";
+                 if (word != "off" && word != "auto")
+                     alone.speculative_margin = read_real(word, "a margin: give metres, such as 0.01, auto or off");
+                 check_common_options(alone);
+                 settings.speculative = alone.speculative;
+                 settings.speculative_margin = alone.speculative_margin;
+             });
 }
 
 void check_common_options(const raycontact::Settings& settings) {

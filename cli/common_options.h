@@ -12,6 +12,8 @@
 /// while the command line is read and must outlive it. A word or value that makes no sense by itself is bad usage:
 /// InputError naming the option.
 void add_common_options(CLI::App& command, raycontact::Settings& settings);
+/// --speculative, which settings have already or not.
+void add_speculative_option(CLI::App& command, raycontact::Settings& settings);
 
 /// The same for values that make no sense together; for the command to call once all are known.
 void check_common_options(const raycontact::Settings& settings);

@@ -235,6 +235,7 @@ void add_replay(CLI::App& app) {
         ->type_name("DIR");
     command->add_flag("--json", given->json, "print one JSON object on stdout");
     add_common_options(*command, given->settings);
+    add_speculative_option(*command, given->settings);
     command->footer(
         "What decides the contacts (method, caster, direction, features, thresholds) is the recording's unless given.\n"
         "Methods standard and certified find the same contacts, so either reproduces the other's hash.\n"

@@ -80,7 +80,6 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"caster", to_string(options.settings.caster)},
         {"direction", to_string(options.settings.direction)},
         {"features", to_string(options.settings.features)},
-        {"continuous", options.settings.continuous},
         {"devices", chosen_devices(options.settings)},
         {"schedule", to_string(options.settings.schedule)},
         {"work", work_of_devices(log.rows)},
@@ -263,9 +262,9 @@ void add_run(CLI::App& app) {
         ->type_name("N|none")
         ->default_str(std::to_string(options->pictures));
     command->add_flag("--json", options->json, "print one JSON object on stdout");
-    command->add_flag("--continuous", options->settings.continuous,
-                      "stop bodies before they pass through something in one step (docs/continuous.md)");
+    options->settings.speculative = true;
     add_common_options(*command, options->settings);
+    add_speculative_option(*command, options->settings);
     command->footer(stop_footer);
     command->callback([command, options] {
         if (command->count("--record") > 0) check_record(options->record);

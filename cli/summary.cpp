@@ -30,6 +30,7 @@ constexpr Count counts[] = {
     {"pair_bytes", &StepStats::pair_bytes},
     {"contacts_new", &StepStats::contacts_new},
     {"contacts_lost", &StepStats::contacts_lost},
+    {"contacts_speculative", &StepStats::contacts_speculative},
     {"contacts_reduced", &StepStats::contacts_reduced},
     {"contacts_merged", &StepStats::contacts_merged},
     {"pairs_moved", &StepStats::pairs_moved},
@@ -58,6 +59,12 @@ void Work::put(Json& object) const {
     for (const Count& count : counts) object[is_memory(count) ? "pair_bytes_max" : count.name] = sum_.*count.value;
 }
 
+// As the option --speculative takes it.
+Json speculative_word(const Settings& settings) {
+    if (!settings.is_speculative()) return "off";
+    return settings.speculative_margin ? Json(*settings.speculative_margin) : Json("auto");
+}
+
 void put_settings(Json& object, const Settings& settings) {
     object["displacement_threshold"] = length(settings.displacement_threshold);
     object["confidence"] = settings.confidence;
@@ -65,6 +72,7 @@ void put_settings(Json& object, const Settings& settings) {
     object["distance_extension"] = length(settings.distance_extension);
     object["max_iterations"] = settings.max_iterations;
     object["cast_lost_walks"] = settings.cast_lost_walks;
+    object["speculative"] = speculative_word(settings);
     object["max_contacts_per_pair"] = settings.max_contacts_per_pair;
     object["max_contacts"] = settings.max_contacts;
 }

@@ -39,8 +39,9 @@ void read_if_there(const Json& document, const char* key, Value& value) {
     if (const auto at = document.find(key); at != document.end()) value = at->get<Value>();
 }
 
-void read_if_there(const Json& document, const char* key, std::optional<double>& metres) {
-    if (const auto at = document.find(key); at != document.end() && !at->is_null()) metres = at->get<double>();
+template <class Value>
+void read_if_there(const Json& document, const char* key, std::optional<Value>& value) {
+    if (const auto at = document.find(key); at != document.end() && !at->is_null()) value = at->get<Value>();
 }
 
 Settings read_settings(const Json& document) {
@@ -72,6 +73,8 @@ Settings read_settings(const Json& document) {
     read_if_there(document, "max_iterations", settings.max_iterations);
     read_if_there(document, "cast_lost_walks", settings.cast_lost_walks);
     read_if_there(document, "skip_outside", settings.skip_outside);
+    read_if_there(document, "speculative", settings.speculative);
+    read_if_there(document, "speculative_margin", settings.speculative_margin);
     read_if_there(document, "max_contacts_per_pair", settings.max_contacts_per_pair);
     read_if_there(document, "max_contacts", settings.max_contacts);
     check_settings(settings);
@@ -144,6 +147,8 @@ Bytes encode_info(const Info& info) {
                             {"max_iterations", info.settings.max_iterations},
                             {"cast_lost_walks", info.settings.cast_lost_walks},
                             {"skip_outside", info.settings.skip_outside},
+                            {"speculative", info.settings.is_speculative()},
+                            {"speculative_margin", length(info.settings.speculative_margin)},
                             {"max_contacts_per_pair", info.settings.max_contacts_per_pair},
                             {"max_contacts", info.settings.max_contacts},
                             {"mesh_source", info.mesh_source}});

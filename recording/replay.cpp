@@ -79,6 +79,10 @@ bool must_agree(const Settings& recorded, const Settings& used) {
     if (used.direction != recorded.direction || used.features != recorded.features
         || used.max_contacts_per_pair != recorded.max_contacts_per_pair || used.max_contacts != recorded.max_contacts)
         return false;
+    // Where bodies were expected is not recorded, and what stays of all contacts depends on it.
+    if ((used.max_contacts_per_pair != 0 || used.max_contacts != 0)
+        && (used.is_speculative() || recorded.is_speculative()))
+        return false;
     if (exact(used.method) && exact(recorded.method)) return true;
     return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
            && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance

@@ -63,7 +63,8 @@ constexpr Known known[] = {
     {"caster", "Caster", "", "how a ray meets a mesh"},
     {"direction", "Direction", "", "what normal and depth are made of"},
     {"features", "Features", "", "of a mesh that can be in contact"},
-    {"continuous", "Continuous", "", "bodies that come near in the next step are stopped"},
+    {"speculative", "Speculative contacts", "", "their margin in metres, or auto: before anything touches"},
+    {"contacts_speculative", "Contacts before a touch", "", "in all steps together"},
     {"displacement_threshold", "Displacement threshold", "mm", "a pair may move so far before a full look", 1000},
     {"confidence", "Confidence", "", "how far ahead predictive rays look, in displacement thresholds"},
     {"culling_distance", "Culling distance", "mm", "how far ahead predictive rays look", 1000},
@@ -158,6 +159,7 @@ std::string thresholds(const Json& summary) {
     if (differs("distance_extension", nullptr)) text += option(summary, "distance_extension", "--distance-extension");
     if (differs("max_iterations", usual.max_iterations)) text += option(summary, "max_iterations", "--max-iterations");
     if (differs("cast_lost_walks", usual.cast_lost_walks)) text += " --no-walk-casts";
+    if (differs("speculative", "auto")) text += option(summary, "speculative", "--speculative");
     if (differs("max_contacts_per_pair", 0))
         text += option(summary, "max_contacts_per_pair", "--max-contacts-per-pair");
     if (differs("max_contacts", 0)) text += option(summary, "max_contacts", "--max-contacts");
@@ -232,7 +234,7 @@ void describe(const scenes::RunLog& log, Page& page) {
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
                    + option(summary, "method", "--method") + option(summary, "caster", "--caster")
                    + option(summary, "direction", "--direction") + option(summary, "features", "--features")
-                   + (summary.value("continuous", Json(false)) == true ? " --continuous" : "") + thresholds(summary)
+                   + thresholds(summary)
                    + option(summary, "devices", "--devices") + " --out DIR";
     page.footer = "The same command gives the same contacts and hash; times differ from machine to machine.";
 }

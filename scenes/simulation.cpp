@@ -110,8 +110,8 @@ void Simulation::State::configure() {
     const Response& response = description.response;
     const Vec3& g = description.gravity;
     world.setGravity(btVector3(btScalar(g.x), btScalar(g.y), btScalar(g.z)));
-    // No sweep of the boxes along the motion: it would only add pairs that rays cannot find contacts in.
-    world.getDispatchInfo().m_useContinuous = false;
+    // A sweep of the boxes along the motion adds pairs that have speculative contacts alone.
+    world.getDispatchInfo().m_useContinuous = description.settings.is_speculative();
     if (!response.bullet_defaults)
         bullet::recommend(world, {.slop = response.slop, .erp = response.erp, .iterations = response.iterations});
     // Nobody sleeps, so islands save nothing.

@@ -3,11 +3,10 @@
 
 #include "body_slots.h"
 #include "broadphase/sweep_and_prune.h"
-#include "coming/coming_contacts.h"
-#include "coming/next_poses.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "give_back.h"
+#include "next_poses.h"
 #include "pose_fault.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
@@ -91,6 +90,8 @@ struct Scene::State {
         accelerate_shapes();
         for (PlacedBody& body : bodies)
             if (body.shape != nullptr) body.centred = centred_pose(*body.shape, body.pose);
+        for (std::size_t i = 0; i < next.size(); ++i)
+            if (bodies[i].shape != nullptr) bodies[i].next = centred_pose(*bodies[i].shape, next[i]);
     }
 
     // All shapes must be the same each time a run repeats, where contacts depend on what follows rays.
@@ -135,8 +136,10 @@ struct Scene::State {
             if (bodies[i].shape == nullptr) continue;
             const Shape& shape = *bodies[i].shape;
             const bool open = !shape.has_inside();
+            // The margins of two bodies together are at least that of their pair.
+            const double near = next.empty() ? 0 : 0.5 * speculative_margin(narrow.settings(), bodies[i], bodies[i]);
             const auto box_at = [&](const Pose& pose) {
-                return world_box({shape.box_min(), shape.box_max()}, pose, open ? double(reach) : 0);
+                return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
             };
             boxes.push_back({box_at(bodies[i].pose), i});
             if (!next.empty()) boxes.back().add(box_at(next[i]));
@@ -181,7 +184,6 @@ struct Scene::State {
             work();
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
-            coming.clear();
             contacts.clear();
             throw;
         }
@@ -189,27 +191,18 @@ struct Scene::State {
 
     /// Before the broad phase.
     void look_ahead() {
-        coming.clear();
-        next = narrow.settings().continuous ? next_poses.update(bodies) : std::span<const Pose>();
+        next = narrow.settings().is_speculative() ? next_poses.update(bodies) : std::span<const Pose>();
     }
 
     void find_contacts(double broad_ms) {
         place_bodies();
         narrow.step(bodies, slot_pairs, contacts, stats);
         stats.broad_ms = broad_ms;
-        if (narrow.settings().continuous) find_coming();
+        if (!next.empty()) next_poses.step_done(bodies);
         slots.step_done();
         want_shapes();
         cut_to_slots();
         give_back(boxes, pairs, slot_pairs);
-    }
-
-    void find_coming() {
-        const auto start = std::chrono::steady_clock::now();
-        coming.run(narrow.parts().executor(), narrow.settings().direction, bodies, next, slot_pairs);
-        next_poses.step_done(bodies);
-        stats.contacts_coming = coming.contacts().size();
-        stats.narrow_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -227,8 +220,7 @@ struct Scene::State {
     std::vector<PlacedBody> bodies; ///< by slot; without a shape once removed
     std::vector<BodyNotes> notes;   ///< by slot
     NextPoses next_poses;
-    std::span<const Pose> next; ///< of this step; empty unless it is continuous
-    ComingContacts coming;
+    std::span<const Pose> next; ///< of this step; empty without speculative contacts
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
@@ -262,7 +254,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.notes[slot] = {};
-    s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose};
+    s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose, pose};
     return s.slots.give();
 }
 
@@ -294,7 +286,7 @@ const Pose& Scene::pose(BodyId body) const {
 void Scene::set_next_pose(BodyId body, const Pose& pose) {
     const PlacedBody& moving = state_->existing(body, "Scene::set_next_pose");
     refuse_faulty(pose, body);
-    if (state_->narrow.settings().continuous) state_->next_poses.set(slot_of(body), moving.generation, pose);
+    if (state_->narrow.settings().is_speculative()) state_->next_poses.set(slot_of(body), moving.generation, pose);
 }
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
@@ -302,8 +294,7 @@ void Scene::set_settings(const Settings& settings) {
     if (settings.devices != old.devices || settings.schedule != old.schedule || settings.threads != old.threads)
         throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
-    if (!settings.continuous) state_->next_poses.forget();
-    state_->coming.clear();
+    if (!settings.is_speculative()) state_->next_poses.forget();
 }
 const Settings& Scene::settings() const {
     return state_->narrow.settings();
@@ -386,9 +377,6 @@ std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();
-}
-std::span<const Contact> Scene::coming_contacts() const {
-    return state_->coming.contacts();
 }
 const StepStats& Scene::stats() const {
     return state_->stats;

@@ -76,6 +76,7 @@ void check_settings(const Settings& settings) {
     need_length("displacement_threshold", settings.displacement_threshold, true);
     need_length("culling_distance", settings.culling_distance, true);
     need_length("distance_extension", settings.distance_extension, true);
+    need_length("speculative_margin", settings.speculative_margin, true);
     if (!(std::isfinite(settings.confidence) && settings.confidence >= 1))
         throw InputError("confidence must be at least 1 (paper equation 1), not " + text_of(settings.confidence));
     if (settings.max_iterations == 0)

@@ -67,15 +67,18 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
     }
 
     count(pairs.size(), stats);
-    stats.contacts = contacts.size();
     stats.contacts_reduced = reducer_.left_out().size();
     stats.contacts_merged = reducer_.merged();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();
     for (const Contact& contact : contacts) {
-        stats.ray_length += double(contact.ray_length);
+        if (is_speculative(contact))
+            ++stats.contacts_speculative;
+        else
+            stats.ray_length += double(contact.ray_length);
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     }
+    stats.contacts = contacts.size() - stats.contacts_speculative;
     for (const Contact& contact : reducer_.left_out())
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     give_back(contacts);

@@ -42,14 +42,15 @@ struct StepStats {
     std::uint64_t walk_casts = 0;        ///< of those, how many were cast in full instead
     std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
     std::uint64_t pair_bytes = 0;        ///< memory kept for the open pairs
-    std::uint64_t contacts = 0;
-    std::uint64_t contacts_new = 0;    ///< whose key the last step did not have
-    std::uint64_t contacts_lost = 0;   ///< of the last step, whose key this step does not have
-    std::uint64_t contacts_coming = 0; ///< Scene::coming_contacts()
+    std::uint64_t contacts = 0; ///< that touch
+    std::uint64_t contacts_new = 0;  ///< whose key the last step did not have
+    std::uint64_t contacts_lost = 0; ///< of the last step, whose key this step does not have
+    /// Beside them in Scene::contacts().
+    std::uint64_t contacts_speculative = 0;
     /// Found, but left out by Settings::max_contacts_per_pair or max_contacts.
     std::uint64_t contacts_reduced = 0;
     std::uint64_t contacts_merged = 0; ///< of those, how many say what one that was chosen says
-    double ray_length = 0;             ///< sum of the contacts' ray lengths, metres (paper section 5.2)
+    double ray_length = 0;             ///< sum over the contacts that touch, metres (paper section 5.2)
     double depth_max = 0;              ///< of all contacts, those left out as well, metres
     double broad_ms = 0;               ///< our broad phase; 0 when pairs were given
     double narrow_ms = 0;              ///< everything after the broad phase
@@ -79,8 +80,9 @@ public:
     /// Throws InputError naming the body when the pose is not finite and rigid; the old pose then stays.
     void set_pose(BodyId body, const Pose& pose);
     const Pose& pose(BodyId body) const;
-    /// Where the body is expected at the next step; for coming_contacts() of one step. Without it, the body is expected
-    /// to go on as it did since the last step. Nothing without Settings::continuous. Throws InputError as set_pose().
+    /// Where the body is expected after the next step, for the speculative contacts of that step. Without it, the body
+    /// is expected to go on as it did since the last step. Nothing without Settings::speculative. Throws InputError as
+    /// set_pose().
     void set_next_pose(BodyId body, const Pose& pose);
     const Shape& shape(BodyId body) const;
     /// A number of your own for each body, such as the address of your object; 0 at first.
@@ -113,13 +115,8 @@ public:
     std::span<const Contact> contacts() const;
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
-    /// Contacts that the last step had and this one does not, in the same order; `Contact::is_new` marks the new ones.
+    /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const;
-    /// With Settings::continuous: of the last step, the vertices that will enter the other body on a straight way to
-    /// where they are expected at the next step, sorted as contacts. depth: <= 0, minus the vertex's distance from the
-    /// plane of the triangle that it will meet, metres; normal: of that triangle, from A to B; ray_length: of the way
-    /// up to it, metres. They are in no count but stats().contacts_coming, and not in a hash.
-    std::span<const Contact> coming_contacts() const;
     const StepStats& stats() const;
     /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;

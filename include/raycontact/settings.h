@@ -44,6 +44,9 @@ enum class Schedule {
     counted,  ///< as balanced, but what a unit of load costs is set, not measured, so that a run repeats exactly
 };
 
+/// Of the smaller body's box diagonal: how near bodies have speculative contacts that do not hurry.
+inline constexpr double speculative_share = 0.005;
+
 struct Settings {
     Method method = Method::certified;
     Caster caster = Caster::bvh;
@@ -72,9 +75,13 @@ struct Settings {
     /// cast every ray of the paper's rule, with `iterative` and `predictive` whenever a pair has moved by its
     /// threshold, on which their contacts depend; those of `standard` do not. `certified` does not look at it.
     bool skip_outside = true;
-    /// Also finds Scene::coming_contacts(): vertices that enter the other body on their way to the next step, so that a
-    /// fast body can be stopped before a thin wall (docs/continuous.md). No contact depends on it.
-    bool continuous = false;
+    /// Also finds contacts before anything touches, with depth <= 0: what lies nearer than a margin, and what will
+    /// touch on its way to the next step, so that a solver stops bodies at the surface (docs/speculative.md). Empty: as
+    /// whoever owns the scene has it; a Scene of your own: no; a Bullet CollisionDispatcher and `raycontact run`: yes.
+    std::optional<bool> speculative;
+    /// Metres: the margin. Empty: speculative_share of the smaller body's box diagonal.
+    std::optional<double> speculative_margin;
+    bool is_speculative() const { return speculative.value_or(false); }
     /// Of each pair the contacts that stand for all of them, no more than this (docs/reduction.md); at least the
     /// deepest. 0: all contacts. The rest is counted in StepStats.
     std::uint32_t max_contacts_per_pair = 0;

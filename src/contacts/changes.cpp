@@ -27,19 +27,27 @@ void Changes::mark(std::span<Contact> contacts) {
     lost_.clear();
     new_count_ = 0;
     std::size_t old = 0;
+    const auto lose = [this](std::size_t i) {
+        if (touched_[i] != 0) lost_.push_back(previous_[i]);
+    };
     for (Contact& contact : contacts) {
         const ContactOrder order = order_of(contact);
-        while (old < previous_.size() && order_of(previous_[old]) < order) lost_.push_back(previous_[old++]);
-        contact.is_new = old == previous_.size() || order_of(previous_[old]) != order;
-        if (contact.is_new)
-            ++new_count_;
-        else
-            ++old;
+        const bool touches = !is_speculative(contact);
+        for (; old < previous_.size() && order_of(previous_[old]) < order; ++old) lose(old);
+        const bool known = old < previous_.size() && order_of(previous_[old]) == order;
+        contact.is_new = !known || (touches && touched_[old] == 0);
+        if (known && !touches) lose(old);
+        if (known) ++old;
+        if (touches && contact.is_new) ++new_count_;
     }
-    lost_.insert(lost_.end(), previous_.begin() + static_cast<std::ptrdiff_t>(old), previous_.end());
+    for (; old < previous_.size(); ++old) lose(old);
     previous_.resize(contacts.size());
-    give_back(previous_, lost_);
-    for (std::size_t i = 0; i < contacts.size(); ++i) previous_[i] = key_of(contacts[i]);
+    touched_.resize(contacts.size());
+    give_back(previous_, touched_, lost_);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        previous_[i] = key_of(contacts[i]);
+        touched_[i] = is_speculative(contacts[i]) ? 0 : 1;
+    }
 }
 
 } // namespace raycontact

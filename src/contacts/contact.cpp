@@ -43,8 +43,8 @@ std::string contact_key(const LostContact& contact) {
     return text;
 }
 
-ContactHash::ContactHash(Direction direction)
-    : state_(XXH64_createState()), weighted_(direction == Direction::weighted) {
+ContactHash::ContactHash(Direction direction, bool speculative)
+    : state_(XXH64_createState()), weighted_(direction == Direction::weighted), speculative_(speculative) {
     if (state_ == nullptr) throw std::bad_alloc();
     XXH64_reset(static_cast<XXH64_state_t*>(state_), 0);
 }
@@ -55,6 +55,7 @@ ContactHash::~ContactHash() {
 
 void ContactHash::add(std::uint32_t step, std::span<const Contact> contacts) {
     for (const Contact& c : contacts) {
+        if (is_speculative(c) && !speculative_) continue;
         unsigned char bytes[6 * 4 + 6 * 4 + 3 * 8];
         unsigned char* to = bytes;
         const auto put = [&to](auto bits) { // little-endian on every machine

@@ -18,7 +18,10 @@ struct LaunchArgument<kernels::uint> {
 };
 template <typename T>
 struct LaunchArgument<T*> {
-    static Argument make(const Array<std::remove_const_t<T>>& array) { return {array.buffer(), 0, false}; }
+    /// An empty array is null, whatever room it has.
+    static Argument make(const Array<std::remove_const_t<T>>& array) {
+        return {array.size() == 0 ? nullptr : array.buffer(), 0, false};
+    }
 };
 
 template <typename Function>

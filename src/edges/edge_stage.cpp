@@ -4,6 +4,7 @@
 #include "give_back.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tuple>
 
@@ -24,7 +25,7 @@ double area_at(const ShapeData& shape, std::uint32_t edge) {
 }
 
 float weight_of(const ShapeData& source, const ShapeData& target, const FeatureContact& found) {
-    if (found.feature == Feature::inside) return source.vertex_areas[found.index];
+    if (found.feature != Feature::edges) return source.vertex_areas[found.index];
     return static_cast<float>((area_at(source, found.index) + area_at(target, found.other)) / 12);
 }
 
@@ -109,7 +110,7 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
     contact.vertex = edges ? file_edge(shape, found.index) : shape.mesh.vertex_index[found.index];
     contact.triangle = edges ? file_edge(other, found.other) : other.mesh.triangle_index[found.other];
     contact.depth = static_cast<float>(found.depth);
-    contact.ray_length = contact.depth;
+    contact.ray_length = std::fabs(contact.depth);
     if (direction == Direction::weighted) contact.weight = weight_of(shape, other, found);
     return contact;
 }
@@ -151,11 +152,16 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     for (const std::span<NearEdge>& near : asked.near) sort(near);
     const bool in_contact = !vertices[0].empty() || !vertices[1].empty();
     work.found.clear();
+    const NearEdges near{asked.near[0], asked.near[1]};
+    const Settings& settings = question.update.settings;
+    const bool asks_edges = settings.features == Features::edges && raycontact::asks_edges(a, b);
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (!work.edges.find(PairMeshes(a, b), {asked.near[0], asked.near[1]}, vertices, work.found) && !in_contact) {
+    if (asks_edges && !work.edges.find(PairMeshes(a, b), near, vertices, work.found) && !in_contact) {
         const bool apart = !find_inside(a, b, work.found);
-        if (asked.apart != nullptr) *asked.apart = apart && asked.near[0].empty() && asked.near[1].empty();
+        if (asked.apart != nullptr) *asked.apart = apart && near[0].empty() && near[1].empty();
     }
+    if (settings.is_speculative())
+        work.speculative.find({a, b, speculative_margin(settings, a, b), asks_edges, near, vertices}, work.found);
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == VertexBody::a;

@@ -5,13 +5,15 @@
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
 #include "pairs/update.h"
+#include "speculative/speculative_pair.h"
 
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
-/// Adds the contacts of edges, and of bodies inside others, to those of the vertices (docs/edges.md). It works on the
+/// Adds the contacts of edges, of bodies inside others (docs/edges.md), and of what does not touch yet
+/// (docs/speculative.md), to those of the vertices. It works on the
 /// host, in double, for every device: so its contacts are the same for all.
 class EdgeStage {
 public:
@@ -28,6 +30,7 @@ private:
     /// What some of the blocks are worked on in, one after the other.
     struct Workspace {
         PairEdges edges;
+        SpeculativePair speculative;
         std::vector<FeatureContact> found;
     };
     /// Pairs that one thread takes at once, and what it finds.

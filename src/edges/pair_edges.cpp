@@ -33,21 +33,6 @@ constexpr std::size_t most_faces = 64;
 constexpr double pull = 1e-3;
 constexpr int most_triangles_around = 256;
 
-bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
-    return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
-}
-
-// Whether the far corner of the one face lies below the other. Borders count as convex.
-bool is_convex(const ShapeData& shape, std::uint32_t edge) {
-    const auto [own, across] = faces_of(shape, edge);
-    if (across == NONE) return true;
-    const auto [start, stop] = ends_of(shape, edge);
-    const Vec3 n = unit(area_normal(shape, own)), from = shape.point(start);
-    for (const std::uint32_t v : shape.mesh.triangles[across])
-        if (v != start && v != stop && dot(shape.point(v) - from, n) > 0) return false;
-    return true;
-}
-
 // The edge of a face that is nearest to a point of its plane.
 std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32_t face, const Vec3& point) {
     const ShapeData& shape = pair.shape(side);

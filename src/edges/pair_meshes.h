@@ -68,12 +68,12 @@ private:
     std::array<const ShapeData*, 2> shapes_;
 };
 
-/// A contact of two edges, or of a body inside another; in the target's centred frame. Of edges the source is a.
+/// A contact that was found on the host, in the target's centred frame. Of edges the source is a.
 struct FeatureContact {
     VertexBody source;
     Feature feature;
-    std::uint32_t index; ///< edges: the edge of a, 3 x its lowest triangle + its first corner; inside: the vertex
-    std::uint32_t other; ///< edges: the edge of b; inside: the face of the target
+    std::uint32_t index; ///< edges: the edge of a, 3 x its lowest triangle + its first corner; else the vertex
+    std::uint32_t other; ///< edges: the edge of b; else the face of the target
     Vec3 point;          ///< on the source
     Vec3 normal;         ///< out of the target, unit
     double depth;
@@ -89,6 +89,21 @@ inline EdgeFaces faces_of(const ShapeData& shape, std::uint32_t edge) {
 inline std::array<std::uint32_t, 2> ends_of(const ShapeData& shape, std::uint32_t edge) {
     const auto& corners = shape.mesh.triangles[edge / 3];
     return {corners[edge % 3], corners[(edge % 3 + 1) % 3]};
+}
+
+/// Whether its faces are not flush, or it is a border. edge: by its lowest triangle; false by any other.
+inline bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
+    return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
+}
+/// Whether the far corner of the one face lies below the other. Borders count as convex.
+inline bool is_convex(const ShapeData& shape, std::uint32_t edge) {
+    const auto [own, across] = faces_of(shape, edge);
+    if (across == NONE) return true;
+    const auto [start, stop] = ends_of(shape, edge);
+    const Vec3 n = unit(area_normal(shape, own)), from = shape.point(start);
+    for (const std::uint32_t v : shape.mesh.triangles[across])
+        if (v != start && v != stop && dot(shape.point(v) - from, n) > 0) return false;
+    return true;
 }
 
 /// A contact at a point, whose normal points out of the target along `out`; both are of the target's centred frame.

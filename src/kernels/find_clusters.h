@@ -114,9 +114,9 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
-// Edges are asked where at least one of the bodies has an inside.
+// Edges are asked where at least one of the bodies has an inside; edges: 2: of all.
 DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
-    return pair->source != NONE && (edges == 0u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
+    return pair->source != NONE && (edges != 1u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
 }
 
 // Without horizons the horizon is negative.
@@ -236,8 +236,8 @@ DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* 
 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
 // blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
-// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges: 1: of
-// the edges, which are in contact where they cross the surface.
+// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges: 1, 2:
+// of the edges, which are in contact where they cross the surface; 2: of pairs of open meshes, too.
 KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
                            READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {

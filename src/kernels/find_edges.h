@@ -13,11 +13,28 @@ DEVICE float least_of_vertices(const float* values) {
     return least;
 }
 
+// At most how far a point of the source goes until the next step, metres. No point is farther from the origin of its
+// shape than the diagonal of its box.
+DEVICE float way_of_pair(READS(DirectedPair) now, READS(DirectedPair) next, READS(ShapeHeader) shapes) {
+    float shift = 0.0f, turn = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float by = next->translation[i] - now->translation[i];
+        shift += by * by;
+    }
+    for (int i = 0; i < 9; ++i) {
+        const float by = next->rotation[i] - now->rotation[i];
+        turn += by * by;
+    }
+    const float size = DIAGONAL_TOLERANCES * shapes[now->source].tolerance;
+    return 1.0001f * (root_of(shift) + size * root_of(turn));
+}
+
 // Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
 // vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
-// side by side. horizons: where edges are looked for, `ahead` beyond the margins; more, ahead: null for 0.
-KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) more, READS(float) ahead,
-                         READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons) {
+// side by side. horizons: where edges are looked for, `ahead` and their way to `next` beyond the margins; more, ahead:
+// null for 0; next: null for no way.
+KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
+                         READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons) {
     FOR_EACH(p, count) {
         READS(DirectedPair) there = pairs + p;
         READS(DirectedPair) back = pairs + (p ^ 1u);
@@ -36,66 +53,101 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(float) m
         const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
         margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
         horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
+        if (next) horizons[p] += way_of_pair(there, next + p, shapes);
     }
 }
 
-// The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
-// be far from the surface: it does not enter the balls around their halves. clears: 1: it tells, too, how far the
-// others stay away.
-KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(float) margins, READS(float) least,
-                        READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(PairBlock) found_blocks,
-                        WRITES(uint) counts) {
-    FOR_EACH_VERTICES(i, first, count) {
-        READS(DirectedPair) pair = pairs + found_blocks[i].pair;
-        READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
-        const float margin = margins[found_blocks[i].pair];
-        const float half_least = least ? 0.5f * least[found_blocks[i].pair] : 0.0f;
-        float r[9], t[3], b[6];
-        for (int k = 0; k < 9; ++k) r[k] = pair->rotation[k];
-        for (int k = 0; k < 3; ++k) t[k] = pair->translation[k];
-        for (int k = 0; k < 3; ++k) {
-            b[k] = pair->bounds[k] - margin;
-            b[3 + k] = pair->bounds[3 + k] + margin;
-        }
-        InsideLanes found;
-        float quarter[3][VERTICES_AT_ONCE];
+// Sixteen edges on their way to the next step, in the target's frame: their middles and half edges half-way there.
+STRUCT(MovingLanes) {
+    float middle[3][VERTICES_AT_ONCE], half_edge[3][VERTICES_AT_ONCE];
+    float reach[3][VERTICES_AT_ONCE]; // of all that an edge passes, by axis, from its middle
+    float away[VERTICES_AT_ONCE];     // how far a point of it is from its place half-way, at most
+};
+
+// No way: an edge passes itself alone.
+DEVICE void place_edges(MovingLanes* lanes, READS(DirectedPair) pair, READS(VertexBlock) block, uint first) {
+    float r[9], t[3];
+    for (int k = 0; k < 9; ++k) r[k] = pair->rotation[k];
+    for (int k = 0; k < 3; ++k) t[k] = pair->translation[k];
+    for (int i = 0; i < 3; ++i) {
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float vx = block->position[0][first + k], vy = block->position[1][first + k];
             const float vz = block->position[2][first + k];
             const float hx = block->direction[0][first + k], hy = block->direction[1][first + k];
             const float hz = block->direction[2][first + k];
-            const float x = ((r[0] * vx + r[1] * vy) + r[2] * vz) + t[0];
-            const float y = ((r[3] * vx + r[4] * vy) + r[5] * vz) + t[1];
-            const float z = ((r[6] * vx + r[7] * vy) + r[8] * vz) + t[2];
-            const float ex = magnitude_of((r[0] * hx + r[1] * hy) + r[2] * hz);
-            const float ey = magnitude_of((r[3] * hx + r[4] * hy) + r[5] * hz);
-            const float ez = magnitude_of((r[6] * hx + r[7] * hy) + r[8] * hz);
+            lanes->middle[i][k] = ((r[3 * i] * vx + r[3 * i + 1] * vy) + r[3 * i + 2] * vz) + t[i];
+            lanes->half_edge[i][k] = (r[3 * i] * hx + r[3 * i + 1] * hy) + r[3 * i + 2] * hz;
+            lanes->reach[i][k] = magnitude_of(lanes->half_edge[i][k]);
+        }
+    }
+    FOR_LANES(k, VERTICES_AT_ONCE) lanes->away[k] = 0.0f;
+}
+
+// Moves those that lie at the present pose half-way to the next.
+DEVICE void move_edges(MovingLanes* lanes, READS(DirectedPair) next, READS(VertexBlock) block, uint first) {
+    MovingLanes then;
+    float way2[VERTICES_AT_ONCE] = {0}, turn2[VERTICES_AT_ONCE] = {0};
+    place_edges(&then, next, block, first);
+    for (int i = 0; i < 3; ++i) {
+        FOR_LANES(k, VERTICES_AT_ONCE) {
+            const float way = 0.5f * (then.middle[i][k] - lanes->middle[i][k]);
+            const float turn = 0.5f * (then.half_edge[i][k] - lanes->half_edge[i][k]);
+            lanes->middle[i][k] += way;
+            lanes->half_edge[i][k] += turn;
+            lanes->reach[i][k] = (magnitude_of(lanes->half_edge[i][k]) + magnitude_of(way)) + magnitude_of(turn);
+            way2[k] += way * way;
+            turn2[k] += turn * turn;
+        }
+    }
+    FOR_LANES(k, VERTICES_AT_ONCE) lanes->away[k] = 1.0001f * (root_of(way2[k]) + root_of(turn2[k]));
+}
+
+// The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
+// be far from the surface: it does not enter the balls around their halves. next: where the pairs will be; null: they
+// stay. clears: 1: it tells, too, how far the others stay away.
+KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(DirectedPair) next,
+                        READS(float) margins, READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory,
+                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
+    FOR_EACH_VERTICES(i, first, count) {
+        READS(DirectedPair) pair = pairs + found_blocks[i].pair;
+        READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
+        const float margin = margins[found_blocks[i].pair];
+        const float half_least = least ? 0.5f * least[found_blocks[i].pair] : 0.0f;
+        float b[6];
+        for (int k = 0; k < 3; ++k) {
+            b[k] = pair->bounds[k] - margin;
+            b[3 + k] = pair->bounds[3 + k] + margin;
+        }
+        MovingLanes edges;
+        place_edges(&edges, pair, block, first);
+        if (next) move_edges(&edges, next + found_blocks[i].pair, block, first);
+        int found[VERTICES_AT_ONCE];
+        FOR_LANES(k, VERTICES_AT_ONCE) {
+            const float x = edges.middle[0][k], y = edges.middle[1][k], z = edges.middle[2][k];
+            const float ex = edges.reach[0][k], ey = edges.reach[1][k], ez = edges.reach[2][k];
             const uint inside = (x + ex >= b[0]) & (x - ex <= b[3]) & (y + ey >= b[1]) & (y - ey <= b[4])
                                 & (z + ez >= b[2]) & (z - ez <= b[5]) & (block->exit[first + k] >= half_least);
-            found.inside[k] = -(int)inside;
-            found.x[k] = x;
-            found.y[k] = y;
-            found.z[k] = z;
-            quarter[0][k] = 0.5f * ((r[0] * hx + r[1] * hy) + r[2] * hz);
-            quarter[1][k] = 0.5f * ((r[3] * hx + r[4] * hy) + r[5] * hz);
-            quarter[2][k] = 0.5f * ((r[6] * hx + r[7] * hy) + r[8] * hz);
+            found[k] = -(int)inside;
         }
-        if (clears == 0u && pack_vertices(found.inside) == 0u) continue;
+        if (clears == 0u && pack_vertices(found) == 0u) continue;
         READS(ShapeHeader) target = shapes + pair->target;
         const Clearance grid = clearance_of(target);
         READS(uint) balls = AT(memory, uint, target->clearances);
         float beyond[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
-            const float qx = quarter[0][k], qy = quarter[1][k], qz = quarter[2][k];
-            const float one = safe_distance(grid, balls, found.x[k] - qx, found.y[k] - qy, found.z[k] - qz, 0.0f);
-            const float two = safe_distance(grid, balls, found.x[k] + qx, found.y[k] + qy, found.z[k] + qz, 0.0f);
-            beyond[k] = (one < two ? one : two) - (0.50025f * block->exit[first + k] + margin);
-            found.inside[k] &= -(int)(beyond[k] <= 0.0f);
+            const float x = edges.middle[0][k], y = edges.middle[1][k], z = edges.middle[2][k];
+            const float qx = 0.5f * edges.half_edge[0][k], qy = 0.5f * edges.half_edge[1][k];
+            const float qz = 0.5f * edges.half_edge[2][k];
+            const float one = safe_distance(grid, balls, x - qx, y - qy, z - qz, 0.0f);
+            const float two = safe_distance(grid, balls, x + qx, y + qy, z + qz, 0.0f);
+            beyond[k] = (one < two ? one : two) - ((0.50025f * block->exit[first + k] + margin) + edges.away[k]);
+            found[k] &= -(int)(beyond[k] <= 0.0f);
         }
         if (clears != 0u) {
             // Those that come into the bounds later may be as near as these.
             FOR_LANES(k, VERTICES_AT_ONCE) {
-                const float gap = bounds_gap(b, found.x[k], found.y[k], found.z[k]) - 1.0005f * block->exit[first + k];
+                const float gap = bounds_gap(b, edges.middle[0][k], edges.middle[1][k], edges.middle[2][k])
+                                  - (1.0005f * block->exit[first + k] + edges.away[k]);
                 const float free = gap > beyond[k] ? gap : beyond[k];
                 const uint asked =
                     (uint)(block->vertex[first + k] != NONE) & (uint)(block->exit[first + k] >= half_least);
@@ -104,7 +156,7 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
             const float steps = least_of_vertices(beyond) / target->tolerance;
             MIN_TO(&found_blocks[i].clear, steps > 0.0f ? (uint)(steps < MOST_CLEAR ? steps : MOST_CLEAR) : 0u);
         }
-        const uint lanes = pack_vertices(found.inside);
+        const uint lanes = pack_vertices(found);
         ADD_TO(&found_blocks[i].lanes, lanes << first);
         ADD_TO(counts + i, bit_count(lanes));
     }
@@ -112,9 +164,10 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
 
 // Edges of a group, one in each lane, target frame.
 STRUCT(EdgeGroup) {
-    float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP]; // arm: from the middle to an end
-    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];   // its box, grown by the margin
-    float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];    // of the arm; metres
+    float middle[3][RAYS_IN_GROUP], arm[3][RAYS_IN_GROUP];  // arm: from the middle to an end
+    float low[3][RAYS_IN_GROUP], high[3][RAYS_IN_GROUP];    // its box, grown by the margin
+    float length[RAYS_IN_GROUP], margin[RAYS_IN_GROUP];     // of the arm; metres
+    float way[3][RAYS_IN_GROUP], way_length[RAYS_IN_GROUP]; // from here, half-way to the next step, there and back
     uint pair[RAYS_IN_GROUP];
 };
 
@@ -122,7 +175,8 @@ STRUCT(EdgeGroup) {
 // null, those of a single edge to `near`, all of them.
 STRUCT(EdgeArrays) {
     READS(DirectedPair) pairs;
-    READS(float) margins; // by pair
+    READS(DirectedPair) next; // null: the pairs stay
+    READS(float) margins;     // by pair
     READS(ShapeHeader) shapes;
     READS(ulong) memory;
     READS(Ray) rays;
@@ -154,11 +208,15 @@ DEVICE uint triangles_in(const EdgeGroup* group, uint r, READS(TriangleBlock) bl
 
 // Of some triangles of a block those to which edge r comes within its margin, and some others close to it: its ends are
 // not both farther on one side of the plane, and its line does not pass the triangle farther outside. A volume of two
-// edges is at most the product of their lengths times their distance.
+// edges is at most the product of their lengths times their distance. Of an edge on its way: the same for all that it
+// passes, and the triangle reaches the plane in which its middle moves along.
 DEVICE uint triangles_near(const EdgeGroup* group, uint r, READS(TriangleBlock) block, uint some) {
     const float mx = group->middle[0][r], my = group->middle[1][r], mz = group->middle[2][r];
     const float hx = group->arm[0][r], hy = group->arm[1][r], hz = group->arm[2][r];
     const float length = group->length[r], margin = group->margin[r];
+    const float wx = group->way[0][r], wy = group->way[1][r], wz = group->way[2][r], way = group->way_length[r];
+    const float sx = wy * hz - wz * hy, sy = wz * hx - wx * hz, sz = wx * hy - wy * hx;
+    const float side_margin = margin * root_of((sx * sx + sy * sy) + sz * sz);
     int near[TRIANGLE_LANES] = {0};
     // A GPU's thread tests one after the other, and only those asked for.
     FOR_LANES(k, TRIANGLE_LANES) {
@@ -176,14 +234,20 @@ DEVICE uint triangles_near(const EdgeGroup* group, uint r, READS(TriangleBlock) 
         const float along = (nx * hx + ny * hy) + nz * hz;
         const float plane_margin =
             margin * root_of((nx * nx + ny * ny) + nz * nz) + EDGE_ROUNDING * (longest * longest) * (size + length);
-        const uint meets_plane = (uint)(height <= magnitude_of(along) + plane_margin);
+        const float rise = magnitude_of((nx * wx + ny * wy) + nz * wz);
+        const uint meets_plane = (uint)(height <= (magnitude_of(along) + rise) + plane_margin);
         const float cx = hy * az - hz * ay, cy = hz * ax - hx * az, cz = hx * ay - hy * ax;
         const float w = (px * cx + py * cy) + pz * cz;
         const float v = -((qx * cx + qy * cy) + qz * cz);
         const float u = (along - v) - w;
-        const float off = (length * longest) * (margin + EDGE_ROUNDING * (size + longest));
+        const float off = (length * longest) * ((margin + way) + EDGE_ROUNDING * (size + longest));
         const uint outwards = (u >= -off) & (v >= -off) & (w >= -off), inwards = (u <= off) & (v <= off) & (w <= off);
-        near[k] = -(int)(meets_plane & (outwards | inwards));
+        const float one = (sx * ax + sy * ay) + sz * az;
+        const float two = one + ((sx * px + sy * py) + sz * pz), three = one + ((sx * qx + sy * qy) + sz * qz);
+        const float aside = side_margin + EDGE_ROUNDING * (way * length) * (size + longest);
+        const uint left = (one > aside) & (two > aside) & (three > aside);
+        const uint right = (one < -aside) & (two < -aside) & (three < -aside);
+        near[k] = -(int)((meets_plane & (outwards | inwards)) & ~(left | right) & 1u);
     }
     return pack_sixteen(near) & some;
 }
@@ -203,17 +267,33 @@ DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
 }
 
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
-    const SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
+    SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
+    float way2 = 0.0f, turn2 = 0.0f, passed[3] = {0.0f, 0.0f, 0.0f};
+    for (int i = 0; i < 3; ++i) group->way[i][r] = 0.0f;
+    if (arrays->next) {
+        const SourceRay then = source_ray(arrays->next + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
+        for (int i = 0; i < 3; ++i) {
+            const float way = 0.5f * (then.position[i] - edge.position[i]);
+            const float turn = 0.5f * (then.direction[i] - edge.direction[i]);
+            edge.position[i] += way;
+            edge.direction[i] += turn;
+            group->way[i][r] = way;
+            passed[i] = magnitude_of(way) + magnitude_of(turn);
+            way2 += way * way;
+            turn2 += turn * turn;
+        }
+    }
     const float margin = arrays->margins[ray.pair];
     for (int i = 0; i < 3; ++i) {
-        const float reach = magnitude_of(edge.direction[i]) + margin;
+        const float reach = (magnitude_of(edge.direction[i]) + passed[i]) + margin;
         group->middle[i][r] = edge.position[i];
         group->arm[i][r] = edge.direction[i];
         group->low[i][r] = edge.position[i] - reach;
         group->high[i][r] = edge.position[i] + reach;
     }
     group->length[r] = 1.0005f * edge.reach;
-    group->margin[r] = margin;
+    group->margin[r] = margin + 1.0001f * root_of(turn2);
+    group->way_length[r] = 1.0001f * root_of(way2);
     group->pair[r] = ray.pair;
 }
 
@@ -271,10 +351,11 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
     }
 }
 
-KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
-                       READS(ulong) memory, READS(Ray) rays, WRITES(EdgeHits) hits, WRITES(uint) counts) {
+KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) margins,
+                       READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays, WRITES(EdgeHits) hits,
+                       WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-    const EdgeArrays arrays = {pairs, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
+    const EdgeArrays arrays = {pairs, next, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -292,9 +373,9 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) mar
 }
 
 // Edges with more faces than EdgeHits holds are cast again.
-KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) margins, READS(ShapeHeader) shapes,
-                        READS(ulong) memory, READS(Ray) rays, READS(EdgeHits) hits, READS(uint) firsts,
-                        WRITES(NearEdge) near) {
+KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) margins,
+                        READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays, READS(EdgeHits) hits,
+                        READS(uint) firsts, WRITES(NearEdge) near) {
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
@@ -304,7 +385,7 @@ KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(float) ma
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
-            const EdgeArrays arrays = {pairs, margins, shapes, memory, rays, none, near + firsts[i]};
+            const EdgeArrays arrays = {pairs, next, margins, shapes, memory, rays, none, near + firsts[i]};
             EdgeGroup group;
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
             cast_together(&arrays, &group, 1u, i);

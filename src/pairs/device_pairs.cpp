@@ -16,25 +16,28 @@ namespace {
 // Bits, not values: 0 and -0 are one place, but not one contact.
 using PlaceBits = std::array<std::uint64_t, 13>;
 
-kernels::BodyPlace place_of(const PlacedBody& body, kernels::uint slot) {
-    const Vec3& t = body.centred.translation;
+kernels::BodyPlace place_of(const PlacedBody& body, const Pose& pose, kernels::uint slot) {
+    const Vec3& t = pose.translation;
     kernels::BodyPlace place{{}, {t.x, t.y, t.z}, body.shape_index, slot};
-    std::ranges::copy(body.centred.rotation, place.rotation);
+    std::ranges::copy(pose.rotation, place.rotation);
     return place;
 }
 
 } // namespace
 
-void DevicePairs::list_changes(const Update& update) {
-    moved_.clear();
-    changed_.clear();
-    sent_.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
+void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placing& at) {
+    at.moved.clear();
+    at.sent.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
     for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
         if (update.bodies[i].shape == nullptr) continue;
-        const kernels::BodyPlace now = place_of(update.bodies[i], i);
-        if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(sent_[i])) continue;
-        moved_.push_back(sent_[i] = now);
+        const kernels::BodyPlace now = place_of(update.bodies[i], update.bodies[i].*pose, i);
+        if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(at.sent[i])) continue;
+        at.moved.push_back(at.sent[i] = now);
     }
+}
+
+void DevicePairs::list_changes(const Update& update) {
+    changed_.clear();
     const auto keep = [](std::size_t, std::size_t, std::size_t) {};
     const auto change = [&](kernels::uint slot, const kernels::PairBodies& bodies) {
         if (slot == pairs_.size()) pairs_.emplace_back();
@@ -61,30 +64,39 @@ void DevicePairs::list_changes(const Update& update) {
     }
 }
 
-void DevicePairs::place(const Update& update) {
+void DevicePairs::place(const Update& update, bool next) {
     if (update.pairs.size() >= NONE / 2) throw std::length_error("more than 2^31 pairs in one step; give fewer");
     if (is_mostly_empty(slots_.end(), update.pairs.size())) clear();
     list_changes(update);
-    placed_.resize(update.device, 2 * pairs_.size());
-    if (!update.device.traits().has_double) return place_on_host(update);
-    device_bodies_.extend(update.device, sent_.size());
     device_pairs_.extend(update.device, pairs_.size());
-    device_moved_.write(update.device, moved_);
     device_changed_.write(update.device, changed_);
-    launch<KernelId::apply_changes>(update.device, moved_.size() + changed_.size(),
-                                    static_cast<kernels::uint>(moved_.size()), device_moved_, device_changed_,
-                                    device_bodies_, device_pairs_);
-    launch<KernelId::place_pairs>(update.device, pairs_.size(), device_pairs_, device_bodies_, update.arrays().headers,
-                                  placed_);
+    list_moved(update, &PlacedBody::centred, now_);
+    place(update, now_);
+    changed_.clear(); // both have the same pairs
+    if (!next) return;
+    list_moved(update, &PlacedBody::next, next_);
+    place(update, next_);
 }
 
-void DevicePairs::place_on_host(const Update& update) {
-    host_placed_.resize(2 * pairs_.size());
+void DevicePairs::place(const Update& update, Placing& at) {
+    at.placed.resize(update.device, 2 * pairs_.size());
+    if (!update.device.traits().has_double) return place_on_host(update, at);
+    at.device_bodies.extend(update.device, at.sent.size());
+    at.device_moved.write(update.device, at.moved);
+    launch<KernelId::apply_changes>(update.device, at.moved.size() + changed_.size(),
+                                    static_cast<kernels::uint>(at.moved.size()), at.device_moved, device_changed_,
+                                    at.device_bodies, device_pairs_);
+    launch<KernelId::place_pairs>(update.device, pairs_.size(), device_pairs_, at.device_bodies,
+                                  update.arrays().headers, at.placed);
+}
+
+void DevicePairs::place_on_host(const Update& update, Placing& at) {
+    at.host_placed.resize(2 * pairs_.size());
     update.executor.run(static_cast<kernels::uint>(pairs_.size()), 256, [&](kernels::uint begin, kernels::uint end) {
         kernels::prototype::place_pairs({begin, end}, static_cast<kernels::uint>(pairs_.size()), pairs_.data(),
-                                        sent_.data(), update.shapes.headers().data(), host_placed_.data());
+                                        at.sent.data(), update.shapes.headers().data(), at.host_placed.data());
     });
-    placed_.write(update.device, host_placed_);
+    at.placed.write(update.device, at.host_placed);
 }
 
 } // namespace raycontact

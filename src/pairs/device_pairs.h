@@ -10,7 +10,8 @@ namespace raycontact {
 /// pair, in double. If it has no double, the host places them with the same text.
 class DevicePairs {
 public:
-    void place(const Update& update);
+    /// next: also where they will be at the next step.
+    void place(const Update& update, bool next = false);
     void clear() { *this = {}; }
     std::uint64_t bytes() const {
         return slots_.pairs().size()
@@ -19,25 +20,32 @@ public:
     }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
-    const Array<kernels::DirectedPair>& placed() const { return placed_; }
+    const Array<kernels::DirectedPair>& placed() const { return now_.placed; }
+    /// The same at the next step; empty unless asked for.
+    const Array<kernels::DirectedPair>& next_placed() const { return next_.placed; }
     /// By the same index: the directed index among the step's pairs; anything where the slot has no pair.
     std::span<const std::uint32_t> directed() const { return directed_; }
 
 private:
+    /// The pairs at one time.
+    struct Placing {
+        std::vector<kernels::BodyPlace> sent, moved;    ///< by body; of those that moved
+        std::vector<kernels::DirectedPair> host_placed; ///< of a device without double
+        Array<kernels::BodyPlace> device_bodies, device_moved;
+        Array<kernels::DirectedPair> placed;
+    };
+    void list_moved(const Update& update, Pose PlacedBody::*pose, Placing& at);
     void list_changes(const Update& update);
-    void place_on_host(const Update& update);
+    void place(const Update& update, Placing& at);
+    void place_on_host(const Update& update, Placing& at);
 
     PairSlots slots_;
     std::vector<std::uint32_t> directed_;
-    std::vector<kernels::BodyPlace> sent_, moved_; ///< by body; of those that moved
-    std::vector<kernels::PairBodies> pairs_;       ///< by slot
+    std::vector<kernels::PairBodies> pairs_; ///< by slot
     std::vector<kernels::PairChange> changed_;
-    std::vector<kernels::DirectedPair> host_placed_; ///< of a device without double
-
-    Array<kernels::BodyPlace> device_bodies_, device_moved_;
+    Placing now_, next_;
     Array<kernels::PairBodies> device_pairs_;
     Array<kernels::PairChange> device_changed_;
-    Array<kernels::DirectedPair> placed_;
 };
 
 } // namespace raycontact

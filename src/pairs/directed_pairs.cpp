@@ -11,6 +11,10 @@ double smaller_size(const PlacedBody& a, const PlacedBody& b) {
     return std::min(a.shape->data().diagonal, b.shape->data().diagonal);
 }
 
+double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b) {
+    return settings.speculative_margin ? *settings.speculative_margin : speculative_share * smaller_size(a, b);
+}
+
 void place_source(const PlacedBody& source, const PlacedBody& target, kernels::DirectedPair& placed) {
     place_source(source, target, relative_pose(target.centred, source.centred), placed);
 }

@@ -5,6 +5,7 @@
 
 #include "slot_pair.h"
 
+#include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
 namespace raycontact {
@@ -16,6 +17,7 @@ struct PlacedBody {
     std::uint32_t generation = 0;  ///< tells it from another that had its slot
     Pose pose;                     ///< of the body frame
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
+    Pose next;                     ///< of that frame, where it is expected at the next step; with speculative contacts
 };
 
 /// The pose of the frame about the shape's centre.
@@ -25,6 +27,9 @@ inline Pose centred_pose(const Shape& shape, const Pose& pose) {
 
 /// The box diagonal of the smaller body, metres: the size of the pair.
 double smaller_size(const PlacedBody& a, const PlacedBody& b);
+
+/// How near two bodies have speculative contacts that do not hurry, metres.
+double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b);
 
 /// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
 /// against b, + 1 for vertices of b against a (docs/design.md).

@@ -29,8 +29,8 @@ float distance(const float (&a)[3], const float (&b)[3]) {
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
     bodies_.resize(bodies.size());
     lasts_.resize(bodies.size());
+    next_.clear();
     executor.each(bodies.size(), 1024, [&](std::uint32_t i) {
-        Body& body = bodies_[i];
         Last& last = lasts_[i];
         if (bodies[i].shape == nullptr) {
             last.known = false;
@@ -40,21 +40,36 @@ void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
         // Steps of a method that asks for no motion may have passed, and a body with them.
         const bool known = last.known && last.generation == bodies[i].generation;
         const double shear = shear_bound(now);
-        const Pose& before = known ? last.centred : now;
-        const Vec3 shift = now.translation - before.translation;
-        round_to(body.shift, shift);
-        round_to(body.centre, now.translation);
-        body.centre_lost = static_cast<float>(lost_of_float * length(now.translation));
-        const double far = length(shift);
-        body.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
-        body.turn = static_cast<float>(turn_bound(before, now, std::max(shear, last.shear)));
-        body.reach = static_cast<float>(bodies[i].shape->data().reach);
+        bodies_[i] = body_of(bodies[i], known ? last.centred : now, now, std::max(shear, last.shear));
         last = {now, shear, bodies[i].generation, true};
     });
 }
 
-double Motion::pair_bound(const SlotPair& pair) const {
-    const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
+void Motion::expect(Executor& executor, std::span<const PlacedBody> bodies) {
+    next_.resize(bodies.size());
+    executor.each(bodies.size(), 1024, [&](std::uint32_t i) {
+        if (bodies[i].shape == nullptr) return;
+        const Pose &now = bodies[i].centred, &next = bodies[i].next;
+        next_[i] = body_of(bodies[i], now, next, std::max(lasts_[i].shear, shear_bound(next)));
+    });
+}
+
+// `apart` is taken where the motion ends.
+Motion::Body Motion::body_of(const PlacedBody& body, const Pose& from, const Pose& to, double shear) {
+    Body moved;
+    const Vec3 shift = to.translation - from.translation;
+    round_to(moved.shift, shift);
+    round_to(moved.centre, to.translation);
+    moved.centre_lost = static_cast<float>(lost_of_float * length(to.translation));
+    const double far = length(shift);
+    moved.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
+    moved.turn = static_cast<float>(turn_bound(from, to, shear));
+    moved.reach = static_cast<float>(body.shape->data().reach);
+    return moved;
+}
+
+double Motion::bound(std::span<const Body> bodies, const SlotPair& pair) {
+    const Body &a = bodies[pair.first], &b = bodies[pair.second];
     const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
     const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);

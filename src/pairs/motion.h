@@ -16,11 +16,15 @@ class Motion {
 public:
     /// Once a step, with every body of the scene.
     void update(Executor& executor, std::span<const PlacedBody> bodies);
+    /// After update(), with where the bodies are expected at the next step.
+    void expect(Executor& executor, std::span<const PlacedBody> bodies);
 
     /// Prefetches what pair_bound() reads of the second body; the first body is mostly that of the last pair.
     void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
     /// An upper bound of how far any vertex of either body moved in the frame of the other, metres.
-    double pair_bound(const SlotPair& pair) const;
+    double pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
+    /// The same for the way that is before the bodies (PlacedBody::next); 0 until expect().
+    double pair_way(const SlotPair& pair) const { return next_.empty() ? 0 : bound(next_, pair); }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
@@ -45,7 +49,10 @@ private:
         std::uint32_t generation = 0;
         bool known = false;
     };
-    std::vector<Body> bodies_;
+    static Body body_of(const PlacedBody& body, const Pose& from, const Pose& to, double shear);
+    static double bound(std::span<const Body> bodies, const SlotPair& pair);
+
+    std::vector<Body> bodies_, next_;
     std::vector<Last> lasts_;
 };
 

@@ -22,6 +22,8 @@ struct Update {
     const Motion& motion;            ///< not up to date with `standard`, which does not use it
     const Settings& settings;
 
+    /// Whether the edges near the other body are asked for.
+    bool asks_near() const { return settings.features == Features::edges || settings.is_speculative(); }
     const ShapeStore::Arrays& arrays() const { return shapes.arrays(); }
 };
 

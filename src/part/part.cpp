@@ -30,7 +30,10 @@ void Part::begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> p
     pairs_ = pairs;
     settings_ = &settings;
     adopted_.clear();
-    if (needs_motion(settings, device_->traits())) motion_.update(*executor_, bodies);
+    if (needs_motion(settings, device_->traits())) {
+        motion_.update(*executor_, bodies);
+        if (settings.is_speculative()) motion_.expect(*executor_, bodies);
+    }
     pipeline_.begin(update(bodies, pairs));
 }
 
@@ -42,7 +45,7 @@ void Part::end(std::vector<Contact>& contacts) {
 
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
     placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
-    if (settings_->features != Features::edges) return;
+    if (!now.asks_near()) return;
     edges_.run(now, found.contacts(), found.asked(), contacts);
 }
 

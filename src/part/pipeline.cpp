@@ -48,7 +48,7 @@ void Pipeline::give_back(const Update& last) {
     }
     if (has_near_) edges_.give_back();
     batch_.give_back(rays);
-    raycontact::give_back(found_, local_, near_, asked_);
+    raycontact::give_back(found_, local_, near_, asked_, margins_, device_margins_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -84,9 +84,31 @@ void Pipeline::begin(const Update& update) {
         break;
     }
     gather(update);
-    has_near_ = update.settings.features == Features::edges && finds(update) != Finds::certified;
-    if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update);
-    if (has_near_) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
+    has_near_ = update.asks_near() && finds(update) != Finds::certified;
+    if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update, update.settings.is_speculative());
+    if (has_near_) set_margins(update);
+    cast_edges(update);
+}
+
+// Of the pairs that an array has at 2 x slot, those of slots without a pair mean nothing.
+void Pipeline::set_margins(const Update& update) {
+    margins_.clear();
+    if (update.settings.is_speculative()) {
+        const std::span<const std::uint32_t> directed = pairs_of(update).directed();
+        margins_.resize(directed.size());
+        for (std::size_t i = 0; i < directed.size(); ++i) {
+            if (directed[i] / 2 >= update.pairs.size()) continue;
+            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed[i]);
+            margins_[i] = static_cast<float>(1.000001 * speculative_margin(update.settings, source, target));
+        }
+    }
+    device_margins_.write(update.device, margins_);
+}
+
+void Pipeline::cast_edges(const Update& update) {
+    if (!has_near_) return;
+    const DevicePairs& pairs = pairs_of(update);
+    edges_.cast(update, pairs.placed(), pairs.next_placed(), {device_margins_, {}, {}}, batch_);
 }
 
 // All, on the device.
@@ -102,25 +124,25 @@ void Pipeline::end(const Update& update) {
         if (all_written && all_cast && all_near) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather(update);
-        if (!all_near) edges_.cast(update, pairs_of(update).placed(), {{}, {}, {}}, batch_);
+        if (!all_near) cast_edges(update);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(found_.values(), batch_.directed, update.pairs.size());
-    if (update.settings.features == Features::edges && !has_near_) certified_.find_edges(update, local_, batch_);
+    if (update.asks_near() && !has_near_) certified_.find_edges(update, local_, batch_);
     if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
     list_asked(update);
 }
 
 void Pipeline::list_asked(const Update& update) {
     asked_.clear();
-    if (update.settings.features != Features::edges) return;
+    if (!update.asks_near()) return;
+    const bool speculative = update.settings.is_speculative();
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
         if (!has_near_ && certified_.is_apart(i) && !in_contact) continue;
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-        if (!asks_edges(a, b)) continue;
-        if (in_contact && has_short_edges_alone(a, b)) continue;
+        if (!speculative && (!asks_edges(a, b) || (in_contact && has_short_edges_alone(a, b)))) continue;
         AskedPair asked{i, {}};
         if (has_near_)
             asked.near = {near_.of(2 * i), near_.of(2 * i + 1)};

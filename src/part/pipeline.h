@@ -23,7 +23,8 @@ public:
     void end(const Update& update);
     /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }
-    /// The pairs whose edges may cross faces, or that may be inside one another, in order; none without edges.
+    /// The pairs whose edges may cross faces, or have speculative contacts, or that may be inside one another, in
+    /// order; none without edges and speculative contacts.
     std::span<const AskedPair> asked() const { return asked_; }
 
     /// As Part's.
@@ -42,6 +43,8 @@ public:
 private:
     void gather(const Update& update);
     bool read(Device& device);
+    void set_margins(const Update& update);
+    void cast_edges(const Update& update);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
 
@@ -51,6 +54,8 @@ private:
     DevicePairs pairs_; ///< all, where the method places only some
     RayBatch batch_;
     EdgeRays edges_;
+    std::vector<float> margins_; ///< of speculative contacts, by directed pair of the device
+    Array<float> device_margins_;
     Results<kernels::LocalContact> found_; ///< in the order of their rays
     ByPair<kernels::LocalContact> local_;
     ByPair<NearEdge> near_;

@@ -90,10 +90,11 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
 }
 
 void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
-                              const Array<float>& margins, const Array<float>& least, bool clears,
-                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
+                              const Array<kernels::DirectedPair>& next, const Array<float>& margins,
+                              const Array<float>& least, bool clears, const Array<kernels::Totals>& totals,
+                              std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::count_edges>(update.device, found_, clears ? 1u : 0u, pairs, margins, least, arrays.headers,
+    launch<KernelId::count_edges>(update.device, found_, clears ? 1u : 0u, pairs, next, margins, least, arrays.headers,
                                   arrays.memory, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }

@@ -66,7 +66,7 @@ void CertifiedRays::list_slices() {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
         for (const std::uint32_t i : slice.as_standard) {
             if (table_.hot(i).open) close(table_.state(i));
-            table_.hot(i) = {-1, table_.hot(i).edges, false, false, table_.hot(i).apart};
+            table_.hot(i) = {-1, table_.hot(i).edges, table_.hot(i).margin, false, false, table_.hot(i).apart};
             directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
         }
     }

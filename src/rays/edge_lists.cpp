@@ -27,7 +27,9 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
     due_.clear();
     for (const WakeUp::Slice& slice : slices)
         for (const DueEdges& due : slice.edges) {
-            const bool in_contact = contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
+            // What comes near is asked of short edges, too.
+            const bool in_contact =
+                !update.settings.is_speculative() && contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
             WatchedPair& state = table.state(due.pair);
             if (!due.due && (in_contact || state.edges.all)) continue;
             const auto [first, second] = update.pairs[due.pair];
@@ -41,7 +43,7 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
             due_.push_back({due, in_contact ? static_cast<float>(short_length(a, b)) : 0});
         }
     if (due_.empty()) {
-        resize(update.device, 0, pairs_, margins_, ahead_, least_);
+        resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
         directed_.clear();
         found_.set({}, {}, 0);
         return rays_.rest();
@@ -51,20 +53,26 @@ void EdgeLists::find(const Update& update, std::span<const WakeUp::Slice> slices
 }
 
 void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
+    const bool move = std::ranges::any_of(due, [](const Search& search) { return search.due.moves; });
     resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
+    next_.resize(update.device, move ? pairs_.size() : 0);
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
     update.executor.each(due.size(), 128, [&](std::uint32_t k) {
         for (std::uint32_t side = 0; side < 2; ++side) {
             const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].due.pair + side);
             place_source(source, target, pairs_.in_place()[2 * k + side]);
-            margins_.in_place()[2 * k + side] = due[k].due.margin;
+            if (due[k].due.moves)
+                place_source(source, target, relative_pose(target.next, source.next), next_.in_place()[2 * k + side]);
+            else if (move)
+                next_.in_place()[2 * k + side] = pairs_.in_place()[2 * k + side];
+            margins_.in_place()[2 * k + side] = due[k].due.margin + due[k].due.speculative;
             ahead_.in_place()[2 * k + side] = due[k].due.ahead;
             least_.in_place()[2 * k + side] = due[k].least;
         }
     });
     do {
-        rays_.cast(update, pairs_, {margins_, ahead_, least_}, batch);
+        rays_.cast(update, pairs_, next_, {margins_, ahead_, least_}, batch);
         const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
         update.device.queue().read(pieces);
         check_sums(batch.sums);
@@ -88,12 +96,12 @@ void EdgeLists::find(const Update& update, std::span<const Search> due, WatchedP
 
 std::uint64_t EdgeLists::bytes() const {
     return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
-           + due_.size() * sizeof(Search)
+           + due_.size() * sizeof(Search) + next_.size() * sizeof(kernels::DirectedPair)
            + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
 }
 
 void EdgeLists::give_back() {
-    raycontact::give_back(due_, directed_, pairs_, margins_, ahead_, least_, rays_, found_);
+    raycontact::give_back(due_, directed_, pairs_, next_, margins_, ahead_, least_, rays_, found_);
 }
 
 } // namespace raycontact

@@ -40,6 +40,7 @@ private:
     std::vector<Search> due_;
     std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
     Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
+    Array<kernels::DirectedPair> next_;   ///< where they will be, if any moves
     Array<float> margins_, ahead_, least_;
     EdgeRays rays_;
     ByPair<kernels::NearEdge> found_;

@@ -13,8 +13,8 @@ constexpr std::size_t least_room = 4096; // edges
 
 } // namespace
 
-void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Reach& reach,
-                    const RayBatch& batch) {
+void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pairs,
+                    const Array<kernels::DirectedPair>& next, const Reach& reach, const RayBatch& batch) {
     Device& device = update.device;
     const ShapeStore::Arrays& arrays = update.arrays();
     const Array<kernels::Totals>& totals = batch.totals;
@@ -22,19 +22,20 @@ void EdgeRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     resize(device, pairs.size(), margins_, horizons_);
     resize(device, room, rays_, hits_);
     counts_.resize(device, 1, room);
-    launch<KernelId::find_margins>(device, pairs.size(), pairs, reach.more, reach.ahead, arrays.headers, margins_,
+    search_.set(update.settings.is_speculative() ? BlockSearch::Sources::all_edges : BlockSearch::Sources::edges);
+    launch<KernelId::find_margins>(device, pairs.size(), pairs, next, reach.more, reach.ahead, arrays.headers, margins_,
                                    horizons_);
     search_.find(update, pairs, horizons_, totals, RayBatch::edge_block_sum);
-    search_.count_edges(update, pairs, margins_, reach.least, reach.ahead.size() > 0, totals, RayBatch::edge_ray_sum,
-                        room);
+    search_.count_edges(update, pairs, next, margins_, reach.least, reach.ahead.size() > 0, totals,
+                        RayBatch::edge_ray_sum, room);
     search_.write_rays(update, totals, RayBatch::edge_ray_sum, 0, rays_);
     const Count count = results_of(totals, RayBatch::edge_ray_sum, room);
-    launch<KernelId::cast_edges>(device, count, pairs, margins_, arrays.headers, arrays.memory, rays_, hits_,
+    launch<KernelId::cast_edges>(device, count, pairs, next, margins_, arrays.headers, arrays.memory, rays_, hits_,
                                  counts_.values());
     const Array<kernels::NearEdge>& found = found_.room(device);
     counts_.scan(device, count, totals, RayBatch::edge_sum, found.size());
-    launch<KernelId::write_edges>(device, items_of(totals, RayBatch::edge_sum, room), pairs, margins_, arrays.headers,
-                                  arrays.memory, rays_, hits_, counts_.firsts(), found);
+    launch<KernelId::write_edges>(device, items_of(totals, RayBatch::edge_sum, room), pairs, next, margins_,
+                                  arrays.headers, arrays.memory, rays_, hits_, counts_.firsts(), found);
 }
 
 bool EdgeRays::had_room(Device& device, const RayBatch& batch) {

@@ -16,9 +16,10 @@ public:
         const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
         const Array<float>& least;       ///< shorter edges are left out
     };
-    /// pairs: both directions of each pair side by side.
-    void cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Reach& reach,
-              const RayBatch& batch);
+    /// pairs: both directions of each pair side by side. next: the same at the next step, for edges that come near on
+    /// their way there; may be empty.
+    void cast(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<kernels::DirectedPair>& next,
+              const Reach& reach, const RayBatch& batch);
     /// Of a cast with `ahead`, in memory that host and device share: how far directed pair p can move before an edge
     /// comes nearer than `more` that is not found, metres.
     double clear(std::size_t p, float tolerance) { return search_.clear(p, margins_.in_place()[p], tolerance); }
@@ -35,7 +36,7 @@ public:
     void give_back();
 
 private:
-    BlockSearch search_{BlockSearch::Sources::edges};
+    BlockSearch search_;
     Array<float> margins_, horizons_; ///< by directed pair
     Array<kernels::Ray> rays_;
     Array<kernels::EdgeHits> hits_;

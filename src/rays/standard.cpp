@@ -26,7 +26,7 @@ void cast_in_full(const Update& update, RayBatch& batch) {
 }
 
 void StandardRays::begin(const Update& update, RayBatch& batch) {
-    pairs_.place(update);
+    pairs_.place(update, update.settings.is_speculative());
     batch.resize(update.device, std::max(batch.rays.size(), least_room));
     batch.pairs = &pairs_.placed();
     batch.directed = pairs_.directed();

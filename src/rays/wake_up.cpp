@@ -61,7 +61,7 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool stale[2] = {}, wakes[2] = {};
-    slack = {never, slack.edges, true, false, slack.apart};
+    slack = {never, slack.edges, slack.margin, true, false, slack.apart};
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
@@ -104,12 +104,17 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
 // The cheap bound comes first; most pairs at rest need no more.
 void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                         Slice& slice) {
-    const bool edges = update.settings.features == Features::edges;
+    const bool speculative = update.settings.is_speculative(), edges = update.asks_near();
+    // A pair that hurries needs what its whole way passes.
+    const auto is_fast = [&](double way, const Slack& slack) { return way > double(slack.margin); };
+    const auto is_due = [&](double way, const Slack& slack) {
+        return !(slack.edges > 0) || (is_fast(way, slack) && !(slack.edges > way));
+    };
     const auto wants = [&](std::uint32_t i, Slack& slack) {
         const double bound = update.motion.pair_bound(update.pairs[i]);
         slack.metres -= bound;
         slack.edges -= bound;
-        return !(slack.metres > 0) || slack.casts || (edges && !(slack.edges > 0));
+        return !(slack.metres > 0) || slack.casts || (edges && is_due(update.motion.pair_way(update.pairs[i]), slack));
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
@@ -126,13 +131,21 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
             wake_pair(update, table, i, speed, slice);
         }
         if (!edges) return;
-        const bool due = !(slack.edges > 0);
+        const double way = update.motion.pair_way(pair);
+        const bool due = is_due(way, slack);
         if (!due && state.edges.all) return;
-        if (asks_edges(update.bodies[pair.first], update.bodies[pair.second]))
-            slice.edges.add() = {i, static_cast<float>(edge_margin(state.edges, size, speed)),
-                                 static_cast<float>(std::clamp(4 * speed, 0.02 * size, 0.1 * size)), due};
-        else
+        const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
+        if (!speculative && !asks_edges(a, b)) {
             slack.edges = never;
+            return;
+        }
+        if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
+        slice.edges.add() = {i,
+                             static_cast<float>(edge_margin(state.edges, size, speed)),
+                             static_cast<float>(std::clamp(4 * speed, 0.02 * size, 0.1 * size)),
+                             slack.margin,
+                             due,
+                             is_fast(way, slack)};
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);

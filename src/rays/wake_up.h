@@ -46,6 +46,7 @@ struct WatchedPair {
 struct Slack {
     double metres = -1; ///< that the pair may move, by the cheap bound, before the exact one is computed
     double edges = -1;  ///< that it may move before its near edges are sought anew
+    float margin = 0;   ///< within which near edges have speculative contacts; 0: of none
     bool open = false;  ///< it has lists
     bool casts = false; ///< it has rays, to be decided in every step
     bool apart = false; ///< as AskedPair's, while its near edges last
@@ -69,7 +70,9 @@ inline constexpr double never = 1e300; ///< metres
 struct DueEdges {
     std::uint32_t pair;  ///< its place
     float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
+    float speculative;   ///< of what is needed: metres within which they have speculative contacts
     bool due;            ///< else they are sought only if short ones are missing
+    bool moves;          ///< what it meets on its way to the next step is near
 };
 
 using WatchedPairs = PairTable<WatchedPair, Slack>;

@@ -109,13 +109,13 @@ MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
     return hit;
 }
 
-Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+NearestPoint nearest_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 n = cross(b - a, c - a);
     const double size2 = dot(n, n);
     if (size2 > 1e-12 * dot(b - a, b - a) * dot(c - a, c - a) && dot(n, cross(b - a, p - a)) >= 0
         && dot(n, cross(c - b, p - b)) >= 0 && dot(n, cross(a - c, p - c)) >= 0)
-        return p - (dot(n, p - a) / size2) * n;
-    Vec3 best = a;
+        return {p - (dot(n, p - a) / size2) * n, 0};
+    NearestPoint best{a, 5};
     double least = never;
     const std::array corners{a, b, c};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -125,7 +125,8 @@ Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
         const Vec3 point = from + part * along, off = p - point;
         if (dot(off, off) < least) {
             least = dot(off, off);
-            best = point;
+            const std::size_t beside = part > 0 ? k + 1 : k + 2; // the edge that it shares a corner with
+            best = {point, 1u << k | (part > 0 && part < 1 ? 0u : 1u << (beside % 3))};
         }
     }
     return best;

@@ -48,8 +48,17 @@ struct NearestFace {
 NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough,
                          double bound = std::numeric_limits<double>::infinity());
 
+/// What of a triangle is nearest to a point.
+struct NearestPoint {
+    Vec3 point;
+    std::uint32_t edges = 0; ///< a bit for each edge that it lies on, from corner k to the next; 0: within the face
+};
+
 /// The point of a triangle that is nearest to p. Of a needle, whose normal is not accurate to some 1e-10, only the
 /// edges count; so it may be farther than that by a millionth of the needle's length.
-Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+NearestPoint nearest_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+inline Vec3 nearest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    return nearest_of(p, a, b, c).point;
+}
 
 } // namespace raycontact

@@ -64,6 +64,11 @@ HalfSpace plane_between(const Leaf& a, const Leaf& b) {
     return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), plane.pose, plane.stretch);
 }
 
+Settings with_defaults(Settings settings) {
+    settings.speculative = settings.speculative.value_or(true);
+    return settings;
+}
+
 const ManifoldSettings& checked(const ManifoldSettings& settings) {
     if (settings.keep_steps < 0 || settings.keep_steps > most_keep_steps)
         throw InputError("ManifoldSettings::keep_steps is " + std::to_string(settings.keep_steps) + "; give 0 to "
@@ -76,12 +81,13 @@ btVector3 velocity_at(const btCollisionObject& object, const btVector3& point) {
     return body ? body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition()) : btVector3(0, 0, 0);
 }
 
-// As Bullet's solver asks, with its own m_restitutionVelocityThreshold.
-bool bounces(const btManifoldPoint& point, const PairState& state) {
+// As Bullet's solver asks, with its own m_restitutionVelocityThreshold; and what will touch before the next step.
+bool bounces(const btManifoldPoint& point, const PairState& state, btScalar seconds) {
     if (!(point.m_combinedRestitution > 0)) return false;
     const btVector3 speed =
         velocity_at(*state.object0, point.m_positionWorldOnA) - velocity_at(*state.object1, point.m_positionWorldOnB);
-    return -speed.dot(point.m_normalWorldOnB) > btScalar(0.2);
+    const btScalar approach = -speed.dot(point.m_normalWorldOnB);
+    return approach > btScalar(0.2) && approach * seconds >= point.getDistance();
 }
 
 // Bullet takes gap and slop, by the length of the step, off the speed that restitution gives back; nothing of a depth
@@ -105,11 +111,11 @@ void turn_round_what_bounces(const PairState& state, btScalar seconds) {
     for (btPersistentManifold* manifold : state.patches.manifolds()) {
         for (int i = 0; i < manifold->getNumContacts(); ++i) {
             btManifoldPoint& point = manifold->getContactPoint(i);
-            if (point.getDistance() < 0 || !bounces(point, state)) continue;
+            if (point.getDistance() < 0 || !bounces(point, state, seconds)) continue;
             const PointKey key = CollisionDispatcher::key(point);
-            const bool coming =
-                std::ranges::any_of(state.candidates, [&](const Candidate& c) { return c.coming && c.key == key; });
-            if (!coming) continue; // held, or touching: as without `continuous`
+            const bool found = std::ranges::any_of(state.candidates,
+                                                   [&](const Candidate& c) { return c.speculative && c.key == key; });
+            if (!found) continue; // held, or touching: as without speculative contacts
             const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(key.child0)];
             const Leaf& leaf1 = state.record1.leaves[static_cast<std::size_t>(key.child1)];
             turn_round(point, btMin(diagonal(leaf0), diagonal(leaf1)), seconds);
@@ -149,7 +155,7 @@ struct CollisionDispatcher::State {
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void sort_batch();
-    void hand_out(std::span<const Contact> contacts, bool coming);
+    void hand_out(std::span<const Contact> contacts);
 
     CollisionDispatcher& dispatcher;
     ManifoldSettings manifolds;
@@ -173,7 +179,7 @@ struct CollisionDispatcher::State {
 CollisionDispatcher::CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings,
                                          const ManifoldSettings& manifolds, ConvexShapes convex)
     : btCollisionDispatcher(configuration),
-      state_(std::make_unique<State>(*this, settings, checked(manifolds), convex)) {}
+      state_(std::make_unique<State>(*this, with_defaults(settings), checked(manifolds), convex)) {}
 
 CollisionDispatcher::~CollisionDispatcher() = default;
 
@@ -188,7 +194,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.objects.mended() = {};
     const std::uint64_t made_before = s.objects.shapes().made();
     s.objects.sweep();
-    s.objects.look_ahead(s.scene.settings().continuous ? info.m_timeStep : 0);
+    s.objects.look_ahead(s.scene.settings().is_speculative() ? info.m_timeStep : 0);
 
     struct Visit final : btOverlapCallback {
         State& state;
@@ -211,8 +217,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.stats.mesh_pairs = s.pairs.size();
     s.scene.step(s.pairs);
     if (s.recorder) s.recorder->step();
-    s.hand_out(s.scene.contacts(), false);
-    s.hand_out(s.scene.coming_contacts(), true);
+    s.hand_out(s.scene.contacts());
     for (PairState* state : s.work)
         if (adds_are_told(*state->object0, *state->object1)) name_places(*state);
     for (std::size_t i = 0; i < s.work.size(); ++i) {
@@ -221,7 +226,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
         PairState& pair = *s.work[i];
         pair.patches.update(pair.candidates, pair.record0.pose, pair.record1.pose, s.manifolds, s.stats);
-        if (s.scene.settings().continuous) turn_round_what_bounces(pair, info.m_timeStep); // after the callbacks
+        if (s.scene.settings().is_speculative()) turn_round_what_bounces(pair, info.m_timeStep); // after the callbacks
     }
     s.stats.shapes_made = s.objects.shapes().made() - made_before;
     s.stats.made_rigid = s.objects.mended().made_rigid;
@@ -386,23 +391,23 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-// Vertices reach an open mesh from beyond its box; other methods follow, and `continuous` expects, what is still apart.
+// Vertices reach an open mesh from beyond its box; other methods follow, and speculative contacts have, what is apart.
 bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
     const Settings& settings = scene.settings();
-    if (settings.continuous || (settings.method != Method::standard && settings.method != Method::certified))
+    if (settings.is_speculative() || (settings.method != Method::standard && settings.method != Method::certified))
         return false;
     if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
     return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
 }
 
-// The batch alone knows other directions, and what is coming.
+// The batch alone knows other directions, and what does not touch yet.
 std::optional<HalfSpace> CollisionDispatcher::State::face_between(const Leaf& a, const Leaf& b) const {
     const bool box_is_0 = a.kind == Kind::convex;
     const Leaf& box = box_is_0 ? a : b;
     const Leaf& mesh = box_is_0 ? b : a;
     const Settings& settings = scene.settings();
-    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.continuous || settings.direction != Direction::reprojected
-        || box.stretch != no_stretch)
+    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.is_speculative()
+        || settings.direction != Direction::reprojected || box.stretch != no_stretch)
         return std::nullopt;
     return only_face(mesh.converted, mesh.pose, static_cast<const btBoxShape&>(*box.shape), box.pose);
 }
@@ -464,7 +469,7 @@ void CollisionDispatcher::State::sort_batch() {
     for (const auto& [slots, index] : order) pairs.push_back(batch[index].pair);
 }
 
-void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts, bool coming) {
+void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
     std::size_t at = 0;
     for (const Contact& c : contacts) {
         const Slots slots{c.body_a, c.body_b};
@@ -490,7 +495,7 @@ void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts, boo
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);
-        candidate.coming = coming;
+        candidate.speculative = is_speculative(c);
         candidate.reach = entry->reach;
         entry->state->candidates.push_back(candidate);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coming/next_poses.h"
+#include "next_poses.h"
 
 #include "mesh/vector.h"
 
