@@ -13,8 +13,8 @@ DEVICE float least_of_vertices(const float* values) {
     return least;
 }
 
-// At most how far a point of the source goes until the next step, metres. No point is farther from the origin of its
-// shape than the diagonal of its box.
+// At most how far a point of the source goes until the next step, metres. No point is farther from the middle of its
+// shape than half the diagonal of its box.
 DEVICE float way_of_pair(READS(DirectedPair) now, READS(DirectedPair) next, READS(ShapeHeader) shapes) {
     float shift = 0.0f, turn = 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -25,8 +25,8 @@ DEVICE float way_of_pair(READS(DirectedPair) now, READS(DirectedPair) next, READ
         const float by = next->rotation[i] - now->rotation[i];
         turn += by * by;
     }
-    const float size = DIAGONAL_TOLERANCES * shapes[now->source].tolerance;
-    return 1.0001f * (root_of(shift) + size * root_of(turn));
+    const float reach = 0.5f * DIAGONAL_TOLERANCES * shapes[now->source].tolerance;
+    return 1.001f * (root_of(shift) + reach * root_of(turn));
 }
 
 // Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves

@@ -68,14 +68,16 @@ Motion::Body Motion::body_of(const PlacedBody& body, const Pose& from, const Pos
     return moved;
 }
 
-double Motion::bound(std::span<const Body> bodies, const SlotPair& pair) {
+Motion::Bound Motion::bound(std::span<const Body> bodies, const SlotPair& pair) {
     const Body &a = bodies[pair.first], &b = bodies[pair.second];
     const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
     const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
     const float turned =
         std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
-    return 1.001 * double(still + turned);
+    // A straight way in the frame of a body that turns is no farther from the true one than the height of an arc.
+    const float arc = 0.15f * std::max(b.turn * b.turn * (apart + a.reach), a.turn * a.turn * (apart + b.reach));
+    return {1.001 * double(still + turned), 1.001 * double(still + ((a.turn * a.reach + b.turn * b.reach) + arc))};
 }
 
 double Motion::pair_speed(const SlotPair& pair) const {

@@ -21,10 +21,14 @@ public:
 
     /// Prefetches what pair_bound() reads of the second body; the first body is mostly that of the last pair.
     void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
-    /// An upper bound of how far any vertex of either body moved in the frame of the other, metres.
-    double pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
-    /// The same for the way that is before the bodies (PlacedBody::next); 0 until expect().
-    double pair_way(const SlotPair& pair) const { return next_.empty() ? 0 : bound(next_, pair); }
+    /// Upper bounds for a pair, metres.
+    struct Bound {
+        double moved;  ///< how far any vertex of either body moved in the frame of the other
+        double nearer; ///< by how much any point of the one came nearer to the other, on a straight way in its frame, too
+    };
+    Bound pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
+    /// Bound::nearer of the way that is before the bodies (PlacedBody::next); 0 until expect().
+    double pair_way(const SlotPair& pair) const { return next_.empty() ? 0 : bound(next_, pair).nearer; }
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.
@@ -50,7 +54,7 @@ private:
         bool known = false;
     };
     static Body body_of(const PlacedBody& body, const Pose& from, const Pose& to, double shear);
-    static double bound(std::span<const Body> bodies, const SlotPair& pair);
+    static Bound bound(std::span<const Body> bodies, const SlotPair& pair);
 
     std::vector<Body> bodies_, next_;
     std::vector<Last> lasts_;

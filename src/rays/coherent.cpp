@@ -116,7 +116,7 @@ void CoherentRays::wake_up(const Update& update) {
     update.executor.run(pair_count, 256, [&](std::uint32_t begin, std::uint32_t end) {
         const auto wants = [&](std::uint32_t i, Hot& hot) {
             turns_[i] = Turn::follow;
-            hot.slack -= update.motion.pair_bound(update.pairs[i]);
+            hot.slack -= update.motion.pair_bound(update.pairs[i]).moved;
             return !(hot.slack >= 0);
         };
         const auto prefetch = [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); };

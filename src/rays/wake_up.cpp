@@ -7,6 +7,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace raycontact {
 
@@ -30,8 +31,9 @@ double look_ahead(double size, double speed) {
 // width: then 0.
 double edge_margin(const KeptEdges& kept, double size, double speed) {
     constexpr double worth = 4; // steps
-    const double margin = kept.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : 0.0005 * size;
-    return margin > worth * speed ? margin : 0;
+    static const double E1 = getenv("E1") ? atof(getenv("E1")) : 4, E2 = getenv("E2") ? atof(getenv("E2")) : 0.01, E0=getenv("E0") ? atof(getenv("E0")) : 0.0005;
+    const double margin = kept.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : std::clamp(E1 * speed, E0 * size, E2*size);
+    return margin >= std::min(worth,E1) * speed ? margin : 0;
 }
 
 // A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
@@ -111,9 +113,9 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         return !(slack.edges > 0) || (is_fast(way, slack) && !(slack.edges > way));
     };
     const auto wants = [&](std::uint32_t i, Slack& slack) {
-        const double bound = update.motion.pair_bound(update.pairs[i]);
-        slack.metres -= bound;
-        slack.edges -= bound;
+        const Motion::Bound bound = update.motion.pair_bound(update.pairs[i]);
+        slack.metres -= bound.moved;
+        slack.edges -= bound.nearer;
         return !(slack.metres > 0) || slack.casts || (edges && is_due(update.motion.pair_way(update.pairs[i]), slack));
     };
     const auto ask = [&](std::uint32_t i) {
@@ -142,7 +144,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
         slice.edges.add() = {i,
                              static_cast<float>(edge_margin(state.edges, size, speed)),
-                             static_cast<float>(std::clamp(4 * speed, 0.02 * size, 0.1 * size)),
+                             is_fast(way, slack) && speculative && !getenv("NOA") ? 0.0f : static_cast<float>(state.edges.count()!=0 && getenv("A0") ? atof(getenv("A0"))*size : std::clamp(4 * speed, 0.02 * size, 0.1 * size)),
                              slack.margin,
                              due,
                              is_fast(way, slack)};

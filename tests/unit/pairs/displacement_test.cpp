@@ -104,7 +104,7 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
         }
         Motion motion;
         motion.update(executor, bodies);
-        EXPECT_EQ(motion.pair_bound({0, 1}), 0.0) << "nothing has moved yet";
+        EXPECT_EQ(motion.pair_bound({0, 1}).moved, 0.0) << "nothing has moved yet";
         const int course = story % 5; // one moves; all move; sheared; all move together, far; all move, far away
         if (course == 4) {
             const Vec3 away = std::pow(10.0, random.uniform(5, 8)) * random.direction();
@@ -123,7 +123,7 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
             motion.update(executor, bodies);
             for (const SlotPair& pair : {SlotPair{0, 1}, SlotPair{0, 2}, SlotPair{1, 2}}) {
                 const auto [a, b] = pair;
-                const double bound = motion.pair_bound(pair);
+                const double bound = motion.pair_bound(pair).moved;
                 const double moved = std::max(true_displacement(bodies[a], bodies[b], before[a], before[b]),
                                               true_displacement(bodies[b], bodies[a], before[b], before[a]));
                 ASSERT_GE(bound + (course == 4 ? 1e-6 : 0), moved) << "course " << course;
@@ -141,7 +141,7 @@ TEST(Motion, BoundsWhatAPairMovedInEitherFrame) {
             }
         }
         motion.update(executor, bodies);
-        EXPECT_EQ(motion.pair_bound({1, 2}), 0.0) << "nothing moves any more";
+        EXPECT_EQ(motion.pair_bound({1, 2}).moved, 0.0) << "nothing moves any more";
     }
     std::printf("[ counts   ] pair bounds are %.4f to %.1f times what was moved\n", tightest, worst);
     EXPECT_GE(tightest, 1.0);
@@ -161,12 +161,12 @@ TEST(Motion, ABodyDoesNotInheritFromTheOneBeforeInItsSlot) {
     bodies[0].centred = pose_from_quaternion({0, 0, 0}, 1, 0, 0, 0.01);
     const std::vector<PlacedBody> before{{small.get(), 0, 0, {}, {}}, bodies[1]};
     motion.update(executor, bodies);
-    EXPECT_GE(motion.pair_bound({0, 1}), true_displacement(bodies[1], bodies[0], before[1], before[0]));
+    EXPECT_GE(motion.pair_bound({0, 1}).moved, true_displacement(bodies[1], bodies[0], before[1], before[0]));
     bodies[1].centred.translation.x = 100;
     bodies[1].generation = 2;
     motion.update(executor, bodies);
     EXPECT_EQ(motion.pair_speed({1, 1}), 0.0);
-    EXPECT_LT(motion.pair_bound({0, 1}), 10.0) << "another body's way";
+    EXPECT_LT(motion.pair_bound({0, 1}).moved, 10.0) << "another body's way";
 }
 
 TEST(Motion, KnowsHowFarARelativeRotationIsSheared) {
