@@ -2,6 +2,7 @@
 #include "edges/edge_stage.h"
 
 #include "give_back.h"
+#include "speculative/speculative_pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,12 +118,13 @@ Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBod
 
 } // namespace
 
-void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
+void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local,
+                    const SpeculativeVertices& speculative, std::span<const AskedPair> asked,
                     std::vector<Contact>& contacts) {
     // By the places of the pairs: so a block has in most steps what it had before, and allocates nothing.
     block_count_ = (update.pairs.size() + pairs_in_block - 1) / pairs_in_block;
     if (blocks_.size() < block_count_) blocks_.resize(block_count_);
-    const Question question{update, local, asked};
+    const Question question{update, local, speculative, asked};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
     const std::size_t work_count = std::min(block_count_, most_work);
     if (work_.size() < work_count) work_.resize(work_count);
@@ -154,14 +156,16 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     work.found.clear();
     const NearEdges near{asked.near[0], asked.near[1]};
     const Settings& settings = question.update.settings;
-    const bool asks_edges = settings.features == Features::edges && raycontact::asks_edges(a, b);
     // Surfaces that do not cross are apart, or one is inside the other.
-    if (asks_edges && !work.edges.find(PairMeshes(a, b), near, vertices, work.found) && !in_contact) {
+    if (asked.edges && !work.edges.find(PairMeshes(a, b), near, vertices, work.found) && !in_contact) {
         const bool apart = !find_inside(a, b, work.found);
         if (asked.apart != nullptr) *asked.apart = apart && near[0].empty() && near[1].empty();
     }
-    if (settings.is_speculative())
-        work.speculative.find({a, b, speculative_margin(settings, a, b), asks_edges, near, vertices}, work.found);
+    const std::span<const FeatureContact> coming = question.speculative.of(asked.pair);
+    const bool told = in_contact || !coming.empty();
+    if (settings.is_speculative() && asked.edges && asks_speculative_edges(a, b, told))
+        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
+    work.found.insert(work.found.end(), coming.begin(), coming.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == VertexBody::a;

@@ -5,7 +5,7 @@
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
 #include "pairs/update.h"
-#include "speculative/speculative_pair.h"
+#include "speculative/speculative_vertices.h"
 
 #include <span>
 #include <vector>
@@ -17,10 +17,10 @@ namespace raycontact {
 /// host, in double, for every device: so its contacts are the same for all.
 class EdgeStage {
 public:
-    /// local: the vertex contacts. asked: in the order of the pairs. contacts: those of vertices, placed and sorted;
-    /// the new ones are sorted in.
-    void run(const Update& update, const ByPair<kernels::LocalContact>& local, std::span<const AskedPair> asked,
-             std::vector<Contact>& contacts);
+    /// local: the vertex contacts; speculative: those that do not touch yet. asked: in the order of the pairs.
+    /// contacts: those of vertices, placed and sorted; the new ones are sorted in.
+    void run(const Update& update, const ByPair<kernels::LocalContact>& local, const SpeculativeVertices& speculative,
+             std::span<const AskedPair> asked, std::vector<Contact>& contacts);
     /// Of what it found in the last step.
     std::uint64_t bytes() const;
     /// After a step: frees memory that it hardly used.
@@ -30,7 +30,6 @@ private:
     /// What some of the blocks are worked on in, one after the other.
     struct Workspace {
         PairEdges edges;
-        SpeculativePair speculative;
         std::vector<FeatureContact> found;
     };
     /// Pairs that one thread takes at once, and what it finds.
@@ -42,6 +41,7 @@ private:
     struct Question {
         const Update& update;
         const ByPair<kernels::LocalContact>& local;
+        const SpeculativeVertices& speculative;
         std::span<const AskedPair> asked;
     };
     void find(Workspace& work, const Question& question, std::size_t number);

@@ -114,7 +114,8 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
-// Edges are asked where at least one of the bodies has an inside; edges: 2: of all.
+// What is searched, as BlockSearch::Sources: 0 vertices that cast, 1 edges, where at least one of the bodies has an
+// inside, 2 vertices as points.
 DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
     return pair->source != NONE && (edges != 1u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
 }
@@ -127,7 +128,7 @@ DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(flo
     READS(ShapeHeader) target = shapes + pair->target;
     const Search search = {p,
                            pair,
-                           edges != 0u ? &source->edges : &source->vertices,
+                           edges == 1u ? &source->edges : &source->vertices,
                            target,
                            AT(memory, ClusterBlock, source->clusters),
                            AT(memory, uint, target->clearances),
@@ -236,8 +237,8 @@ DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* 
 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
 // blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
-// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges: 1, 2:
-// of the edges, which are in contact where they cross the surface; 2: of pairs of open meshes, too.
+// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. edges:
+// see is_asked(); edges and points are in contact where they meet the surface.
 KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
                            READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {

@@ -57,18 +57,22 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
     }
 }
 
-// Sixteen edges on their way to the next step, in the target's frame: their middles and half edges half-way there.
+// Sources on their way to the next step, in the target's frame: their middles and half edges half-way there. A vertex
+// is the edge that is its way.
 STRUCT(MovingLanes) {
     float middle[3][VERTICES_AT_ONCE], half_edge[3][VERTICES_AT_ONCE];
     float reach[3][VERTICES_AT_ONCE]; // of all that an edge passes, by axis, from its middle
+    float length[VERTICES_AT_ONCE];   // of half an edge
     float away[VERTICES_AT_ONCE];     // how far a point of it is from its place half-way, at most
 };
 
-// No way: an edge passes itself alone.
-DEVICE void place_edges(MovingLanes* lanes, READS(DirectedPair) pair, READS(VertexBlock) block, uint first) {
+// No way: an edge passes itself alone, a vertex is a point.
+DEVICE void place_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) pair, READS(VertexBlock) block,
+                          uint first) {
     float r[9], t[3];
     for (int k = 0; k < 9; ++k) r[k] = pair->rotation[k];
     for (int k = 0; k < 3; ++k) t[k] = pair->translation[k];
+    const float arm = vertices != 0u ? 0.0f : 1.0f;
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float vx = block->position[0][first + k], vy = block->position[1][first + k];
@@ -76,36 +80,45 @@ DEVICE void place_edges(MovingLanes* lanes, READS(DirectedPair) pair, READS(Vert
             const float hx = block->direction[0][first + k], hy = block->direction[1][first + k];
             const float hz = block->direction[2][first + k];
             lanes->middle[i][k] = ((r[3 * i] * vx + r[3 * i + 1] * vy) + r[3 * i + 2] * vz) + t[i];
-            lanes->half_edge[i][k] = (r[3 * i] * hx + r[3 * i + 1] * hy) + r[3 * i + 2] * hz;
+            lanes->half_edge[i][k] = arm * ((r[3 * i] * hx + r[3 * i + 1] * hy) + r[3 * i + 2] * hz);
             lanes->reach[i][k] = magnitude_of(lanes->half_edge[i][k]);
         }
     }
-    FOR_LANES(k, VERTICES_AT_ONCE) lanes->away[k] = 0.0f;
+    FOR_LANES(k, VERTICES_AT_ONCE) {
+        lanes->length[k] = arm * block->exit[first + k];
+        lanes->away[k] = 0.0f;
+    }
 }
 
 // Moves those that lie at the present pose half-way to the next.
-DEVICE void move_edges(MovingLanes* lanes, READS(DirectedPair) next, READS(VertexBlock) block, uint first) {
+DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) next, READS(VertexBlock) block,
+                         uint first) {
     MovingLanes then;
     float way2[VERTICES_AT_ONCE] = {0}, turn2[VERTICES_AT_ONCE] = {0};
-    place_edges(&then, next, block, first);
+    place_sources(&then, vertices, next, block, first);
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float way = 0.5f * (then.middle[i][k] - lanes->middle[i][k]);
             const float turn = 0.5f * (then.half_edge[i][k] - lanes->half_edge[i][k]);
             lanes->middle[i][k] += way;
-            lanes->half_edge[i][k] += turn;
-            lanes->reach[i][k] = (magnitude_of(lanes->half_edge[i][k]) + magnitude_of(way)) + magnitude_of(turn);
+            lanes->half_edge[i][k] = vertices != 0u ? way : lanes->half_edge[i][k] + turn;
+            lanes->reach[i][k] =
+                magnitude_of(lanes->half_edge[i][k]) + (vertices != 0u ? 0.0f : magnitude_of(way) + magnitude_of(turn));
             way2[k] += way * way;
             turn2[k] += turn * turn;
         }
     }
-    FOR_LANES(k, VERTICES_AT_ONCE) lanes->away[k] = 1.0001f * (root_of(way2[k]) + root_of(turn2[k]));
+    FOR_LANES(k, VERTICES_AT_ONCE) {
+        const float way = 1.0001f * root_of(way2[k]);
+        lanes->length[k] = vertices != 0u ? way : lanes->length[k];
+        lanes->away[k] = vertices != 0u ? 0.0f : way + 1.0001f * root_of(turn2[k]);
+    }
 }
 
 // The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
-// be far from the surface: it does not enter the balls around their halves. next: where the pairs will be; null: they
-// stay. clears: 1: it tells, too, how far the others stay away.
-KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, READS(DirectedPair) next,
+// be far from the surface: it does not enter the balls around their halves. vertices: 1: of vertices, as points. next:
+// where the pairs will be; null: they stay. clears: 1: it tells, too, how far the others stay away.
+KERNEL void count_edges(COUNT(count), uint vertices, uint clears, READS(DirectedPair) pairs, READS(DirectedPair) next,
                         READS(float) margins, READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory,
                         WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
@@ -119,14 +132,14 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
             b[3 + k] = pair->bounds[3 + k] + margin;
         }
         MovingLanes edges;
-        place_edges(&edges, pair, block, first);
-        if (next) move_edges(&edges, next + found_blocks[i].pair, block, first);
+        place_sources(&edges, vertices, pair, block, first);
+        if (next) move_sources(&edges, vertices, next + found_blocks[i].pair, block, first);
         int found[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float x = edges.middle[0][k], y = edges.middle[1][k], z = edges.middle[2][k];
             const float ex = edges.reach[0][k], ey = edges.reach[1][k], ez = edges.reach[2][k];
             const uint inside = (x + ex >= b[0]) & (x - ex <= b[3]) & (y + ey >= b[1]) & (y - ey <= b[4])
-                                & (z + ez >= b[2]) & (z - ez <= b[5]) & (block->exit[first + k] >= half_least);
+                                & (z + ez >= b[2]) & (z - ez <= b[5]) & (edges.length[k] >= half_least);
             found[k] = -(int)inside;
         }
         if (clears == 0u && pack_vertices(found) == 0u) continue;
@@ -140,17 +153,16 @@ KERNEL void count_edges(COUNT(count), uint clears, READS(DirectedPair) pairs, RE
             const float qz = 0.5f * edges.half_edge[2][k];
             const float one = safe_distance(grid, balls, x - qx, y - qy, z - qz, 0.0f);
             const float two = safe_distance(grid, balls, x + qx, y + qy, z + qz, 0.0f);
-            beyond[k] = (one < two ? one : two) - ((0.50025f * block->exit[first + k] + margin) + edges.away[k]);
+            beyond[k] = (one < two ? one : two) - ((0.50025f * edges.length[k] + margin) + edges.away[k]);
             found[k] &= -(int)(beyond[k] <= 0.0f);
         }
         if (clears != 0u) {
             // Those that come into the bounds later may be as near as these.
             FOR_LANES(k, VERTICES_AT_ONCE) {
                 const float gap = bounds_gap(b, edges.middle[0][k], edges.middle[1][k], edges.middle[2][k])
-                                  - (1.0005f * block->exit[first + k] + edges.away[k]);
+                                  - (1.0005f * edges.length[k] + edges.away[k]);
                 const float free = gap > beyond[k] ? gap : beyond[k];
-                const uint asked =
-                    (uint)(block->vertex[first + k] != NONE) & (uint)(block->exit[first + k] >= half_least);
+                const uint asked = (uint)(block->vertex[first + k] != NONE) & (uint)(edges.length[k] >= half_least);
                 beyond[k] = asked != 0u ? free : UNBOUNDED;
             }
             const float steps = least_of_vertices(beyond) / target->tolerance;
@@ -174,6 +186,7 @@ STRUCT(EdgeGroup) {
 // What casting edges reads, and where faces found go: the number and the first few of each edge; or, if that is not
 // null, those of a single edge to `near`, all of them.
 STRUCT(EdgeArrays) {
+    uint vertices; // 1: the sources are points
     READS(DirectedPair) pairs;
     READS(DirectedPair) next; // null: the pairs stay
     READS(float) margins;     // by pair
@@ -269,21 +282,29 @@ DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
     SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
     float way2 = 0.0f, turn2 = 0.0f, passed[3] = {0.0f, 0.0f, 0.0f};
-    for (int i = 0; i < 3; ++i) group->way[i][r] = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        group->way[i][r] = 0.0f;
+        if (arrays->vertices != 0u) edge.direction[i] = 0.0f;
+    }
+    if (arrays->vertices != 0u) edge.reach = 0.0f;
     if (arrays->next) {
         const SourceRay then = source_ray(arrays->next + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
         for (int i = 0; i < 3; ++i) {
             const float way = 0.5f * (then.position[i] - edge.position[i]);
             const float turn = 0.5f * (then.direction[i] - edge.direction[i]);
             edge.position[i] += way;
+            way2 += way * way;
+            if (arrays->vertices != 0u) {
+                edge.direction[i] = way;
+                continue;
+            }
             edge.direction[i] += turn;
             group->way[i][r] = way;
             passed[i] = magnitude_of(way) + magnitude_of(turn);
-            way2 += way * way;
             turn2 += turn * turn;
         }
     }
-    const float margin = arrays->margins[ray.pair];
+    const float margin = arrays->margins[ray.pair], way = 1.0001f * root_of(way2);
     for (int i = 0; i < 3; ++i) {
         const float reach = (magnitude_of(edge.direction[i]) + passed[i]) + margin;
         group->middle[i][r] = edge.position[i];
@@ -291,9 +312,9 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
         group->low[i][r] = edge.position[i] - reach;
         group->high[i][r] = edge.position[i] + reach;
     }
-    group->length[r] = 1.0005f * edge.reach;
+    group->length[r] = arrays->vertices != 0u ? way : 1.0005f * edge.reach;
     group->margin[r] = margin + 1.0001f * root_of(turn2);
-    group->way_length[r] = 1.0001f * root_of(way2);
+    group->way_length[r] = arrays->vertices != 0u ? 0.0f : way;
     group->pair[r] = ray.pair;
 }
 
@@ -351,11 +372,11 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
     }
 }
 
-KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) margins,
-                       READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays, WRITES(EdgeHits) hits,
-                       WRITES(uint) counts) {
+KERNEL void cast_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
+                       READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays,
+                       WRITES(EdgeHits) hits, WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-    const EdgeArrays arrays = {pairs, next, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
+    const EdgeArrays arrays = {vertices, pairs, next, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -373,9 +394,9 @@ KERNEL void cast_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPa
 }
 
 // Edges with more faces than EdgeHits holds are cast again.
-KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) margins,
-                        READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays, READS(EdgeHits) hits,
-                        READS(uint) firsts, WRITES(NearEdge) near) {
+KERNEL void write_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
+                        READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays,
+                        READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
@@ -385,7 +406,7 @@ KERNEL void write_edges(COUNT(count), READS(DirectedPair) pairs, READS(DirectedP
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
-            const EdgeArrays arrays = {pairs, next, margins, shapes, memory, rays, none, near + firsts[i]};
+            const EdgeArrays arrays = {vertices, pairs, next, margins, shapes, memory, rays, none, near + firsts[i]};
             EdgeGroup group;
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
             cast_together(&arrays, &group, 1u, i);

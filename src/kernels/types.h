@@ -271,7 +271,8 @@ STRUCT(EdgeHits) {
 };
 WIRE_SIZE(EdgeHits, 32);
 
-// An edge of the source that may cross a face of the target: 3 x its lowest triangle + its first corner.
+// An edge of the source that may cross a face of the target, or comes near: 3 x its lowest triangle + its first corner.
+// Or a vertex that comes near.
 STRUCT(NearEdge) {
     uint edge;
     uint face;

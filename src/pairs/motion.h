@@ -23,8 +23,9 @@ public:
     void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
     /// Upper bounds for a pair, metres.
     struct Bound {
-        double moved;  ///< how far any vertex of either body moved in the frame of the other
-        double nearer; ///< by how much any point of the one came nearer to the other, on a straight way in its frame, too
+        double moved; ///< how far any vertex of either body moved in the frame of the other
+        double
+            nearer; ///< by how much any point of the one came nearer to the other, on a straight way in its frame, too
     };
     Bound pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
     /// Bound::nearer of the way that is before the bodies (PlacedBody::next); 0 until expect().

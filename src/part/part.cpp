@@ -46,7 +46,7 @@ void Part::end(std::vector<Contact>& contacts) {
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
     placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
     if (!now.asks_near()) return;
-    edges_.run(now, found.contacts(), found.asked(), contacts);
+    edges_.run(now, found.contacts(), found.speculative(), found.asked(), contacts);
 }
 
 void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {

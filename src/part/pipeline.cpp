@@ -46,9 +46,10 @@ void Pipeline::give_back(const Update& last) {
         coherent_.give_back();
         break;
     }
-    if (has_near_) edges_.give_back();
+    if (casts_edges_) edges_.give_back();
+    if (casts_points_) points_.give_back();
     batch_.give_back(rays);
-    raycontact::give_back(found_, local_, near_, asked_, margins_, device_margins_);
+    raycontact::give_back(found_, local_, near_, near_points_, asked_, margins_, device_margins_, speculative_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -65,7 +66,8 @@ void Pipeline::gather(const Update& update) {
 // room: there is enough now, and they must be written again.
 bool Pipeline::read(Device& device) {
     const Piece pieces[] = {batch_.totals.piece(batch_.sums), found_.piece(),
-                            has_near_ ? edges_.found().piece() : Piece{}};
+                            casts_edges_ ? edges_.found().piece() : Piece{},
+                            casts_points_ ? points_.found().piece() : Piece{}};
     device.queue().read(pieces);
     check_sums(batch_.sums);
     return found_.take(device, batch_.sums[RayBatch::contact_sum].sums[0]);
@@ -84,31 +86,33 @@ void Pipeline::begin(const Update& update) {
         break;
     }
     gather(update);
-    has_near_ = update.asks_near() && finds(update) != Finds::certified;
-    if (has_near_ && finds(update) == Finds::coherent) pairs_.place(update, update.settings.is_speculative());
-    if (has_near_) set_margins(update);
-    cast_edges(update);
+    const bool host = finds(update) == Finds::certified;
+    casts_edges_ = update.settings.features == Features::edges && !host;
+    casts_points_ = update.settings.is_speculative() && !host;
+    if ((casts_edges_ || casts_points_) && finds(update) == Finds::coherent) pairs_.place(update, casts_points_);
+    if (casts_points_) set_margins(update);
+    if (casts_edges_) cast_near(update, edges_);
+    if (casts_points_) cast_near(update, points_);
 }
 
-// Of the pairs that an array has at 2 x slot, those of slots without a pair mean nothing.
+// Of slots without a pair they mean nothing.
 void Pipeline::set_margins(const Update& update) {
-    margins_.clear();
-    if (update.settings.is_speculative()) {
-        const std::span<const std::uint32_t> directed = pairs_of(update).directed();
-        margins_.resize(directed.size());
-        for (std::size_t i = 0; i < directed.size(); ++i) {
-            if (directed[i] / 2 >= update.pairs.size()) continue;
-            const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed[i]);
-            margins_[i] = static_cast<float>(1.000001 * speculative_margin(update.settings, source, target));
-        }
+    const std::span<const std::uint32_t> directed = pairs_of(update).directed();
+    margins_.resize(directed.size());
+    for (std::size_t i = 0; i < directed.size(); ++i) {
+        if (directed[i] / 2 >= update.pairs.size()) continue;
+        const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed[i]);
+        margins_[i] = static_cast<float>(1.000001 * speculative_margin(update.settings, source, target));
     }
     device_margins_.write(update.device, margins_);
 }
 
-void Pipeline::cast_edges(const Update& update) {
-    if (!has_near_) return;
+void Pipeline::cast_near(const Update& update, NearRays& rays) {
     const DevicePairs& pairs = pairs_of(update);
-    edges_.cast(update, pairs.placed(), pairs.next_placed(), {device_margins_, {}, {}}, batch_);
+    if (casts_points_)
+        rays.cast(update, pairs.placed(), pairs.next_placed(), {device_margins_, {}, {}}, batch_);
+    else
+        rays.cast(update, pairs.placed(), {}, {{}, {}, {}}, batch_);
 }
 
 // All, on the device.
@@ -120,36 +124,58 @@ void Pipeline::end(const Update& update) {
     for (;;) {
         const bool all_written = read(update.device);
         const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
-        const bool all_near = !has_near_ || edges_.had_room(update.device, batch_);
-        if (all_written && all_cast && all_near) break;
+        const bool all_edges = !casts_edges_ || edges_.had_room(update.device, batch_);
+        const bool all_points = !casts_points_ || points_.had_room(update.device, batch_);
+        if (all_written && all_cast && all_edges && all_points) break;
         if (!all_cast) standard_.cast(update, batch_);
         gather(update);
-        if (!all_near) cast_edges(update);
+        if (!all_edges) cast_near(update, edges_);
+        if (!all_points) cast_near(update, points_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
     local_.set(found_.values(), batch_.directed, update.pairs.size());
-    if (update.asks_near() && !has_near_) certified_.find_edges(update, local_, batch_);
-    if (has_near_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    find_speculative(update);
+    if (casts_edges_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    if (update.settings.features == Features::edges && !casts_edges_)
+        certified_.find_edges(update, local_, speculative_, batch_);
     list_asked(update);
+}
+
+// Of the vertices: those of edges wait for what vertices tell.
+void Pipeline::find_speculative(const Update& update) {
+    asked_.clear();
+    if (!update.settings.is_speculative()) return speculative_.clear();
+    if (casts_points_)
+        near_points_.set(points_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    else
+        certified_.find_points(update, batch_);
+    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        if (!casts_points_ && certified_.has_points(i)) asked_.push_back({i, false, certified_.points(i)});
+        if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) continue;
+        asked_.push_back({i, false, {near_points_.of(2 * i), near_points_.of(2 * i + 1)}});
+    }
+    speculative_.run(update, local_, asked_);
 }
 
 void Pipeline::list_asked(const Update& update) {
     asked_.clear();
     if (!update.asks_near()) return;
-    const bool speculative = update.settings.is_speculative();
+    const bool edges = update.settings.features == Features::edges;
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
-        if (!has_near_ && certified_.is_apart(i) && !in_contact) continue;
+        const bool comes_near = !speculative_.of(i).empty();
+        const bool apart = !casts_edges_ && certified_.is_apart(i) && !in_contact;
+        if (!comes_near && (!edges || apart)) continue;
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-        if (!speculative && (!asks_edges(a, b) || (in_contact && has_short_edges_alone(a, b)))) continue;
-        AskedPair asked{i, {}};
-        if (has_near_)
-            asked.near = {near_.of(2 * i), near_.of(2 * i + 1)};
-        else
-            asked = {i, certified_.near(i), certified_.apart(i)};
-        // Without edges a pair has nothing more to tell, but that one body is inside the other.
-        if (!in_contact || !asked.near[0].empty() || !asked.near[1].empty()) asked_.push_back(asked);
+        AskedPair asked{i, false, {}};
+        if (edges && !apart && asks_edges(a, b) && !(in_contact && has_short_edges_alone(a, b))) {
+            asked.near = casts_edges_ ? std::array{near_.of(2 * i), near_.of(2 * i + 1)} : certified_.near(i);
+            if (!casts_edges_) asked.apart = certified_.apart(i);
+            // Without edges a pair has nothing more to tell, but that one body is inside the other.
+            asked.edges = !in_contact || !asked.near[0].empty() || !asked.near[1].empty();
+        }
+        if (asked.edges || comes_near) asked_.push_back(asked);
     }
 }
 
@@ -171,7 +197,8 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     stats.pair_bytes += asked_.size() * sizeof(AskedPair);
-    if (has_near_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
+    if (casts_edges_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
+    if (casts_points_) stats.pair_bytes += points_.bytes() + near_points_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:
         return standard_.count(batch_, last.pairs.size(), stats);

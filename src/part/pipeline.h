@@ -6,8 +6,9 @@
 #include "pairs/results.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
-#include "rays/edge_rays.h"
+#include "rays/near_rays.h"
 #include "rays/standard.h"
+#include "speculative/speculative_vertices.h"
 
 #include <raycontact/scene.h>
 
@@ -23,6 +24,8 @@ public:
     void end(const Update& update);
     /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }
+    /// The speculative contacts of vertices.
+    const SpeculativeVertices& speculative() const { return speculative_; }
     /// The pairs whose edges may cross faces, or have speculative contacts, or that may be inside one another, in
     /// order; none without edges and speculative contacts.
     std::span<const AskedPair> asked() const { return asked_; }
@@ -44,7 +47,8 @@ private:
     void gather(const Update& update);
     bool read(Device& device);
     void set_margins(const Update& update);
-    void cast_edges(const Update& update);
+    void cast_near(const Update& update, NearRays& rays);
+    void find_speculative(const Update& update);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
 
@@ -53,13 +57,14 @@ private:
     CoherentRays coherent_;
     DevicePairs pairs_; ///< all, where the method places only some
     RayBatch batch_;
-    EdgeRays edges_;
+    NearRays edges_{BlockSearch::Sources::edges}, points_{BlockSearch::Sources::points};
     std::vector<float> margins_; ///< of speculative contacts, by directed pair of the device
     Array<float> device_margins_;
     Results<kernels::LocalContact> found_; ///< in the order of their rays
     ByPair<kernels::LocalContact> local_;
-    ByPair<NearEdge> near_;
-    bool has_near_ = false; ///< edges_ were cast
+    ByPair<NearEdge> near_, near_points_;
+    bool casts_edges_ = false, casts_points_ = false;
+    SpeculativeVertices speculative_;
     std::vector<AskedPair> asked_;
 };
 

@@ -94,8 +94,8 @@ void BlockSearch::count_edges(const Update& update, const Array<kernels::Directe
                               const Array<float>& least, bool clears, const Array<kernels::Totals>& totals,
                               std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::count_edges>(update.device, found_, clears ? 1u : 0u, pairs, next, margins, least, arrays.headers,
-                                  arrays.memory, blocks_, ray_counts_.values());
+    launch<KernelId::count_edges>(update.device, found_, sources_ == Sources::points ? 1u : 0u, clears ? 1u : 0u, pairs,
+                                  next, margins, least, arrays.headers, arrays.memory, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 

@@ -10,9 +10,9 @@ namespace raycontact {
 /// the same of edges. Both are in the order of the pairs.
 class BlockSearch {
 public:
-    /// edges: of pairs of which a body has an inside; all_edges: of any.
-    enum class Sources : kernels::uint { vertices, edges, all_edges };
-    void set(Sources sources) { sources_ = sources; }
+    /// Vertices that cast; edges, of pairs of which a body has an inside; vertices as points.
+    enum class Sources : kernels::uint { vertices, edges, points };
+    explicit BlockSearch(Sources sources = Sources::vertices) : sources_(sources) {}
 
     /// The blocks of all pairs that reach into the bounds; horizons as below. Does not wait: totals[at] says on the
     /// device how many there are. If they have too little room, none is written (had_room()).
@@ -30,9 +30,9 @@ public:
     /// of the target knows to be outside. totals[at]: rays, of which `room` can be written; vertices inside the bounds.
     void count_rays(const Update& update, const Array<kernels::DirectedPair>& pairs, bool use_grid,
                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
-    /// Counts the edges of the blocks that come within margins[p] metres of the bounds and, for all that the grid
-    /// knows, of a face. totals[at]: their number, of which `room` can be written. next: where the pairs will be at the
-    /// next step; if empty they stay. clears: clear() will be asked.
+    /// Counts the edges, or points, of the blocks that come within margins[p] metres of the bounds and, for all that
+    /// the grid knows, of a face. totals[at]: their number, of which `room` can be written. next: where the pairs will
+    /// be at the next step; if empty they stay. clears: clear() will be asked.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
                      const Array<kernels::DirectedPair>& next, const Array<float>& margins, const Array<float>& least,
                      bool clears, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
@@ -78,7 +78,7 @@ private:
     void write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
                const Array<float>& horizons) const;
 
-    Sources sources_ = Sources::vertices;
+    Sources sources_;
     Columns counts_, ray_counts_;
     Array<float> safe_distances_;
     Array<kernels::ulong> block_masks_; ///< by pair: for a source of few blocks those found, a bit each, MASK_WORDS

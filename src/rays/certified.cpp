@@ -3,6 +3,7 @@
 
 #include "device/launch.h"
 #include "give_back.h"
+#include "pairs/near_edges.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -46,6 +47,7 @@ void CertifiedRays::clear() {
     table_.clear();
     pool_.clear();
     edges_.clear();
+    points_.clear();
     watches_ = {};
     held_ = {};
     last_held_ = {};
@@ -66,7 +68,8 @@ void CertifiedRays::list_slices() {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
         for (const std::uint32_t i : slice.as_standard) {
             if (table_.hot(i).open) close(table_.state(i));
-            table_.hot(i) = {-1, table_.hot(i).edges, table_.hot(i).margin, false, false, table_.hot(i).apart};
+            table_.hot(i).metres = -1;
+            table_.hot(i).open = table_.hot(i).casts = false;
             directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
         }
     }
@@ -224,7 +227,8 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
     table_.match(update.pairs, [this](WatchedPair& state) {
         close(state);
-        edges_.release(state.edges);
+        edges_.release(state);
+        points_.release(state);
         state.as_standard = 0;
     });
     wake_up_.run(update, table_);
@@ -244,6 +248,61 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     decide(update, batch);
 }
 
+// What was near is sought a little farther out than it must be, since each source more is asked in every step; where
+// nothing was near, far out, since a list of nothing spares all. A list that would not last some steps is not worth its
+// width.
+NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin) {
+    const bool empty = kept.count() == 0;
+    double more = empty ? std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size) : 0.0005 * due.size;
+    if (!empty && margin > 0) more = std::clamp(4 * due.speed, 0.002 * due.size, 0.01 * due.size);
+    if (more < 4 * due.speed) more = 0;
+    double ahead = std::clamp(4 * due.speed, 0.02 * due.size, 0.1 * due.size);
+    if (margin > 0 && !empty) ahead = 0.003 * due.size;
+    if (moves) ahead = 0;
+    return {due.pair, static_cast<float>(more), static_cast<float>(ahead), static_cast<float>(margin), 0, moves};
+}
+
+void CertifiedRays::find_points(const Update& update, RayBatch& batch) {
+    searches_.clear();
+    for (const WakeUp::Slice& slice : wake_up_.slices())
+        for (const DueNear& due : slice.near)
+            if (due.points)
+                searches_.push_back(
+                    search_of(due, table_.state(due.pair).points, due.moves, double(table_.hot(due.pair).margin)));
+    points_.find(update, searches_, table_, batch);
+    for (const NearLists::Search& search : searches_)
+        table_.hot(search.pair).has_points = table_.state(search.pair).points.count() > 0;
+}
+
+// What only vertices need tell is not sought: short edges of a pair in contact, and those that only come near it.
+void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
+                               const SpeculativeVertices& speculative, RayBatch& batch) {
+    searches_.clear();
+    for (const WakeUp::Slice& slice : wake_up_.slices())
+        for (const DueNear& due : slice.near) {
+            const auto [first, second] = update.pairs[due.pair];
+            const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
+            const bool in_contact = contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
+            const bool told = in_contact || !speculative.of(due.pair).empty();
+            const bool near = update.settings.is_speculative() && asks_speculative_edges(a, b, told);
+            Slack& slack = table_.hot(due.pair);
+            if (!due.edges && (in_contact || slack.all) && (!near || slack.near)) continue;
+            WatchedPair& state = table_.state(due.pair);
+            const KeptNear before = state.edges;
+            slack.apart = false;
+            slack.edges = never;
+            slack.all = !in_contact;
+            slack.near = near || !update.settings.is_speculative();
+            edges_.release(state);
+            if (!asks_edges(a, b)) slack.all = slack.near = true;
+            if (!asks_edges(a, b) || (in_contact && has_short_edges_alone(a, b))) continue;
+            NearLists::Search& search =
+                searches_.emplace_back(search_of(due, before, near && due.moves, near ? double(slack.margin) : 0));
+            search.least = in_contact ? static_cast<float>(short_length(a, b)) : 0;
+        }
+    edges_.find(update, searches_, table_, batch);
+}
+
 void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     std::uint64_t blocks = standard_.blocks().size();
     for (const WakeUp::Slice& slice : wake_up_.slices()) blocks += slice.blocks;
@@ -258,7 +317,7 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
                         + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
                         + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
                         + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult))
-                        + standard_.bytes() + edges_.bytes() + near_.bytes();
+                        + standard_.bytes() + edges_.bytes() + points_.bytes() + near_.bytes();
 }
 
 // Not the rays held: the next step needs them.
@@ -266,8 +325,8 @@ void CertifiedRays::give_back() {
     look_rays_.give_back(segments_.size());
     near_.give_back(near_.found());
     standard_.give_back(standard_.blocks().size());
-    raycontact::give_back(wake_up_, edges_, stale_, directed_, pairs_, segments_, looks_, held_ranges_, wide_pairs_,
-                          horizons_, places_, last_held_);
+    raycontact::give_back(wake_up_, edges_, points_, searches_, stale_, directed_, pairs_, segments_, looks_,
+                          held_ranges_, wide_pairs_, horizons_, places_, last_held_);
 }
 
 } // namespace raycontact

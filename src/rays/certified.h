@@ -3,9 +3,10 @@
 
 #include "pairs/range_pool.h"
 #include "rays/block_search.h"
-#include "rays/edge_lists.h"
+#include "rays/near_lists.h"
 #include "rays/ray_batch.h"
 #include "rays/wake_up.h"
+#include "speculative/speculative_vertices.h"
 
 #include <raycontact/scene.h>
 
@@ -19,14 +20,17 @@ class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
-    /// After the contacts of the vertices are known: the near edges.
-    void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
-        edges_.find(update, wake_up_.slices(), table_, contacts, batch);
-    }
+    /// Then the near vertices, for speculative contacts.
+    void find_points(const Update& update, RayBatch& batch);
+    /// Then, when all contacts of the vertices are known, the near edges.
+    void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
+                    const SpeculativeVertices& speculative, RayBatch& batch);
     void clear();
 
     /// Of the i-th pair of the step: its near edges, and what is known while they last (AskedPair).
-    std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i).edges); }
+    std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i)); }
+    bool has_points(std::size_t i) { return table_.hot(i).has_points; }
+    std::array<std::span<kernels::NearEdge>, 2> points(std::size_t i) { return points_.of(table_.state(i)); }
     bool is_apart(std::size_t i) { return table_.hot(i).apart; }
     bool* apart(std::size_t i) { return &table_.hot(i).apart; }
 
@@ -42,6 +46,7 @@ private:
         Due& due() const { return slice->due[at]; }
     };
 
+    static NearLists::Search search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin);
     void close(WatchedPair& state);
     void list_slices();
     void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);
@@ -54,7 +59,9 @@ private:
 
     WatchedPairs table_;
     WakeUp wake_up_;
-    EdgeLists edges_;
+    NearLists edges_{BlockSearch::Sources::edges, &WatchedPair::edges, &Slack::edges};
+    NearLists points_{BlockSearch::Sources::points, &WatchedPair::points, &Slack::points};
+    std::vector<NearLists::Search> searches_;
     RangePool pool_;
     std::vector<Stale> stale_;
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: pairs left to `standard`, then what is due

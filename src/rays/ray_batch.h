@@ -12,7 +12,7 @@ namespace raycontact {
 /// of the step.
 struct RayBatch {
     /// What the scans of a step count: vertex blocks found; rays; contacts, side tests and rays cast in full; what a
-    /// method counts besides; edge blocks found; edges cast; faces near these.
+    /// method counts besides; edge blocks found; edges cast; faces near these; the same of vertices as points.
     enum Sum : std::size_t {
         block_sum,
         ray_sum,
@@ -21,6 +21,9 @@ struct RayBatch {
         edge_block_sum,
         edge_ray_sum,
         edge_sum,
+        point_block_sum,
+        point_ray_sum,
+        point_sum,
         sum_count
     };
 

@@ -2,12 +2,10 @@
 #include "rays/wake_up.h"
 
 #include "give_back.h"
-#include "pairs/near_edges.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace raycontact {
 
@@ -24,16 +22,6 @@ constexpr double slow = 0.15;
 double look_ahead(double size, double speed) {
     return std::max(0.015 * size,
                     std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed
-}
-
-// How far beyond what is needed near edges are sought: far where none was near, since a list without edges spares all;
-// else hardly, since each edge more is asked in every step. A list that would not last some steps is not worth its
-// width: then 0.
-double edge_margin(const KeptEdges& kept, double size, double speed) {
-    constexpr double worth = 4; // steps
-    static const double E1 = getenv("E1") ? atof(getenv("E1")) : 4, E2 = getenv("E2") ? atof(getenv("E2")) : 0.01, E0=getenv("E0") ? atof(getenv("E0")) : 0.0005;
-    const double margin = kept.count() == 0 ? std::clamp(6 * speed, 0.005 * size, 0.015 * size) : std::clamp(E1 * speed, E0 * size, E2*size);
-    return margin >= std::min(worth,E1) * speed ? margin : 0;
 }
 
 // A longer clock in float32 would count in steps coarser than the rounding that is allowed for.
@@ -63,7 +51,9 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
     bool stale[2] = {}, wakes[2] = {};
-    slack = {never, slack.edges, slack.margin, true, false, slack.apart};
+    slack.metres = never;
+    slack.open = true;
+    slack.casts = false;
     for (std::size_t d = 0; d < 2; ++d) {
         Watched& own = state.directions[d];
         const double clock = own.clock + moved[d];
@@ -106,17 +96,22 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
 // The cheap bound comes first; most pairs at rest need no more.
 void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                         Slice& slice) {
-    const bool speculative = update.settings.is_speculative(), edges = update.asks_near();
+    const bool speculative = update.settings.is_speculative();
+    const bool edges = update.settings.features == Features::edges;
     // A pair that hurries needs what its whole way passes.
-    const auto is_fast = [&](double way, const Slack& slack) { return way > double(slack.margin); };
-    const auto is_due = [&](double way, const Slack& slack) {
-        return !(slack.edges > 0) || (is_fast(way, slack) && !(slack.edges > way));
+    const auto is_due = [](double slack, double way) { return !(slack > 0) || !(slack > way); };
+    const auto way_of = [&](std::uint32_t i, const Slack& slack) {
+        const double way = speculative ? update.motion.pair_way(update.pairs[i]) : 0;
+        return way > double(slack.margin) ? way : 0;
     };
     const auto wants = [&](std::uint32_t i, Slack& slack) {
         const Motion::Bound bound = update.motion.pair_bound(update.pairs[i]);
         slack.metres -= bound.moved;
         slack.edges -= bound.nearer;
-        return !(slack.metres > 0) || slack.casts || (edges && is_due(update.motion.pair_way(update.pairs[i]), slack));
+        slack.points -= bound.nearer;
+        if (!(slack.metres > 0) || slack.casts) return true;
+        const double way = way_of(i, slack);
+        return (edges && (!slack.near || is_due(slack.edges, way))) || (speculative && is_due(slack.points, way));
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
@@ -132,22 +127,14 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         } else if (!edges_alone) {
             wake_pair(update, table, i, speed, slice);
         }
-        if (!edges) return;
-        const double way = update.motion.pair_way(pair);
-        const bool due = is_due(way, slack);
-        if (!due && state.edges.all) return;
-        const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
-        if (!speculative && !asks_edges(a, b)) {
-            slack.edges = never;
-            return;
-        }
-        if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
-        slice.edges.add() = {i,
-                             static_cast<float>(edge_margin(state.edges, size, speed)),
-                             is_fast(way, slack) && speculative && !getenv("NOA") ? 0.0f : static_cast<float>(state.edges.count()!=0 && getenv("A0") ? atof(getenv("A0"))*size : std::clamp(4 * speed, 0.02 * size, 0.1 * size)),
-                             slack.margin,
-                             due,
-                             is_fast(way, slack)};
+        if (!edges && !speculative) return;
+        if (speculative)
+            slack.margin = static_cast<float>(
+                1.000001 * speculative_margin(update.settings, update.bodies[pair.first], update.bodies[pair.second]));
+        const double way = way_of(i, slack);
+        DueNear due{i, size, speed, speculative && is_due(slack.points, way), false, way > 0};
+        due.edges = edges && is_due(slack.edges, slack.near ? way : 0);
+        if (due.points || due.edges || !slack.all || !slack.near) slice.near.add() = due;
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);
@@ -169,14 +156,14 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
         slice.places = List(room.places);
         slice.stale = List(room.stale);
         slice.as_standard = List(room.as_standard);
-        slice.edges = List(room.edges);
+        slice.near = List(room.near);
         wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
     });
 }
 
 void WakeUp::give_back() {
     std::size_t due = 0;
-    for (const Slice& slice : slices()) due += slice.due.size() + slice.edges.size();
+    for (const Slice& slice : slices()) due += slice.due.size() + slice.near.size();
     most_due_ = std::max(most_due_, due);
     if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
     rooms_.reset();

@@ -26,17 +26,16 @@ struct Watched {
     WatchedRays rays;
 };
 
-/// The near edges that are kept of a pair: a range of EdgeLists.
-struct KeptEdges {
+/// The near edges, or vertices, that are kept of a pair: a range of NearLists.
+struct KeptNear {
     std::uint32_t first = 0, capacity = 0;
     std::array<std::uint32_t, 2> counts{}; ///< of the first body, of the second
-    bool all = false;                      ///< short ones, too (docs/edges.md)
     std::uint32_t count() const { return counts[0] + counts[1]; }
 };
 
 struct WatchedPair {
     Watched directions[2];
-    KeptEdges edges;
+    KeptNear edges, points;
     double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
     PairPlace reference;
     std::uint32_t as_standard = 0; ///< steps for which it is still left to `standard`
@@ -44,12 +43,16 @@ struct WatchedPair {
 
 /// What is read for every pair in every step.
 struct Slack {
-    double metres = -1; ///< that the pair may move, by the cheap bound, before the exact one is computed
-    double edges = -1;  ///< that it may move before its near edges are sought anew
-    float margin = 0;   ///< within which near edges have speculative contacts; 0: of none
-    bool open = false;  ///< it has lists
-    bool casts = false; ///< it has rays, to be decided in every step
-    bool apart = false; ///< as AskedPair's, while its near edges last
+    double metres = -1;      ///< that the pair may move, by the cheap bound, before the exact one is computed
+    double edges = -1;       ///< that it may come nearer before its near edges are sought anew
+    double points = -1;      ///< the same of its near vertices
+    float margin = 0;        ///< within which it has speculative contacts
+    bool open = false;       ///< it has lists
+    bool casts = false;      ///< it has rays, to be decided in every step
+    bool apart = false;      ///< as AskedPair's, while its near edges last
+    bool all = false;        ///< its near edges have short ones, too (docs/edges.md)
+    bool near = false;       ///< ... and those within the margin
+    bool has_points = false; ///< it has near vertices
 };
 
 /// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.
@@ -66,13 +69,12 @@ struct Due {
 inline constexpr double edge_share = 0.998;
 inline constexpr double never = 1e300; ///< metres
 
-/// A pair whose near edges may be sought in this step.
-struct DueEdges {
-    std::uint32_t pair;  ///< its place
-    float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
-    float speculative;   ///< of what is needed: metres within which they have speculative contacts
-    bool due;            ///< else they are sought only if short ones are missing
-    bool moves;          ///< what it meets on its way to the next step is near
+/// A pair whose near vertices and edges may be sought in this step.
+struct DueNear {
+    std::uint32_t pair; ///< its place
+    double size, speed; ///< of the smaller body's box; metres a step
+    bool points, edges; ///< they are due; edges: else they are sought only if some are missing
+    bool moves;         ///< it hurries
 };
 
 using WatchedPairs = PairTable<WatchedPair, Slack>;
@@ -102,7 +104,7 @@ public:
         List<kernels::DirectedPair> places; ///< of due
         List<std::uint32_t> stale;          ///< indices of due: those that need a new list
         List<std::uint32_t> as_standard;    ///< places of pairs that are left to `standard`
-        List<DueEdges> edges;
+        List<DueNear> near;
         std::size_t first = 0;         ///< place of its first due among all
         std::size_t segment_first = 0; ///< place of its first segment among all
         std::uint64_t blocks = 0;      ///< vertex blocks tested
@@ -127,7 +129,7 @@ private:
         Due due[2 * slice_size];
         kernels::DirectedPair places[2 * slice_size];
         std::uint32_t stale[2 * slice_size], as_standard[slice_size];
-        DueEdges edges[slice_size];
+        DueNear near[slice_size];
     };
     static void wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
                            Slice& slice);

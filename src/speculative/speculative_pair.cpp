@@ -17,9 +17,9 @@ constexpr double sideways = 1e-6, arc = 0.1;
 // Edges that are more parallel have no one point where they are nearest: vertices have.
 constexpr double least_sine = 1e-3;
 
-// Calls visit(edge, its near faces) for each edge.
+// Calls visit(edge or vertex, its near faces) for each.
 template <class Visit>
-void by_edge(std::span<const NearEdge> near, Visit&& visit) {
+void by_source(std::span<const NearEdge> near, Visit&& visit) {
     for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
         while (end < near.size() && near[end].edge == near[begin].edge) ++end;
         visit(near[begin].edge, near.subspan(begin, end - begin));
@@ -59,7 +59,7 @@ std::optional<Approach> nearest(const ShapeData& target, std::span<const NearEdg
         const NearestPoint point = nearest_of(p, a, b, c);
         const Vec3 off = p - point.point;
         const double away2 = dot(off, off);
-        if (away2 > least2 || (away2 == least2 && face != NONE)) continue;
+        if (away2 > least2 || (away2 == least2 && near.face > face)) continue;
         least2 = away2;
         face = near.face;
         best = point;
@@ -95,7 +95,7 @@ std::optional<Approach> first_met(const ShapeData& target, std::span<const NearE
         const double volume = u + v + w;
         if (volume == 0) continue;
         const double at = (u * dot(p, way) + v * dot(q, way) + w * dot(r, way)) / (volume * size * size);
-        if (at < -hair / size || at > first || (at == first && face != NONE)) continue;
+        if (at < -hair / size || at > first || (at == first && near.face > face)) continue;
         first = at;
         face = near.face;
     }
@@ -143,76 +143,85 @@ std::array<double, 2> meetings(const Vec3& along, const Vec3& turn, const Vec3& 
     return {std::min(one, two), std::max(one, two)};
 }
 
-} // namespace
+struct Edge {
+    std::array<Vec3, 2> ends, ways; ///< until the next step
+};
 
-void SpeculativePair::find(const Question& question, std::vector<FeatureContact>& found) {
-    const PlacedBody &a = question.a, &b = question.b;
-    const ShapeData &shape_a = a.shape->data(), &shape_b = b.shape->data();
-    const PairPlace now = place_pair(a.centred, b.centred, 0), next = place_pair(a.next, b.next, 0);
-    const auto ways = displacement_bounds(now, next, shape_a.reach, shape_b.reach);
-    const std::array sides{
-        Side{shape_a, shape_b, now.pose, next.pose, ways[0] > question.margin, VertexBody::a},
-        Side{shape_b, shape_a, now.pose_of_second(), next.pose_of_second(), ways[1] > question.margin, VertexBody::b}};
-    const std::size_t touching = found.size();
-    for (const Side& side : sides) find_vertices(question, side, found);
-    if (!question.edges) return;
-    const bool told = found.size() > touching || !question.vertices[0].empty() || !question.vertices[1].empty();
-    const std::size_t first = found.size();
-    find_edges(question, sides[0], told ? short_edge * smaller_size(a, b) : 0, found);
-    const auto known = [&](const FeatureContact& c) {
-        return std::any_of(found.begin(), found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& t) {
-            return t.feature == Feature::edges && t.index == c.index && t.other == c.other;
-        });
-    };
-    found.erase(std::remove_if(found.begin() + std::ptrdiff_t(first), found.end(), known), found.end());
+/// One body as the other sees it, in the other's centred frame.
+struct Side {
+    const ShapeData &source, &target;
+    Pose now, next;
+    bool moves; ///< a point may go farther than the margin until the next step
+};
+
+std::array<Side, 2> sides_of(const SpeculativePair& pair) {
+    const ShapeData &a = pair.a.shape->data(), &b = pair.b.shape->data();
+    const PairPlace now = place_pair(pair.a.centred, pair.b.centred, 0), next = place_pair(pair.a.next, pair.b.next, 0);
+    const auto ways = displacement_bounds(now, next, a.reach, b.reach);
+    return {Side{a, b, now.pose, next.pose, ways[0] > pair.margin},
+            Side{b, a, now.pose_of_second(), next.pose_of_second(), ways[1] > pair.margin}};
 }
 
-// Each vertex once, with the faces near the edge of its lowest triangle that begins at it.
-void SpeculativePair::find_vertices(const Question& question, const Side& side, std::vector<FeatureContact>& found) {
-    const auto own = static_cast<std::size_t>(side.body);
-    in_contact_.clear();
-    for (const kernels::LocalContact& c : question.vertices[own]) in_contact_.push_back(c.vertex);
-    std::ranges::sort(in_contact_);
-    const double hair = 1e-7 * smaller_size(question.a, question.b);
-    by_edge(question.near[own], [&](std::uint32_t edge, std::span<const NearEdge> faces) {
-        const std::uint32_t v = ends_of(side.source, edge)[0];
-        if (side.source.vertex_triangle[v] != edge / 3 || std::ranges::binary_search(in_contact_, v)) return;
-        const Vec3 point = side.source.point(v), p = transform_point(side.now, point);
-        std::optional<Approach> approach;
-        if (side.moves) approach = first_met(side.target, faces, p, transform_point(side.next, point), hair);
-        if (!approach) {
-            approach = nearest(side.target, faces, p, question.margin, hair);
-            const Vec3 outward = rotated(side.now.rotation, side.source.vertex_normals[v]);
-            if (!approach || !(dot(outward, approach->normal) < -sideways)) return;
-        }
-        found.push_back({side.body, Feature::vertex, v, approach->face, p, approach->normal, -approach->gap});
-    });
+double hair_of(const SpeculativePair& pair) {
+    return 1e-7 * smaller_size(pair.a, pair.b);
+}
+
+} // namespace
+
+void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
+                               const std::array<std::span<const kernels::LocalContact>, 2>& touching,
+                               std::vector<FeatureContact>& found) {
+    const double hair = hair_of(pair);
+    const auto sides = sides_of(pair);
+    for (const VertexBody body : {VertexBody::a, VertexBody::b}) {
+        const auto own = static_cast<std::size_t>(body);
+        const Side& side = sides[own];
+        by_source(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
+            if (std::ranges::find(touching[own], v, &kernels::LocalContact::vertex) != touching[own].end()) return;
+            const Vec3 point = side.source.point(v), p = transform_point(side.now, point);
+            std::optional<Approach> approach;
+            if (side.moves) approach = first_met(side.target, faces, p, transform_point(side.next, point), hair);
+            if (!approach) {
+                approach = nearest(side.target, faces, p, pair.margin, hair);
+                const Vec3 outward = rotated(side.now.rotation, side.source.vertex_normals[v]);
+                if (!approach || !(dot(outward, approach->normal) < -sideways)) return;
+            }
+            found.push_back({body, Feature::vertex, v, approach->face, p, approach->normal, -approach->gap});
+        });
+    }
 }
 
 // Of a's edges against b's. An edge is asked with the lowest of its faces.
-void SpeculativePair::find_edges(const Question& question, const Side& side, double least_length,
-                                 std::vector<FeatureContact>& found) const {
+void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
+                            std::vector<FeatureContact>& found) {
+    const Side side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
-    const double hair = 1e-7 * smaller_size(question.a, question.b);
+    const double hair = hair_of(pair), least_length = told ? short_edge * smaller_size(pair.a, pair.b) : 0;
+    const std::size_t touching = found.size();
+    const auto touches = [&](std::uint32_t edge, std::uint32_t other) {
+        return std::any_of(found.begin(), found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {
+            return c.feature == Feature::edges && c.index == edge && c.other == other;
+        });
+    };
     const auto stays = [](const Vec3& n) { return n; };
     const auto turned = [&](const Vec3& n) { return rotated(side.now.rotation, n); };
-    by_edge(question.near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
+    by_source(near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
         const auto [start, stop] = ends_of(a, number);
         if (!is_sharp(a, number) || !(length(a.point(stop) - a.point(start)) > least_length) || !is_convex(a, number))
             return;
-        Edge edge{number, {transform_point(side.now, a.point(start)), transform_point(side.now, a.point(stop))}, {}};
+        Edge edge{{transform_point(side.now, a.point(start)), transform_point(side.now, a.point(stop))}, {}};
         if (side.moves)
             edge.ways = {transform_point(side.next, a.point(start)) - edge.ends[0],
                          transform_point(side.next, a.point(stop)) - edge.ends[1]};
         const Vec3 along = edge.ends[1] - edge.ends[0];
-        Box box = box_of(edge.ends[0], edge.ends[1], question.margin);
-        const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], question.margin);
+        Box box = box_of(edge.ends[0], edge.ends[1], pair.margin);
+        const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], pair.margin);
         box = {least(box.low, then.low), most(box.high, then.high)};
-        for (const NearEdge& near : faces)
+        for (const NearEdge& one : faces)
             for (std::uint32_t k = 0; k < 3; ++k) {
-                const std::uint32_t other = 3 * near.face + k;
+                const std::uint32_t other = 3 * one.face + k;
                 if (!is_sharp(b, other)) continue; // nor if another face is lower
-                const Vec3 q = b.corner(near.face, k), beside = b.corner(near.face, (k + 1) % 3) - q;
+                const Vec3 q = b.corner(one.face, k), beside = b.corner(one.face, (k + 1) % 3) - q;
                 if (!box.touches(box_of(q, q + beside, 0)) || !(length(beside) > least_length)) continue;
                 const auto gap_along = [&](const Vec3& n, const std::array<double, 2>& at) {
                     return dot(n, edge.ends[0] + at[0] * along - (q + at[1] * beside));
@@ -222,6 +231,7 @@ void SpeculativePair::find_edges(const Question& question, const Side& side, dou
                            && beyond_arc(a, number, unit(direction), -1.0 * n, turned) <= arc;
                 };
                 const auto tell = [&](const Vec3& n, const std::array<double, 2>& at) {
+                    if (touches(number, other)) return;
                     found.push_back({VertexBody::a, Feature::edges, number, other, edge.ends[0] + at[0] * along, n,
                                      -std::max(0.0, gap_along(n, at))});
                 };
@@ -250,7 +260,7 @@ void SpeculativePair::find_edges(const Question& question, const Side& side, dou
                 if (across != NONE) out = out + unit(area_normal(b, across));
                 if (dot(n, out) < 0) n = -1.0 * n;
                 const double gap = gap_along(n, *at);
-                if (gap >= -hair && gap <= question.margin && is_in_arcs(n, along)) tell(n, *at);
+                if (gap >= -hair && gap <= pair.margin && is_in_arcs(n, along)) tell(n, *at);
             }
     });
 }

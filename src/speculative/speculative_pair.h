@@ -10,40 +10,22 @@
 
 namespace raycontact {
 
-/// The speculative contacts of one pair (docs/speculative.md): what is nearer than a margin, and what will touch on its
-/// way to the next step; found in double among the edges and faces that are near, so the same for every device. Keeps
-/// nothing but memory from one pair to the next.
-class SpeculativePair {
-public:
-    /// What is asked.
-    struct Question {
-        const PlacedBody &a, &b;
-        double margin; ///< metres
-        bool edges;    ///< two edges can be in contact
-        const NearEdges& near;
-        const std::array<std::span<const kernels::LocalContact>, 2>& vertices; ///< in contact: of a, of b
-    };
-    /// Adds contacts in any order. found: those of edges that are in contact.
-    void find(const Question& question, std::vector<FeatureContact>& found);
-
-private:
-    /// One body as the other sees it, in the other's centred frame.
-    struct Side {
-        const ShapeData &source, &target;
-        Pose now, next;
-        bool moves; ///< a point may go farther than the margin until the next step
-        VertexBody body;
-    };
-    struct Edge {
-        std::uint32_t number;
-        std::array<Vec3, 2> ends, ways; ///< until the next step
-    };
-
-    void find_vertices(const Question& question, const Side& side, std::vector<FeatureContact>& found);
-    void find_edges(const Question& question, const Side& side, double least_length,
-                    std::vector<FeatureContact>& found) const;
-
-    std::vector<std::uint32_t> in_contact_; ///< vertices of a side, sorted
+/// A pair whose speculative contacts are asked for (docs/speculative.md): what is nearer than a margin, and what will
+/// touch on its way to the next step. They are found in double, so they are the same for every device.
+struct SpeculativePair {
+    const PlacedBody &a, &b;
+    double margin; ///< metres
 };
+
+/// Adds those of vertices in any order. near: vertices and the faces that they may come near, each vertex's together.
+/// touching: the contacts of a, of b, which are left out.
+void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
+                               const std::array<std::span<const kernels::LocalContact>, 2>& touching,
+                               std::vector<FeatureContact>& found);
+
+/// Adds those of two edges in any order, but for those that `found` has already. told: a vertex has a contact, so short
+/// edges need not. near: as NearEdges.
+void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
+                            std::vector<FeatureContact>& found);
 
 } // namespace raycontact

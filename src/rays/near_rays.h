@@ -7,10 +7,11 @@
 
 namespace raycontact {
 
-/// The edges of pairs that may cross faces, found and cast as rays are. In float32, with a margin for what that could
-/// hide (find_edges.h): some more than cross. Nothing waits.
-class EdgeRays {
+/// The edges of pairs that may cross faces, or the edges or vertices that come near, found and cast as rays are. In
+/// float32, with a margin for what that could hide (find_edges.h): some more than cross. Nothing waits.
+class NearRays {
 public:
+    explicit NearRays(BlockSearch::Sources sources) : search_(sources), sources_(sources) {}
     /// By directed pair, metres; each may be empty.
     struct Reach {
         const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
@@ -36,7 +37,10 @@ public:
     void give_back();
 
 private:
+    RayBatch::Sum sum(RayBatch::Sum of_edges) const;
+
     BlockSearch search_;
+    BlockSearch::Sources sources_;
     Array<float> margins_, horizons_; ///< by directed pair
     Array<kernels::Ray> rays_;
     Array<kernels::EdgeHits> hits_;

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rays/near_lists.h"
+
+#include "give_back.h"
+#include "shape/shape_data.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace raycontact {
+
+namespace {
+
+// For all pairs of a first step the search would take as much memory as all that is kept.
+constexpr std::size_t pairs_at_once = 1 << 13;
+
+} // namespace
+
+void NearLists::clear() {
+    pool_.clear();
+    free_all(edges_);
+}
+
+void NearLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
+    if (due.empty()) {
+        resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
+        directed_.clear();
+        found_.set({}, {}, 0);
+        return rays_.rest();
+    }
+    for (std::size_t first = 0; first < due.size(); first += pairs_at_once)
+        find_some(update, due.subspan(first, std::min(pairs_at_once, due.size() - first)), table, batch);
+}
+
+void NearLists::find_some(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
+    const bool move = std::ranges::any_of(due, &Search::moves);
+    resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
+    next_.resize(update.device, move ? pairs_.size() : 0);
+    directed_.resize(2 * due.size());
+    std::iota(directed_.begin(), directed_.end(), 0U);
+    update.executor.each(due.size(), 128, [&](std::uint32_t k) {
+        for (std::uint32_t side = 0; side < 2; ++side) {
+            const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].pair + side);
+            place_source(source, target, pairs_.in_place()[2 * k + side]);
+            if (due[k].moves)
+                place_source(source, target, relative_pose(target.next, source.next), next_.in_place()[2 * k + side]);
+            else if (move)
+                next_.in_place()[2 * k + side] = pairs_.in_place()[2 * k + side];
+            margins_.in_place()[2 * k + side] = due[k].margin + due[k].speculative;
+            ahead_.in_place()[2 * k + side] = due[k].ahead;
+            least_.in_place()[2 * k + side] = due[k].least;
+        }
+    });
+    do {
+        rays_.cast(update, pairs_, next_, {margins_, ahead_, least_}, batch);
+        const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
+        update.device.queue().read(pieces);
+        check_sums(batch.sums);
+    } while (!rays_.had_room(update.device, batch));
+    found_.set(rays_.found().values(), directed_, due.size());
+    for (std::size_t k = 0; k < due.size(); ++k) {
+        const auto [a, b] = update.pairs[due[k].pair];
+        const double clear = std::min(rays_.clear(2 * k, update.bodies[b].shape->data().header.tolerance),
+                                      rays_.clear(2 * k + 1, update.bodies[a].shape->data().header.tolerance));
+        table.hot(due[k].pair).*slack_ = edge_share * (double(due[k].margin) + clear);
+        WatchedPair& pair = table.state(due[k].pair);
+        release(pair);
+        KeptNear& kept = pair.*kept_;
+        kept.counts = {static_cast<std::uint32_t>(found_.of(2 * k).size()),
+                       static_cast<std::uint32_t>(found_.of(2 * k + 1).size())};
+        const RangePool::Range range = pool_.allocate(kept.count());
+        kept.first = range.first;
+        kept.capacity = range.capacity;
+        if (edges_.size() < pool_.end()) edges_.resize(pool_.end());
+        const auto all = found_.all().subspan(found_.first(2 * k), kept.count());
+        std::copy(all.begin(), all.end(), edges_.begin() + std::ptrdiff_t(kept.first));
+    }
+}
+
+std::uint64_t NearLists::bytes() const {
+    return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
+           + next_.size() * sizeof(kernels::DirectedPair)
+           + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
+}
+
+void NearLists::give_back() {
+    raycontact::give_back(directed_, pairs_, next_, margins_, ahead_, least_, rays_, found_);
+}
+
+} // namespace raycontact

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pairs/by_pair.h"
+#include "pairs/range_pool.h"
+#include "rays/near_rays.h"
+#include "rays/wake_up.h"
+
+namespace raycontact {
+
+/// The near edges, or the near vertices, that the certified method keeps of its pairs. They were sought some way beyond
+/// what is needed, and last until the pair has moved that far (docs/certified.md). Needs memory that host and device
+/// share.
+class NearLists {
+public:
+    struct Search {
+        std::uint32_t pair;  ///< its place
+        float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
+        float speculative;   ///< of what is needed: metres within which they have speculative contacts
+        float least;         ///< metres: edges that are shorter are left out
+        bool moves;          ///< what they come near on their way to the next step is needed
+    };
+    NearLists(BlockSearch::Sources sources, KeptNear WatchedPair::*kept, double Slack::*slack)
+        : rays_(sources), kept_(kept), slack_(slack) {}
+
+    /// Uses the batch's sums of edges, or of points.
+    void find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch);
+    std::array<std::span<kernels::NearEdge>, 2> of(const WatchedPair& pair) {
+        const KeptNear& kept = pair.*kept_;
+        const std::span all = std::span(edges_).subspan(kept.first, kept.count());
+        return {all.first(kept.counts[0]), all.subspan(kept.counts[0])};
+    }
+    void release(WatchedPair& pair) {
+        pool_.release({(pair.*kept_).first, (pair.*kept_).capacity});
+        pair.*kept_ = {};
+    }
+    void clear();
+
+    std::uint64_t bytes() const;
+    /// After a step: frees memory that it hardly used. Not what is kept.
+    void give_back();
+
+private:
+    void find_some(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch);
+
+    std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
+    Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
+    Array<kernels::DirectedPair> next_;   ///< where they will be, if any moves
+    Array<float> margins_, ahead_, least_;
+    NearRays rays_;
+    KeptNear WatchedPair::*kept_;
+    double Slack::*slack_;
+    ByPair<kernels::NearEdge> found_;
+    RangePool pool_;
+    std::vector<kernels::NearEdge> edges_;
+};
+
+} // namespace raycontact

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edges/pair_meshes.h"
+#include "pairs/by_pair.h"
+#include "pairs/near_edges.h"
+#include "pairs/update.h"
+
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// The speculative contacts of the vertices of all pairs (docs/speculative.md).
+class SpeculativeVertices {
+public:
+    /// touching: the contacts of vertices. asked: in the order of the pairs, with vertices for edges.
+    void run(const Update& update, const ByPair<kernels::LocalContact>& touching, std::span<const AskedPair> asked);
+    /// Of the i-th pair of the step.
+    std::span<const FeatureContact> of(std::size_t i) const {
+        return ends_.empty() ? std::span<const FeatureContact>()
+                             : std::span(found_).subspan(ends_[i], ends_[i + 1] - ends_[i]);
+    }
+    void clear();
+    /// After a step: frees memory that it hardly used.
+    void give_back();
+
+private:
+    std::vector<std::vector<FeatureContact>> blocks_; ///< of some pairs each
+    std::vector<FeatureContact> found_;               ///< in the order of the pairs
+    std::vector<std::uint32_t> ends_;                 ///< of the pair before, by pair
+};
+
+} // namespace raycontact
