@@ -13,32 +13,42 @@ DEVICE float least_of_vertices(const float* values) {
     return least;
 }
 
-// At most how far a point of the source goes until the next step, metres. No point is farther from the middle of its
-// shape than half the diagonal of its box.
-DEVICE float way_of_pair(READS(DirectedPair) now, READS(DirectedPair) next, READS(ShapeHeader) shapes) {
+// A pair half-way to the next step: its points are half-way on straight ways. Returns how far a point of the source is
+// from there at most, metres: none is farther from the middle of its shape than half the diagonal of its box.
+DEVICE float go_half_way(READS(DirectedPair) now, READS(DirectedPair) next, READS(ShapeHeader) shapes,
+                         WRITES(DirectedPair) half_way) {
     float shift = 0.0f, turn = 0.0f;
     for (int i = 0; i < 3; ++i) {
-        const float by = next->translation[i] - now->translation[i];
+        const float by = 0.5f * (next->translation[i] - now->translation[i]);
+        half_way->translation[i] = now->translation[i] + by;
         shift += by * by;
     }
     for (int i = 0; i < 9; ++i) {
-        const float by = next->rotation[i] - now->rotation[i];
+        const float by = 0.5f * (next->rotation[i] - now->rotation[i]);
+        half_way->rotation[i] = now->rotation[i] + by;
         turn += by * by;
     }
+    for (int i = 0; i < 6; ++i) half_way->bounds[i] = now->bounds[i];
+    half_way->source = now->source;
+    half_way->target = now->target;
     const float reach = 0.5f * DIAGONAL_TOLERANCES * shapes[now->source].tolerance;
     return 1.001f * (root_of(shift) + reach * root_of(turn));
 }
 
 // Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
 // vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
-// side by side. horizons: where edges are looked for, `ahead` and their way to `next` beyond the margins; more, ahead:
-// null for 0; next: null for no way.
+// side by side. horizons: where edges are looked for, `ahead` and half their way beyond the margins; more, ahead: null
+// for 0. half_way: of the pairs on their way to `next`; both null: they stay.
 KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
-                         READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons) {
+                         READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons,
+                         WRITES(DirectedPair) half_way) {
     FOR_EACH(p, count) {
         READS(DirectedPair) there = pairs + p;
         READS(DirectedPair) back = pairs + (p ^ 1u);
-        if (there->source == NONE) continue;
+        if (there->source == NONE) {
+            if (next) half_way[p].source = NONE;
+            continue;
+        }
         READS(float) r = there->rotation;
         float shear = 0.0f, apart = 0.0f, off = 0.0f;
         for (int i = 0; i < 3; ++i) {
@@ -53,7 +63,7 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
         const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
         margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
         horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
-        if (next) horizons[p] += way_of_pair(there, next + p, shapes);
+        if (next) horizons[p] += go_half_way(there, next + p, shapes, half_way + p);
     }
 }
 
@@ -90,7 +100,7 @@ DEVICE void place_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair)
     }
 }
 
-// Moves those that lie at the present pose half-way to the next.
+// Their ways, of those that lie half-way.
 DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) next, READS(VertexBlock) block,
                          uint first) {
     MovingLanes then;
@@ -98,10 +108,9 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
     place_sources(&then, vertices, next, block, first);
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(k, VERTICES_AT_ONCE) {
-            const float way = 0.5f * (then.middle[i][k] - lanes->middle[i][k]);
-            const float turn = 0.5f * (then.half_edge[i][k] - lanes->half_edge[i][k]);
-            lanes->middle[i][k] += way;
-            lanes->half_edge[i][k] = vertices != 0u ? way : lanes->half_edge[i][k] + turn;
+            const float way = then.middle[i][k] - lanes->middle[i][k];
+            const float turn = then.half_edge[i][k] - lanes->half_edge[i][k];
+            if (vertices != 0u) lanes->half_edge[i][k] = way;
             lanes->reach[i][k] =
                 magnitude_of(lanes->half_edge[i][k]) + (vertices != 0u ? 0.0f : magnitude_of(way) + magnitude_of(turn));
             way2[k] += way * way;
@@ -188,7 +197,7 @@ STRUCT(EdgeGroup) {
 STRUCT(EdgeArrays) {
     uint vertices; // 1: the sources are points
     READS(DirectedPair) pairs;
-    READS(DirectedPair) next; // null: the pairs stay
+    READS(DirectedPair) next; // null: the pairs stay; else they are half-way there
     READS(float) margins;     // by pair
     READS(ShapeHeader) shapes;
     READS(ulong) memory;
@@ -290,15 +299,12 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
     if (arrays->next) {
         const SourceRay then = source_ray(arrays->next + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
         for (int i = 0; i < 3; ++i) {
-            const float way = 0.5f * (then.position[i] - edge.position[i]);
-            const float turn = 0.5f * (then.direction[i] - edge.direction[i]);
-            edge.position[i] += way;
+            const float way = then.position[i] - edge.position[i], turn = then.direction[i] - edge.direction[i];
             way2 += way * way;
             if (arrays->vertices != 0u) {
                 edge.direction[i] = way;
                 continue;
             }
-            edge.direction[i] += turn;
             group->way[i][r] = way;
             passed[i] = magnitude_of(way) + magnitude_of(turn);
             turn2 += turn * turn;

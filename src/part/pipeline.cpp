@@ -148,7 +148,7 @@ void Pipeline::find_speculative(const Update& update) {
     if (casts_points_)
         near_points_.set(points_.found().values(), pairs_of(update).directed(), update.pairs.size());
     else
-        certified_.find_points(update, batch_);
+        certified_.find_points(update, local_, batch_);
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         if (!casts_points_ && certified_.has_points(i)) asked_.push_back({i, false, certified_.points(i)});
         if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) continue;

@@ -36,8 +36,8 @@ public:
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
                      const Array<kernels::DirectedPair>& next, const Array<float>& margins, const Array<float>& least,
                      bool clears, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
-    /// Of edges, in memory that host and device share: how far pair p can move beyond margins[p] before one comes
-    /// within it that is not cast, metres.
+    /// Of edges, in memory that host and device share: how far pair p can move before one that is not cast comes within
+    /// its margin, metres; margin: with half the way to the next step.
     double clear(std::size_t p, float margin, float tolerance);
     /// Writes them, the first to rays[begin]. totals[at]: what was left there by the call that counted them.
     void write_rays(const Update& update, const Array<kernels::Totals>& totals, std::size_t at, kernels::uint begin,

@@ -36,6 +36,10 @@ bool spares_little(const Due& due) {
     return own.rays.count > many_rays && 2 * own.rays.count > VERTEX_LANES * own.count && due.radius == 0;
 }
 
+bool is_in_contact(const ByPair<kernels::LocalContact>& contacts, std::uint32_t pair) {
+    return contacts.first(2 * pair) != contacts.first(2 * pair + 2);
+}
+
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
     return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
@@ -262,45 +266,70 @@ NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& k
     return {due.pair, static_cast<float>(more), static_cast<float>(ahead), static_cast<float>(margin), 0, moves};
 }
 
-void CertifiedRays::find_points(const Update& update, RayBatch& batch) {
+// Every vertex ends an edge: where no edge is near, none is. So pairs that had no near vertices are asked for edges.
+void CertifiedRays::find_points(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
+    searches_.clear();
+    for (WakeUp::Slice& slice : wake_up_.slices())
+        for (DueNear& due : slice.near) {
+            if (!due.points || !due.edges || table_.hot(due.pair).has_points || is_in_contact(contacts, due.pair))
+                continue;
+            seek_edges(update, due, false, true);
+        }
+    edges_.find(update, searches_, table_, batch);
+    for (const NearLists::Search& search : searches_) {
+        Slack& slack = table_.hot(search.pair);
+        if (table_.state(search.pair).edges.count() == 0) slack.points = slack.edges;
+    }
     searches_.clear();
     for (const WakeUp::Slice& slice : wake_up_.slices())
-        for (const DueNear& due : slice.near)
-            if (due.points)
-                searches_.push_back(
-                    search_of(due, table_.state(due.pair).points, due.moves, double(table_.hot(due.pair).margin)));
+        for (const DueNear& due : slice.near) {
+            const Slack& slack = table_.hot(due.pair);
+            const WatchedPair& state = table_.state(due.pair);
+            if (!due.points || (due.sought && state.edges.count() == 0)) continue;
+            searches_.push_back(search_of(due, state.points, due.moves, double(slack.margin)));
+        }
     points_.find(update, searches_, table_, batch);
     for (const NearLists::Search& search : searches_)
         table_.hot(search.pair).has_points = table_.state(search.pair).points.count() > 0;
 }
 
-// What only vertices need tell is not sought: short edges of a pair in contact, and those that only come near it.
 void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
                                const SpeculativeVertices& speculative, RayBatch& batch) {
     searches_.clear();
-    for (const WakeUp::Slice& slice : wake_up_.slices())
-        for (const DueNear& due : slice.near) {
+    for (WakeUp::Slice& slice : wake_up_.slices())
+        for (DueNear& due : slice.near) {
+            if (due.sought) continue;
             const auto [first, second] = update.pairs[due.pair];
-            const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-            const bool in_contact = contacts.first(2 * due.pair) != contacts.first(2 * due.pair + 2);
-            const bool told = in_contact || !speculative.of(due.pair).empty();
-            const bool near = update.settings.is_speculative() && asks_speculative_edges(a, b, told);
-            Slack& slack = table_.hot(due.pair);
-            if (!due.edges && (in_contact || slack.all) && (!near || slack.near)) continue;
-            WatchedPair& state = table_.state(due.pair);
-            const KeptNear before = state.edges;
-            slack.apart = false;
-            slack.edges = never;
-            slack.all = !in_contact;
-            slack.near = near || !update.settings.is_speculative();
-            edges_.release(state);
-            if (!asks_edges(a, b)) slack.all = slack.near = true;
-            if (!asks_edges(a, b) || (in_contact && has_short_edges_alone(a, b))) continue;
-            NearLists::Search& search =
-                searches_.emplace_back(search_of(due, before, near && due.moves, near ? double(slack.margin) : 0));
-            search.least = in_contact ? static_cast<float>(short_length(a, b)) : 0;
+            const bool in_contact = is_in_contact(contacts, due.pair);
+            const bool near = update.settings.is_speculative()
+                              && asks_speculative_edges(update.bodies[first], update.bodies[second],
+                                                        in_contact || !speculative.of(due.pair).empty());
+            const Slack& slack = table_.hot(due.pair);
+            if (due.edges || !(in_contact || slack.all) || (near && !slack.near))
+                seek_edges(update, due, in_contact, near);
         }
     edges_.find(update, searches_, table_, batch);
+}
+
+// What only vertices need tell is not sought: short edges of a pair in contact; and without `near`, those that only
+// come near.
+void CertifiedRays::seek_edges(const Update& update, DueNear& due, bool in_contact, bool near) {
+    const auto [first, second] = update.pairs[due.pair];
+    const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
+    WatchedPair& state = table_.state(due.pair);
+    Slack& slack = table_.hot(due.pair);
+    const KeptNear before = state.edges;
+    const bool asks = asks_edges(a, b);
+    due.sought = true;
+    slack.apart = false;
+    slack.edges = never;
+    slack.all = !in_contact || !asks;
+    slack.near = near || !asks || !update.settings.is_speculative();
+    edges_.release(state);
+    if (!asks || (in_contact && has_short_edges_alone(a, b))) return;
+    NearLists::Search& search =
+        searches_.emplace_back(search_of(due, before, near && due.moves, near ? double(slack.margin) : 0));
+    search.least = in_contact ? static_cast<float>(short_length(a, b)) : 0;
 }
 
 void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {

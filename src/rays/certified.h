@@ -20,9 +20,9 @@ class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
-    /// Then the near vertices, for speculative contacts.
-    void find_points(const Update& update, RayBatch& batch);
-    /// Then, when all contacts of the vertices are known, the near edges.
+    /// Then, when the contacts of vertices are known, the near vertices, for speculative contacts.
+    void find_points(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch);
+    /// Then, when those of vertices are known, the near edges.
     void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
                     const SpeculativeVertices& speculative, RayBatch& batch);
     void clear();
@@ -47,6 +47,7 @@ private:
     };
 
     static NearLists::Search search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin);
+    void seek_edges(const Update& update, DueNear& due, bool in_contact, bool near);
     void close(WatchedPair& state);
     void list_slices();
     void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);

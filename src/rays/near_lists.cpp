@@ -60,8 +60,9 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Wat
     found_.set(rays_.found().values(), directed_, due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
         const auto [a, b] = update.pairs[due[k].pair];
-        const double clear = std::min(rays_.clear(2 * k, update.bodies[b].shape->data().header.tolerance),
-                                      rays_.clear(2 * k + 1, update.bodies[a].shape->data().header.tolerance));
+        const double clear =
+            std::min(rays_.clear(2 * k, due[k].ahead, update.bodies[b].shape->data().header.tolerance),
+                     rays_.clear(2 * k + 1, due[k].ahead, update.bodies[a].shape->data().header.tolerance));
         table.hot(due[k].pair).*slack_ = edge_share * (double(due[k].margin) + clear);
         WatchedPair& pair = table.state(due[k].pair);
         release(pair);

@@ -26,20 +26,22 @@ void NearRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     const kernels::uint vertices = sources_ == BlockSearch::Sources::points ? 1 : 0;
     const std::size_t room = std::max(rays_.size(), least_room);
     resize(device, pairs.size(), margins_, horizons_);
+    half_way_.resize(device, next.size());
     resize(device, room, rays_, hits_);
     counts_.resize(device, 1, room);
     launch<KernelId::find_margins>(device, pairs.size(), pairs, next, reach.more, reach.ahead, arrays.headers, margins_,
-                                   horizons_);
-    search_.find(update, pairs, horizons_, totals, sum(RayBatch::edge_block_sum));
-    search_.count_edges(update, pairs, next, margins_, reach.least, reach.ahead.size() > 0, totals,
+                                   horizons_, half_way_);
+    const Array<kernels::DirectedPair>& placed = next.size() > 0 ? half_way_ : pairs;
+    search_.find(update, placed, horizons_, totals, sum(RayBatch::edge_block_sum));
+    search_.count_edges(update, placed, next, margins_, reach.least, reach.ahead.size() > 0, totals,
                         sum(RayBatch::edge_ray_sum), room);
     search_.write_rays(update, totals, sum(RayBatch::edge_ray_sum), 0, rays_);
     const Count count = results_of(totals, sum(RayBatch::edge_ray_sum), room);
-    launch<KernelId::cast_edges>(device, count, vertices, pairs, next, margins_, arrays.headers, arrays.memory, rays_,
+    launch<KernelId::cast_edges>(device, count, vertices, placed, next, margins_, arrays.headers, arrays.memory, rays_,
                                  hits_, counts_.values());
     const Array<kernels::NearEdge>& found = found_.room(device);
     counts_.scan(device, count, totals, sum(RayBatch::edge_sum), found.size());
-    launch<KernelId::write_edges>(device, items_of(totals, sum(RayBatch::edge_sum), room), vertices, pairs, next,
+    launch<KernelId::write_edges>(device, items_of(totals, sum(RayBatch::edge_sum), room), vertices, placed, next,
                                   margins_, arrays.headers, arrays.memory, rays_, hits_, counts_.firsts(), found);
 }
 
@@ -59,7 +61,7 @@ void NearRays::rest() {
 }
 
 std::uint64_t NearRays::bytes() const {
-    return search_.bytes() + 2 * margins_.size() * sizeof(float)
+    return search_.bytes() + 2 * margins_.size() * sizeof(float) + half_way_.size() * sizeof(kernels::DirectedPair)
            + ray_count_ * (sizeof(kernels::Ray) + sizeof(kernels::EdgeHits) + 2 * sizeof(kernels::uint))
            + found_.values().size_bytes();
 }
@@ -69,7 +71,7 @@ void NearRays::give_back() {
     rays_.give_back(ray_count_);
     hits_.give_back(ray_count_);
     counts_.give_back(ray_count_);
-    raycontact::give_back(margins_, horizons_, found_);
+    raycontact::give_back(margins_, horizons_, half_way_, found_);
 }
 
 } // namespace raycontact

@@ -23,7 +23,9 @@ public:
               const Reach& reach, const RayBatch& batch);
     /// Of a cast with `ahead`, in memory that host and device share: how far directed pair p can move before an edge
     /// comes nearer than `more` that is not found, metres.
-    double clear(std::size_t p, float tolerance) { return search_.clear(p, margins_.in_place()[p], tolerance); }
+    double clear(std::size_t p, float ahead, float tolerance) {
+        return search_.clear(p, horizons_.in_place()[p] - ahead, tolerance);
+    }
     /// After the read, with its sums: false if anything had too little room: there is enough now, and cast() must run
     /// again.
     bool had_room(Device& device, const RayBatch& batch);
@@ -42,6 +44,7 @@ private:
     BlockSearch search_;
     BlockSearch::Sources sources_;
     Array<float> margins_, horizons_; ///< by directed pair
+    Array<kernels::DirectedPair> half_way_;
     Array<kernels::Ray> rays_;
     Array<kernels::EdgeHits> hits_;
     Columns counts_; ///< by ray: faces

@@ -132,7 +132,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
             slack.margin = static_cast<float>(
                 1.000001 * speculative_margin(update.settings, update.bodies[pair.first], update.bodies[pair.second]));
         const double way = way_of(i, slack);
-        DueNear due{i, size, speed, speculative && is_due(slack.points, way), false, way > 0};
+        DueNear due{i, size, speed, speculative && is_due(slack.points, way), false, way > 0, false};
         due.edges = edges && is_due(slack.edges, slack.near ? way : 0);
         if (due.points || due.edges || !slack.all || !slack.near) slice.near.add() = due;
     };

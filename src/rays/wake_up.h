@@ -75,6 +75,7 @@ struct DueNear {
     double size, speed; ///< of the smaller body's box; metres a step
     bool points, edges; ///< they are due; edges: else they are sought only if some are missing
     bool moves;         ///< it hurries
+    bool sought;        ///< its edges have been
 };
 
 using WatchedPairs = PairTable<WatchedPair, Slack>;
