@@ -45,7 +45,7 @@ enum class Schedule {
 };
 
 /// Of the smaller body's box diagonal: how near bodies have speculative contacts that do not hurry.
-inline constexpr double speculative_share = 0.005;
+inline constexpr double speculative_share = 0.0025;
 
 struct Settings {
     Method method = Method::certified;
