@@ -17,7 +17,7 @@ struct PlacedBody {
     std::uint32_t generation = 0;  ///< tells it from another that had its slot
     Pose pose;                     ///< of the body frame
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
-    Pose next;                     ///< of that frame, where it is expected at the next step; with speculative contacts
+    Pose next{};                   ///< of that frame, where it is expected at the next step; with speculative contacts
 };
 
 /// The pose of the frame about the shape's centre.

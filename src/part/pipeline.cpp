@@ -164,7 +164,7 @@ void Pipeline::list_asked(const Update& update) {
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
         const bool comes_near = !speculative_.of(i).empty();
-        const bool apart = !casts_edges_ && certified_.is_apart(i) && !in_contact;
+        const bool apart = edges && !casts_edges_ && certified_.is_apart(i) && !in_contact;
         if (!comes_near && (!edges || apart)) continue;
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];

@@ -188,8 +188,8 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
 }
 
 // Whichever allocation of a step fails: the step repeated, and repeated again, gives the contacts of a fresh scene.
-void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& shape, bool continuous = false) {
-    constexpr std::uint32_t bodies = 27;
+void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& shape, bool speculative = false) {
+    const std::uint32_t bodies = speculative ? 9 : 27;
     const auto pose_of = [](std::uint32_t body, double spacing) {
         const std::uint32_t column = body % 3, row = body / 3 % 3, layer = body / 9;
         const Vec3 at{spacing * column, spacing * row, spacing * layer};
@@ -200,7 +200,8 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
         settings.method = method;
         settings.threads = 1;
         settings.features = features;
-        settings.continuous = continuous;
+        settings.speculative = speculative;
+        settings.speculative_margin = 0.02;
         std::uint64_t failures = 0;
         for (std::int64_t k = 0;; ++k) {
             Scene scene(settings);
@@ -218,11 +219,12 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
             if (!failed) break;
             ++failures;
             EXPECT_TRUE(scene.contacts().empty());
-            EXPECT_TRUE(scene.coming_contacts().empty());
             Scene fresh(settings);
             for (std::uint32_t body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
             const auto expected = fresh.step();
             for (int again = 0; again < 2; ++again) {
+                // All stand still, as they do in a scene that knows no last pose.
+                for (const BodyId body : scene.bodies()) scene.set_next_pose(body, scene.pose(body));
                 const auto found = scene.step();
                 ASSERT_EQ(found.size(), expected.size()) << to_string(method) << ", allocation " << k;
                 for (std::size_t i = 0; i < found.size(); ++i) {
@@ -240,8 +242,8 @@ TEST(Allocations, AStepThatFailsLeavesNothing) {
     expect_nothing_left(Features::vertices, prepared_shape(scenes::scene_model("knot", 902).mesh));
 }
 
-TEST(Allocations, AContinuousStepThatFailsLeavesNothing) {
-    expect_nothing_left(Features::vertices, prepared_shape(scenes::scene_model("knot", 60).mesh), true);
+TEST(Allocations, ASpeculativeStepThatFailsLeavesNothing) {
+    expect_nothing_left(Features::edges, prepared_shape(scenes::scene_model("knot", 60).mesh), true);
 }
 
 TEST(Allocations, AStepWithEdgesThatFailsLeavesNothing) {

@@ -102,12 +102,11 @@ bool same_bits(std::span<const Contact> x, std::span<const Contact> y) {
         const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
         const auto wide = [](double f) { return std::bit_cast<std::uint64_t>(f); };
         return c.body_a == d.body_a && c.body_b == d.body_b && c.vertex_body == d.vertex_body && c.feature == d.feature
-               && c.vertex == d.vertex && c.triangle == d.triangle
-               && wide(c.point.x) == wide(d.point.x) && wide(c.point.y) == wide(d.point.y)
-               && wide(c.point.z) == wide(d.point.z) && bits(c.normal[0]) == bits(d.normal[0])
-               && bits(c.normal[1]) == bits(d.normal[1]) && bits(c.normal[2]) == bits(d.normal[2])
-               && bits(c.depth) == bits(d.depth) && bits(c.ray_length) == bits(d.ray_length)
-               && bits(c.weight) == bits(d.weight);
+               && c.vertex == d.vertex && c.triangle == d.triangle && wide(c.point.x) == wide(d.point.x)
+               && wide(c.point.y) == wide(d.point.y) && wide(c.point.z) == wide(d.point.z)
+               && bits(c.normal[0]) == bits(d.normal[0]) && bits(c.normal[1]) == bits(d.normal[1])
+               && bits(c.normal[2]) == bits(d.normal[2]) && bits(c.depth) == bits(d.depth)
+               && bits(c.ray_length) == bits(d.ray_length) && bits(c.weight) == bits(d.weight);
     });
 }
 

@@ -44,7 +44,7 @@ public:
         return pipeline_.asked();
     }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
-    std::vector<double> clear(double ahead, RayBatch& batch, EdgeRays& rays) {
+    std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
         const Update update{*opened_.device, *opened_.executor, *store_, bodies, pairs, motion_, settings_};
         batch.resize(update.device, 0);
         Array<kernels::DirectedPair> placed;
@@ -57,15 +57,17 @@ public:
             beyond.in_place()[d] = static_cast<float>(ahead * smaller_size(source, target));
         }
         do {
-            rays.cast(update, placed, {{}, beyond, {}}, batch);
+            rays.cast(update, placed, {}, {{}, beyond, {}}, batch);
             const Piece pieces[] = {batch.totals.piece(batch.sums), rays.found().piece()};
             update.device.queue().read(pieces);
         } while (!rays.had_room(update.device, batch));
         std::vector<double> clear;
         for (std::uint32_t i = 0; i < pairs.size(); ++i) {
             const auto& [a, b] = pairs[i];
-            clear.push_back(std::min(rays.clear(2 * i, bodies[b].shape->data().header.tolerance),
-                                     rays.clear(2 * i + 1, bodies[a].shape->data().header.tolerance)));
+            const auto of = [&](std::uint32_t d, std::uint32_t target) {
+                return rays.clear(d, beyond.in_place()[d], bodies[target].shape->data().header.tolerance);
+            };
+            clear.push_back(std::min(of(2 * i, b), of(2 * i + 1, a)));
         }
         return clear;
     }
@@ -129,7 +131,7 @@ void expect_all_found(Pairs& all, std::size_t least, double most_others) {
     EXPECT_LE(double(near), (1 + most_others) * double(expected));
 }
 
-TEST(EdgeRays, FindEveryCrossing) {
+TEST(NearRays, FindEveryCrossing) {
     Random random(11);
     std::vector<const Subject*> subjects = pointers(closed_subjects());
     for (const Subject& open : open_subjects()) subjects.push_back(&open);
@@ -153,7 +155,7 @@ TEST(EdgeRays, FindEveryCrossing) {
 }
 
 // Bodies apart, and moved by nearly as much as is clear: nothing crosses that was not found before.
-TEST(EdgeRays, WhatIsClearStaysApart) {
+TEST(NearRays, WhatIsClearStaysApart) {
     Random random(12);
     const std::vector<const Subject*> subjects = pointers(closed_subjects());
     std::vector<std::shared_ptr<const Shape>> shapes;
@@ -173,7 +175,7 @@ TEST(EdgeRays, WhatIsClearStaysApart) {
         all.add(at(placed.a), placed.pose_a, at(placed.b), away);
     }
     RayBatch batch;
-    EdgeRays rays;
+    NearRays rays(BlockSearch::Sources::edges);
     const std::vector<double> clear = all.clear(0.3, batch, rays);
     std::vector<std::array<Found, 2>> found(all.pairs.size());
     for (const auto& [edge, face, pair] : rays.found().values()) found[pair / 2][pair % 2].emplace(edge, face);
@@ -201,7 +203,7 @@ TEST(EdgeRays, WhatIsClearStaysApart) {
 }
 
 // Faces in one plane, edges along edges.
-TEST(EdgeRays, FindEveryCrossingOfFlushBodies) {
+TEST(NearRays, FindEveryCrossingOfFlushBodies) {
     Pairs all({prepared_shape(grid_box_mesh(4)), prepared_shape(l_prism_mesh())});
     for (int i = 0; i < 24; ++i) {
         Pose pose;
