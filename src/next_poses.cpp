@@ -2,6 +2,7 @@
 #include "next_poses.h"
 
 #include "mesh/vector.h"
+#include "shape/shape_data.h"
 
 namespace raycontact {
 
@@ -24,6 +25,10 @@ Pose go_on(const Pose& last, const Pose& now) {
 
 } // namespace
 
+bool NextPoses::goes_on(const Known& last, const PlacedBody& body) {
+    return last.is_of(body) && length(body.pose.translation - last.pose.translation) <= body.shape->data().diagonal;
+}
+
 void NextPoses::set(BodySlot body, std::uint32_t generation, const Pose& pose) {
     if (given_.size() <= body) given_.resize(body + std::size_t{1});
     given_[body] = {pose, generation, true};
@@ -39,7 +44,7 @@ std::span<const Pose> NextPoses::update(std::span<const PlacedBody> bodies) {
         if (given_[i].is_of(body))
             next_[i] = given_[i].pose;
         else
-            next_[i] = last_[i].is_of(body) ? go_on(last_[i].pose, body.pose) : body.pose;
+            next_[i] = goes_on(last_[i], body) ? go_on(last_[i].pose, body.pose) : body.pose;
     }
     return next_;
 }

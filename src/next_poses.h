@@ -9,7 +9,7 @@
 namespace raycontact {
 
 /// Where each body is expected at the next step: where the caller said, else as far from its pose as that is from the
-/// one of the last step.
+/// one of the last step; where it is if that is farther than its own size, as when it was put elsewhere.
 class NextPoses {
 public:
     /// Holds for one step.
@@ -27,6 +27,8 @@ private:
         bool there = false;
         bool is_of(const PlacedBody& body) const { return there && generation == body.generation; }
     };
+    static bool goes_on(const Known& last, const PlacedBody& body);
+
     std::vector<Known> given_, last_;
     std::vector<Pose> next_;
 };

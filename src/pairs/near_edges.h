@@ -31,11 +31,6 @@ inline bool has_short_edges_alone(const PlacedBody& a, const PlacedBody& b) {
     return std::max(a.shape->data().longest_edge, b.shape->data().longest_edge) < short_length(a, b);
 }
 
-/// Whether edges can have speculative contacts; told: a vertex of the pair has a contact, of whatever kind.
-inline bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told) {
-    return asks_edges(a, b) && !(told && has_short_edges_alone(a, b));
-}
-
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.
 using NearEdges = std::array<std::span<const NearEdge>, 2>;
 

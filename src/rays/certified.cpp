@@ -6,6 +6,7 @@
 #include "pairs/near_edges.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
+#include "speculative/speculative_pair.h"
 
 #include <algorithm>
 #include <utility>
@@ -38,6 +39,11 @@ bool spares_little(const Due& due) {
 
 bool is_in_contact(const ByPair<kernels::LocalContact>& contacts, std::uint32_t pair) {
     return contacts.first(2 * pair) != contacts.first(2 * pair + 2);
+}
+
+SpeculativePair speculative_pair(const Update& update, std::uint32_t pair) {
+    const PlacedBody &a = update.bodies[update.pairs[pair].first], &b = update.bodies[update.pairs[pair].second];
+    return {a, b, speculative_margin(update.settings, a, b)};
 }
 
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
@@ -271,7 +277,8 @@ void CertifiedRays::find_points(const Update& update, const ByPair<kernels::Loca
     searches_.clear();
     for (WakeUp::Slice& slice : wake_up_.slices())
         for (DueNear& due : slice.near) {
-            if (!due.points || !due.edges || table_.hot(due.pair).has_points || is_in_contact(contacts, due.pair))
+            if (!due.points || !due.edges || table_.hot(due.pair).has_points || is_in_contact(contacts, due.pair)
+                || !speculative_pair(update, due.pair).asks_edges(false))
                 continue;
             seek_edges(update, due, false, true);
         }
@@ -299,11 +306,10 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
     for (WakeUp::Slice& slice : wake_up_.slices())
         for (DueNear& due : slice.near) {
             if (due.sought) continue;
-            const auto [first, second] = update.pairs[due.pair];
             const bool in_contact = is_in_contact(contacts, due.pair);
-            const bool near = update.settings.is_speculative()
-                              && asks_speculative_edges(update.bodies[first], update.bodies[second],
-                                                        in_contact || !speculative.of(due.pair).empty());
+            const bool near =
+                update.settings.is_speculative()
+                && speculative_pair(update, due.pair).asks_edges(in_contact || !speculative.of(due.pair).empty());
             const Slack& slack = table_.hot(due.pair);
             if (due.edges || !(in_contact || slack.all) || (near && !slack.near))
                 seek_edges(update, due, in_contact, near);

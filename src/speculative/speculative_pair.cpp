@@ -157,7 +157,7 @@ struct Side {
 std::array<Side, 2> sides_of(const SpeculativePair& pair) {
     const ShapeData &a = pair.a.shape->data(), &b = pair.b.shape->data();
     const PairPlace now = place_pair(pair.a.centred, pair.b.centred, 0), next = place_pair(pair.a.next, pair.b.next, 0);
-    const auto ways = displacement_bounds(now, next, a.reach, b.reach);
+    const auto ways = pair.ways();
     return {Side{a, b, now.pose, next.pose, ways[0] > pair.margin},
             Side{b, a, now.pose_of_second(), next.pose_of_second(), ways[1] > pair.margin}};
 }
@@ -167,6 +167,16 @@ double hair_of(const SpeculativePair& pair) {
 }
 
 } // namespace
+
+std::array<double, 2> SpeculativePair::ways() const {
+    return displacement_bounds(place_pair(a.centred, b.centred, 0), place_pair(a.next, b.next, 0),
+                               a.shape->data().reach, b.shape->data().reach);
+}
+
+bool SpeculativePair::asks_edges(bool told) const {
+    if (!raycontact::asks_edges(a, b)) return false;
+    return !has_short_edges_alone(a, b) || !(told || std::ranges::max(ways()) > short_length(a, b));
+}
 
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
                                const std::array<std::span<const kernels::LocalContact>, 2>& touching,
@@ -196,7 +206,8 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                             std::vector<FeatureContact>& found) {
     const Side side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
-    const double hair = hair_of(pair), least_length = told ? short_edge * smaller_size(pair.a, pair.b) : 0;
+    const bool long_alone = told || std::ranges::max(pair.ways()) > short_length(pair.a, pair.b);
+    const double hair = hair_of(pair), least_length = long_alone ? short_edge * smaller_size(pair.a, pair.b) : 0;
     const std::size_t touching = found.size();
     const auto touches = [&](std::uint32_t edge, std::uint32_t other) {
         return std::any_of(found.begin(), found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {

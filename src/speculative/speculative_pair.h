@@ -15,6 +15,12 @@ namespace raycontact {
 struct SpeculativePair {
     const PlacedBody &a, &b;
     double margin; ///< metres
+
+    /// How far a vertex of a, of b, may go in the other's frame until the next step, metres.
+    std::array<double, 2> ways() const;
+    /// Whether edges are asked; told: a vertex of the pair has a contact, of whatever kind. Of short edges neither
+    /// bodies that vertices tell of are asked, nor those that go farther than a short edge is long.
+    bool asks_edges(bool told) const;
 };
 
 /// Adds those of vertices in any order. near: vertices and the faces that they may come near, each vertex's together.
@@ -23,8 +29,7 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
                                const std::array<std::span<const kernels::LocalContact>, 2>& touching,
                                std::vector<FeatureContact>& found);
 
-/// Adds those of two edges in any order, but for those that `found` has already. told: a vertex has a contact, so short
-/// edges need not. near: as NearEdges.
+/// Adds those of two edges in any order, but for those that `found` has already. told: as above. near: as NearEdges.
 void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
                             std::vector<FeatureContact>& found);
 

@@ -51,8 +51,7 @@ Settings some_settings(Random& random) {
     settings.skip_outside = random.below(4) != 0; // now and then every ray is cast
     settings.direction = directions[random.below(static_cast<std::uint32_t>(std::size(directions)))];
     settings.features = random.below(4) == 0 ? Features::edges : Features::vertices;
-    settings.speculative = random.below(8) == 0;
-    if (*settings.speculative && random.below(2) == 0) settings.speculative_margin = random.uniform(0, 0.02);
+    settings.speculative = random.below(4) == 0;
     return settings;
 }
 
