@@ -184,6 +184,8 @@ void replay(const CLI::App& command, const ReplayCommand& given) {
     recording::ReplayOptions options;
     options.settings = recorded_unless_given(command, given.settings, reader.info().settings);
     options.compare = !given.compare.empty();
+    if (options.compare && options.settings.is_speculative())
+        throw InputError("--compare: speculative contacts have no rays to compare; leave --speculative out");
     if (options.compare && (options.settings.max_contacts_per_pair != 0 || options.settings.max_contacts != 0))
         throw InputError("--compare: the rays of all contacts are compared, and here some are left out; add "
                          "--max-contacts-per-pair 0 --max-contacts 0");

@@ -95,6 +95,8 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
     Follower follower(reader, options.settings);
     std::optional<Follower> reference;
     if (options.compare) {
+        if (options.settings.is_speculative())
+            throw InputError("replay: rays cannot be compared of contacts that have none; set speculative to false");
         if (options.settings.max_contacts_per_pair != 0 || options.settings.max_contacts != 0)
             throw InputError("replay: rays cannot be compared while some contacts are left out; set "
                              "max_contacts_per_pair and max_contacts to 0");

@@ -116,8 +116,9 @@ TEST_F(Run, CertifiedAndStandardRunAlike) {
 TEST_F(Run, TellsItsSettings) {
     const json log = run({"--method", "predictive", "--displacement-threshold", "0.0125", "--confidence", "3",
                           "--culling-distance", "0.03", "--distance-extension", "0.025", "--max-iterations", "7",
-                          "--no-walk-casts", "--continuous", "--features", "vertices"});
-    EXPECT_EQ(log["continuous"], true);
+                          "--no-walk-casts", "--speculative", "0.02", "--features", "vertices"});
+    EXPECT_EQ(log["speculative"], 0.02);
+    EXPECT_GT(log["contacts_speculative"], 0);
     EXPECT_EQ(log["features"], "vertices");
     EXPECT_EQ(log["method"], "predictive");
     EXPECT_EQ(log["displacement_threshold"], 0.0125);

@@ -64,8 +64,10 @@ const std::vector<Crowd>& crowds() {
 }
 
 std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std::string& device,
-                    Direction direction = Direction::reprojected, Features features = Features::vertices) {
+                    Direction direction = Direction::reprojected, Features features = Features::vertices,
+                    bool speculative = false) {
     Settings settings;
+    settings.speculative = speculative;
     settings.features = features;
     settings.method = method;
     settings.caster = caster;
@@ -80,17 +82,19 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
         poses.back().translation = crowd.spread * random.in_ball();
         scene.add(crowd.shapes[i % crowd.shapes.size()], poses.back());
     }
-    ContactHash hash(direction);
-    std::size_t contacts = 0;
+    ContactHash hash(direction, speculative);
+    std::size_t contacts = 0, untouched = 0;
     for (std::uint32_t step = 0; step < 5; ++step) {
         hash.add(step, scene.step());
-        contacts += scene.contacts().size();
+        contacts += scene.stats().contacts;
+        untouched += scene.stats().contacts_speculative;
         for (BodyId body = 0; body < poses.size(); ++body) {
             poses[body].translation = poses[body].translation + crowd.speed * random.in_ball();
             scene.set_pose(body, poses[body]);
         }
     }
     EXPECT_GE(contacts, crowd.least_contacts) << crowd.name;
+    EXPECT_GE(untouched, speculative ? crowd.least_contacts / 20 : 0) << crowd.name;
     return hash.hex();
 }
 
@@ -121,6 +125,22 @@ bool has_parts() {
 
 TEST(scenes, have_one_hash_on_another_device) {
     expect_the_cpus_hash(tested_device());
+}
+
+// What comes near is found on each device, by the margin and on its way.
+TEST(scenes, have_one_hash_with_speculative_contacts) {
+    std::vector<Crowd> asked = crowds();
+    asked.push_back(coarse_crowd());
+    for (const Crowd& crowd : asked)
+        for (const Features features : {Features::vertices, Features::edges}) {
+            const auto hash = [&](Method method, const std::string& device) {
+                return hash_of(crowd, method, Caster::bvh, device, Direction::reprojected, features, true);
+            };
+            const std::string expected = hash(Method::certified, "cpu");
+            for (const std::string& device : {tested_device(), "cpu," + tested_device(), std::string("cpu")})
+                EXPECT_EQ(hash(Method::standard, device), expected) << crowd.name << ", " << device;
+            EXPECT_EQ(hash(Method::predictive, tested_device()), hash(Method::predictive, "cpu")) << crowd.name;
+        }
 }
 
 // Weights are placed on the host, whichever device found the contact.

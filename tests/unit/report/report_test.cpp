@@ -61,7 +61,7 @@ scenes::RunLog small_log() {
     }
     log.summary_json = R"({"scene": "avalanche", "seed": 77, "steps": 20, "bodies": 9, "rays": 1135970,
         "penetration_max": 0.015625, "step_ms": {"median": 12.625, "p95": 13.5}, "method": "standard", "caster": "bvh",
-        "direction": "reprojected", "features": "vertices", "continuous": true, "devices": ["cpu"], "hash": "00ff00ff00ff00ff", "unheard_of": "<b>kept</b>"})";
+        "direction": "reprojected", "features": "vertices", "speculative": 0.02, "devices": ["cpu"], "hash": "00ff00ff00ff00ff", "unheard_of": "<b>kept</b>"})";
     return log;
 }
 
@@ -92,7 +92,7 @@ TEST_F(Report, IsOneFileWithTheNumbersOfTheLog) {
     const std::string html = bytes_of(folder_ / "deep" / "down" / "report.html");
     const char* const command =
         "raycontact run avalanche --bodies 9 --steps 20 --seed 77 --method standard "
-        "--caster bvh --direction reprojected --features vertices --continuous --devices cpu --out "
+        "--caster bvh --direction reprojected --features vertices --speculative 0.02 --devices cpu --out "
         "DIR";
     for (const char* text : {"Avalanche: 9 meshes", "a gear &lt;of the test&gt;", "1234", "56789", "4326", "12.625",
                              "7.375", "3.0625", "15.625", "2.03125", "1\u202f135\u202f970", "00ff00ff00ff00ff",
