@@ -24,6 +24,12 @@ float distance(const float (&a)[3], const float (&b)[3]) {
     const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return std::sqrt((x * x + y * y) + z * z);
 }
+
+// How far a straight way in the frame of a body that turns is from the true one: an eighth of the second derivative, of
+// what is `far` away and goes `way` besides. A turn is up to pi / 3 of 1, at most pi / 2 of what turn_bound() says.
+float arc_of(float turn, float far, float way) {
+    return turn <= 1 ? turn * (0.14f * turn * far + 0.27f * way) : turn * (0.32f * turn * far + 0.4f * way);
+}
 } // namespace
 
 void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
@@ -64,6 +70,7 @@ Motion::Body Motion::body_of(const PlacedBody& body, const Pose& from, const Pos
     const double far = length(shift);
     moved.shift_lost = far > 0 ? static_cast<float>(lost_of_float * far + lost_of_squares) : 0.0f;
     moved.turn = static_cast<float>(turn_bound(from, to, shear));
+    moved.warp = moved.turn > 0 ? static_cast<float>(2 * shear) : 0.0f;
     moved.reach = static_cast<float>(body.shape->data().reach);
     return moved;
 }
@@ -75,9 +82,10 @@ Motion::Bound Motion::bound(std::span<const Body> bodies, const SlotPair& pair) 
     const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
     const float turned =
         std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
-    // A straight way in the frame of a body that turns is no farther from the true one than the height of an arc.
-    const float arc = 0.15f * std::max(b.turn * b.turn * (apart + a.reach), a.turn * a.turn * (apart + b.reach));
-    return {1.001 * double(still + turned), 1.001 * double(still + ((a.turn * a.reach + b.turn * b.reach) + arc))};
+    const float arc = std::max(arc_of(b.turn, apart + still + a.reach, still + a.turn * a.reach),
+                               arc_of(a.turn, apart + still + b.reach, still + b.turn * b.reach));
+    return {1.001 * double(still + turned),
+            1.001 * double(still + (((a.turn + a.warp) * a.reach + (b.turn + b.warp) * b.reach) + arc))};
 }
 
 double Motion::pair_speed(const SlotPair& pair) const {

@@ -46,6 +46,7 @@ private:
         float centre_lost = 0; ///< rounding of centre, at most, metres
         float shift_lost = 0;
         float turn = 0;  ///< turn_bound
+        float warp = 0;  ///< of its frame, by rotations that are rigid only nearly: a part of lengths
         float reach = 0; ///< of the shape, about its centre
     };
     struct Last {
