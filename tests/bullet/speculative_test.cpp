@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings::continuous in a Bullet world: what is fast stays on its side of a thin wall.
+// Speculative contacts in a Bullet world: what is fast stays on its side of a thin wall.
 #include "test_world.h"
 
 #include <convert.h>
@@ -20,10 +20,10 @@ struct Flight {
 };
 
 // Whether the body is still above the slab after a second.
-bool is_stopped(const Flight& flight, bool continuous) {
+bool is_stopped(const Flight& flight, bool speculative) {
     Settings settings;
     settings.devices = "cpu";
-    settings.continuous = continuous;
+    settings.speculative = speculative;
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
     btRigidBody& slab = w.add_mesh(Shape::make(box_mesh(8, 8, 0.05)), flight.slab_gives_way ? 2000 : 0, at(0, 0, 0));
@@ -39,7 +39,7 @@ std::shared_ptr<const Shape> small_torus() {
     return bullet::stretch_shape(*torus(), {0.3, 0, 0, 0, 0.3, 0, 0, 0, 0.3});
 }
 
-TEST(Continuous, AFastTorusDoesNotPassAThinSlab) {
+TEST(Speculative, AFastTorusDoesNotPassAThinSlab) {
     for (const double speed : {20.0, 45.0, 100.0}) {
         int stopped = 0, stopped_without = 0;
         constexpr int flights = 8;
@@ -53,23 +53,23 @@ TEST(Continuous, AFastTorusDoesNotPassAThinSlab) {
     }
 }
 
-TEST(Continuous, NorDoesACoarseTableOrASlabThatGivesWay) {
+TEST(Speculative, NorDoesACoarseTableOrASlabThatGivesWay) {
     EXPECT_TRUE(is_stopped({table(), 30, btVector3(0, 0, 0)}, true));
     EXPECT_TRUE(is_stopped({table(), 30, btVector3(1, 5, 0)}, true));
     EXPECT_TRUE(is_stopped({small_torus(), 30, btVector3(1, 5, 0), 3, true}, true));
 }
 
 // Points to come are no contacts: a body that hovers above the ground has none, and nothing lifts it.
-TEST(Continuous, NothingIsTouchedEarly) {
+TEST(Speculative, NothingIsTouchedEarly) {
     Settings settings;
     settings.devices = "cpu";
-    settings.continuous = true;
+    settings.speculative = true;
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, 0));
     w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
     btRigidBody& body = w.add_mesh(torus(), 1, at(0, 0, 1.5));
     body.setLinearVelocity(btVector3(0, 0, -12)); // 20 cm a step
-    std::uint64_t coming = 0;
+    std::uint64_t speculative = 0;
     for (int i = 0; i < 8; ++i) {
         const double before = double(body.getWorldTransform().getOrigin().z());
         w.steps(1);
@@ -78,13 +78,13 @@ TEST(Continuous, NothingIsTouchedEarly) {
         body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
         EXPECT_GT(double(low.z()), -0.01) << "step " << i;
         EXPECT_LT(w.dispatcher.scene().stats().depth_max, 0.01);
-        coming += w.dispatcher.scene().stats().contacts_coming;
+        speculative += w.dispatcher.scene().stats().contacts_speculative;
         EXPECT_LE(now, before + 1e-4);
         if (double(low.z()) > 0.25) {
             EXPECT_NEAR(before - now, 0.2, 1e-3) << "step " << i;
         }
     }
-    EXPECT_GT(coming, 0u);
+    EXPECT_GT(speculative, 0u);
 }
 
 struct Impact {
@@ -95,10 +95,10 @@ struct Impact {
     bool soft = false;
 };
 
-/// The part of its speed that a body has after it hit a slab, with and without `continuous`.
-double bounce(bool continuous, const Impact& impact) {
+/// The part of its speed that a body has after it hit a slab, with and without speculative contacts.
+double bounce(bool speculative, const Impact& impact) {
     Settings settings;
-    settings.continuous = continuous;
+    settings.speculative = speculative;
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, 0));
     w.world.getSolverInfo().m_linearSlop = btScalar(impact.slop);
@@ -112,7 +112,7 @@ double bounce(bool continuous, const Impact& impact) {
     return double(body.getLinearVelocity().z()) / impact.speed;
 }
 
-TEST(Continuous, BodiesBounceAsWithoutIt) {
+TEST(Speculative, BodiesBounceAsWithoutIt) {
     for (const double restitution : {0.0, 0.3, 0.9}) {
         for (const double speed : {2.0, 5.0, 12.0}) {
             const Impact impact{restitution, speed};
@@ -125,7 +125,7 @@ TEST(Continuous, BodiesBounceAsWithoutIt) {
 }
 
 // Nor does the way that splits depth from speed, nor how soft the contact is.
-TEST(Continuous, NoSlopTakesFromTheRebound) {
+TEST(Speculative, NoSlopTakesFromTheRebound) {
     const auto small = Shape::make(box_mesh(0.1, 0.1, 0.1));
     for (const double slop : {0.0, 0.001, 0.005, 0.01, 0.1}) {
         for (const double speed : {1.0, 3.0}) {
@@ -143,9 +143,9 @@ TEST(Continuous, NoSlopTakesFromTheRebound) {
 }
 
 // What the solver is told is no depth: the point's places and what the callbacks get are true.
-TEST(Continuous, APointThatBouncesIsWhereItIs) {
+TEST(Speculative, APointThatBouncesIsWhereItIs) {
     Settings settings;
-    settings.continuous = true;
+    settings.speculative = true;
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, 0));
     w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5)).setRestitution(1);
