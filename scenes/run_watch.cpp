@@ -39,7 +39,7 @@ void RunWatch::add_step(double step_ms, const Scene& scene, std::span<const Pose
     row.step_ms = step_ms;
     hash_.add(row.step, found);
     depths_.add(row.step, found);
-    contacts_ += found.size();
+    contacts_ += s.contacts;
     rays_ += s.rays;
     rays_cast_ += s.rays_cast;
     ray_length_ += s.ray_length;

@@ -391,13 +391,19 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-// Vertices reach an open mesh from beyond its box; other methods follow, and speculative contacts have, what is apart.
+// Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what is
+// nearer than the margin, or may come so near.
 bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
     const Settings& settings = scene.settings();
-    if (settings.is_speculative() || (settings.method != Method::standard && settings.method != Method::certified))
-        return false;
+    if (settings.method != Method::standard && settings.method != Method::certified) return false;
     if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
-    return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
+    btScalar reach = 0;
+    if (settings.is_speculative()) {
+        const btScalar size = btMin(diagonal(a), diagonal(b));
+        reach = a.way + b.way + btScalar(settings.speculative_margin.value_or(speculative_share * double(size)));
+    }
+    const btVector3 around(reach, reach, reach);
+    return !TestAabbAgainstAabb2(a.low - around, a.high + around, b.low, b.high);
 }
 
 // The batch alone knows other directions, and what does not touch yet.
