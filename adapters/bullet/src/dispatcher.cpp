@@ -391,8 +391,8 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-// Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what is
-// nearer than the margin, or may come so near.
+// Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what
+// is nearer than the margin, or may come so near.
 bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
     const Settings& settings = scene.settings();
     if (settings.method != Method::standard && settings.method != Method::certified) return false;

@@ -16,8 +16,8 @@ namespace raycontact::bullet {
 class Queries {
 public:
     Queries(const Settings& settings, Objects& objects, ConvexShapes convex, btCollisionDispatcher& dispatcher)
-        : scene_(touching(settings)), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()), convex_(convex),
-          dispatcher_(dispatcher) {}
+        : scene_(touching(settings)), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()),
+          convex_(convex), dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
