@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speculative contacts in a Bullet world: what is fast stays on its side of a thin wall.
+// Speculative contacts, which a Bullet world has by default: bodies stop at the surface.
 #include "test_world.h"
 
 #include <convert.h>
+#include <scenes/models/model.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace raycontact::test {
 namespace {
+
+/// What a user has who says nothing, and who does without.
+const Settings by_default;
+const Settings without = [] {
+    Settings settings;
+    settings.speculative = false;
+    return settings;
+}();
 
 struct Flight {
     std::shared_ptr<const Shape> shape;
@@ -20,10 +30,7 @@ struct Flight {
 };
 
 // Whether the body is still above the slab after a second.
-bool is_stopped(const Flight& flight, bool speculative) {
-    Settings settings;
-    settings.devices = "cpu";
-    settings.speculative = speculative;
+bool is_stopped(const Flight& flight, const Settings& settings) {
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
     btRigidBody& slab = w.add_mesh(Shape::make(box_mesh(8, 8, 0.05)), flight.slab_gives_way ? 2000 : 0, at(0, 0, 0));
@@ -45,8 +52,8 @@ TEST(Speculative, AFastTorusDoesNotPassAThinSlab) {
         constexpr int flights = 8;
         for (int i = 0; i < flights; ++i) {
             const Flight flight{small_torus(), speed, btVector3(3, 1, 2), 3 + speed / 60 * i / flights};
-            stopped += is_stopped(flight, true);
-            stopped_without += is_stopped(flight, false);
+            stopped += is_stopped(flight, by_default);
+            stopped_without += is_stopped(flight, without);
         }
         EXPECT_EQ(stopped, flights) << speed << " m/s";
         EXPECT_LT(stopped_without, flights) << "else nothing is shown, at " << speed << " m/s";
@@ -54,22 +61,19 @@ TEST(Speculative, AFastTorusDoesNotPassAThinSlab) {
 }
 
 TEST(Speculative, NorDoesACoarseTableOrASlabThatGivesWay) {
-    EXPECT_TRUE(is_stopped({table(), 30, btVector3(0, 0, 0)}, true));
-    EXPECT_TRUE(is_stopped({table(), 30, btVector3(1, 5, 0)}, true));
-    EXPECT_TRUE(is_stopped({small_torus(), 30, btVector3(1, 5, 0), 3, true}, true));
+    EXPECT_TRUE(is_stopped({table(), 30, btVector3(0, 0, 0)}, by_default));
+    EXPECT_TRUE(is_stopped({table(), 30, btVector3(1, 5, 0)}, by_default));
+    EXPECT_TRUE(is_stopped({small_torus(), 30, btVector3(1, 5, 0), 3, true}, by_default));
 }
 
-// Points to come are no contacts: a body that hovers above the ground has none, and nothing lifts it.
+// Nothing holds or lifts a body that is on its way to the ground.
 TEST(Speculative, NothingIsTouchedEarly) {
-    Settings settings;
-    settings.devices = "cpu";
-    settings.speculative = true;
-    TestWorld w(settings);
+    TestWorld w;
     w.world.setGravity(btVector3(0, 0, 0));
     w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
     btRigidBody& body = w.add_mesh(torus(), 1, at(0, 0, 1.5));
     body.setLinearVelocity(btVector3(0, 0, -12)); // 20 cm a step
-    std::uint64_t speculative = 0;
+    std::uint64_t before_touch = 0;
     for (int i = 0; i < 8; ++i) {
         const double before = double(body.getWorldTransform().getOrigin().z());
         w.steps(1);
@@ -78,13 +82,13 @@ TEST(Speculative, NothingIsTouchedEarly) {
         body.getCollisionShape()->getAabb(body.getWorldTransform(), low, high);
         EXPECT_GT(double(low.z()), -0.01) << "step " << i;
         EXPECT_LT(w.dispatcher.scene().stats().depth_max, 0.01);
-        speculative += w.dispatcher.scene().stats().contacts_speculative;
+        before_touch += w.dispatcher.scene().stats().contacts_speculative;
         EXPECT_LE(now, before + 1e-4);
         if (double(low.z()) > 0.25) {
             EXPECT_NEAR(before - now, 0.2, 1e-3) << "step " << i;
         }
     }
-    EXPECT_GT(speculative, 0u);
+    EXPECT_GT(before_touch, 0u);
 }
 
 struct Impact {
@@ -95,10 +99,8 @@ struct Impact {
     bool soft = false;
 };
 
-/// The part of its speed that a body has after it hit a slab, with and without speculative contacts.
-double bounce(bool speculative, const Impact& impact) {
-    Settings settings;
-    settings.speculative = speculative;
+/// The part of its speed that a body has after it hit a slab.
+double bounce(const Settings& settings, const Impact& impact) {
     TestWorld w(settings);
     w.world.setGravity(btVector3(0, 0, 0));
     w.world.getSolverInfo().m_linearSlop = btScalar(impact.slop);
@@ -116,9 +118,9 @@ TEST(Speculative, BodiesBounceAsWithoutIt) {
     for (const double restitution : {0.0, 0.3, 0.9}) {
         for (const double speed : {2.0, 5.0, 12.0}) {
             const Impact impact{restitution, speed};
-            EXPECT_NEAR(bounce(true, impact), restitution, 0.005) << speed;
+            EXPECT_NEAR(bounce(by_default, impact), restitution, 0.005) << speed;
             if (restitution > 0) { // Bullet's solver adds what pushes it out
-                EXPECT_NEAR(bounce(false, impact), restitution, 0.07) << speed;
+                EXPECT_NEAR(bounce(without, impact), restitution, 0.07) << speed;
             }
         }
     }
@@ -130,23 +132,21 @@ TEST(Speculative, NoSlopTakesFromTheRebound) {
     for (const double slop : {0.0, 0.001, 0.005, 0.01, 0.1}) {
         for (const double speed : {1.0, 3.0}) {
             for (const int split : {0, 1})
-                EXPECT_NEAR(bounce(true, {0.9, speed, slop, split}), 0.9, 0.005)
+                EXPECT_NEAR(bounce(by_default, {0.9, speed, slop, split}), 0.9, 0.005)
                     << slop << ' ' << speed << ' ' << split;
-            EXPECT_NEAR(bounce(true, {0.9, speed, slop, 1, small}), 0.9, 0.005) << slop << ' ' << speed;
+            EXPECT_NEAR(bounce(by_default, {0.9, speed, slop, 1, small}), 0.9, 0.005) << slop << ' ' << speed;
         }
     }
     // Slower than 0.2 m/s after the impact.
-    EXPECT_NEAR(bounce(true, {0.3, 0.5, 0.01, 1, small}), 0.3, 0.005);
+    EXPECT_NEAR(bounce(by_default, {0.3, 0.5, 0.01, 1, small}), 0.3, 0.005);
     const Impact soft{0.9, 1, 0, 1, table(), true};
-    EXPECT_LT(bounce(false, soft), 0.85) << "else nothing is shown";
-    EXPECT_NEAR(bounce(true, soft), bounce(false, soft), 0.01);
+    EXPECT_LT(bounce(without, soft), 0.85) << "else nothing is shown";
+    EXPECT_NEAR(bounce(by_default, soft), bounce(without, soft), 0.01);
 }
 
 // What the solver is told is no depth: the point's places and what the callbacks get are true.
 TEST(Speculative, APointThatBouncesIsWhereItIs) {
-    Settings settings;
-    settings.speculative = true;
-    TestWorld w(settings);
+    TestWorld w;
     w.world.setGravity(btVector3(0, 0, 0));
     w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5)).setRestitution(1);
     btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.41));
@@ -166,6 +166,90 @@ TEST(Speculative, APointThatBouncesIsWhereItIs) {
     const btVector3 gap = point.m_positionWorldOnA - point.m_positionWorldOnB;
     EXPECT_NEAR(double(btFabs(gap.z())), 0.01, 1e-4);
     EXPECT_LT(double(point.getDistance()), -0.1);
+}
+
+double size_of(const Shape& shape) {
+    const Vec3 low = shape.box_min(), high = shape.box_max();
+    return std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+}
+
+/// Part of its size that a body goes deep which falls on a thick slab, the most of six that lie otherwise, with
+/// Bullet's own solver settings.
+double deepest_of_falls(const Settings& settings, const std::shared_ptr<const Shape>& shape, double height) {
+    TestWorld w(settings);
+    w.world.getSolverInfo() = btContactSolverInfo();
+    w.add_mesh(Shape::make(box_mesh(20, 20, 2)), 0, at(0, 0, -1));
+    for (int i = 0; i < 6; ++i) {
+        btTransform pose = at(4 * (i % 3) - 4, 4 * (i / 3) - 2, height + shape->radius());
+        pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
+        w.add_mesh(shape, 5, pose);
+    }
+    double deepest = 0;
+    for (int i = 0; i < 180; ++i) {
+        w.steps(1);
+        deepest = std::max(deepest, w.dispatcher.scene().stats().depth_max);
+    }
+    return deepest / size_of(*shape);
+}
+
+TEST(Speculative, NoFallGoesDeep) {
+    const auto bunny = Shape::make(scenes::scene_model("bunny", 900).mesh);
+    for (const auto& shape : {table(), torus(), bunny, small_torus(), Shape::make(box_mesh(0.3, 0.3, 0.3))}) {
+        for (const double height : {1.0, 3.0, 10.0}) {
+            // One that is stopped at a side turns in the same step: the other side comes faster than was expected.
+            const bool is_fast = std::sqrt(2 * 9.81 * height) / 60 > 0.5 * size_of(*shape);
+            EXPECT_LT(deepest_of_falls(by_default, shape, height), is_fast ? 0.03 : 0.02)
+                << size_of(*shape) << " m from " << height;
+            EXPECT_GT(deepest_of_falls(without, shape, height), 0.04) << "else nothing is shown";
+        }
+    }
+}
+
+/// A prism with z from -height/2 to height/2.
+Mesh prism_mesh(std::uint32_t corners, double radius, double height) {
+    Mesh mesh;
+    for (const double z : {-height / 2, height / 2}) {
+        for (std::uint32_t i = 0; i < corners; ++i) {
+            const double angle = 2 * std::numbers::pi * i / corners;
+            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+    }
+    for (std::uint32_t i = 0; i < corners; ++i) {
+        const std::uint32_t next = (i + 1) % corners;
+        mesh.triangles.push_back({i, next, corners + next});
+        mesh.triangles.push_back({i, corners + next, corners + i});
+        if (i == 0 || next == 0) continue;
+        mesh.triangles.push_back({0, next, i});
+        mesh.triangles.push_back({corners, corners + i, corners + next});
+    }
+    return mesh;
+}
+
+// The bar reaches over the prism on both sides: edges alone meet, but for the first angle, where its ends are over two
+// corners.
+TEST(Speculative, ABarComesToRestOnAPrism) {
+    for (const double slop : {0.0, 0.001}) {
+        for (const double degrees : {0.0, 10.0, 20.0, 30.0}) {
+            TestWorld w;
+            w.world.getSolverInfo().m_linearSlop = btScalar(slop);
+            w.add_mesh(Shape::make(prism_mesh(6, 0.5, 0.2)), 0, at(0, 0, -0.1));
+            btTransform pose = at(0, 0, 0.11);
+            pose.setRotation(btQuaternion(btVector3(0, 0, 1), btScalar(degrees) * SIMD_RADS_PER_DEG));
+            const btRigidBody& bar = w.add_mesh(Shape::make(box_mesh(1, 0.08, 0.02)), 1, pose);
+            double deepest = 0;
+            std::uint64_t vertices=0, edges=0;
+            for (int i = 0; i < 120; ++i) {
+                w.steps(1);
+                deepest = std::max(deepest, w.dispatcher.scene().stats().depth_max);
+                for (auto& c : w.dispatcher.scene().contacts()) (c.feature == Feature::edges ? edges : vertices)++;
+            }
+            std::printf("slop %g angle %g deepest %g z %g speed %g turn %g v %d e %d\n", slop, degrees, deepest, double(bar.getWorldTransform().getOrigin().z()), double(bar.getLinearVelocity().length()), double(bar.getAngularVelocity().length()), int(vertices), int(edges));
+            EXPECT_LT(deepest, slop + 1e-4) << degrees;
+            EXPECT_NEAR(double(bar.getWorldTransform().getOrigin().z()), 0.01 - slop, 1e-4) << degrees;
+            EXPECT_LT(double(bar.getLinearVelocity().length()), 1e-3) << degrees;
+            EXPECT_LT(double(bar.getAngularVelocity().length()), 1e-3) << degrees;
+        }
+    }
 }
 
 } // namespace
