@@ -3,10 +3,12 @@
 #include "test_world.h"
 
 #include <convert.h>
+#include <objects.h>
 #include <scenes/models/model.h>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -114,7 +116,7 @@ double bounce(const Settings& settings, const Impact& impact) {
     return double(body.getLinearVelocity().z()) / impact.speed;
 }
 
-TEST(Speculative, BodiesBounceAsWithoutIt) {
+TEST(Speculative, BodiesBounceAsWithout) {
     for (const double restitution : {0.0, 0.3, 0.9}) {
         for (const double speed : {2.0, 5.0, 12.0}) {
             const Impact impact{restitution, speed};
@@ -236,20 +238,106 @@ TEST(Speculative, ABarComesToRestOnAPrism) {
             btTransform pose = at(0, 0, 0.11);
             pose.setRotation(btQuaternion(btVector3(0, 0, 1), btScalar(degrees) * SIMD_RADS_PER_DEG));
             const btRigidBody& bar = w.add_mesh(Shape::make(box_mesh(1, 0.08, 0.02)), 1, pose);
-            double deepest = 0;
-            std::uint64_t vertices=0, edges=0;
-            for (int i = 0; i < 120; ++i) {
+            double deepest = 0, fastest = 0;
+            bool edges_alone = true;
+            for (int i = 0; i < 240; ++i) {
                 w.steps(1);
                 deepest = std::max(deepest, w.dispatcher.scene().stats().depth_max);
-                for (auto& c : w.dispatcher.scene().contacts()) (c.feature == Feature::edges ? edges : vertices)++;
+                for (const Contact& c : w.dispatcher.scene().contacts())
+                    edges_alone = edges_alone && c.feature == Feature::edges;
+                if (i < 60) continue;
+                fastest = std::max(fastest, double(bar.getLinearVelocity().length()));
+                fastest = std::max(fastest, 0.04 * double(bar.getAngularVelocity().length()));
             }
-            std::printf("slop %g angle %g deepest %g z %g speed %g turn %g v %d e %d\n", slop, degrees, deepest, double(bar.getWorldTransform().getOrigin().z()), double(bar.getLinearVelocity().length()), double(bar.getAngularVelocity().length()), int(vertices), int(edges));
+            EXPECT_EQ(edges_alone, degrees > 0) << degrees;
             EXPECT_LT(deepest, slop + 1e-4) << degrees;
+            EXPECT_LT(fastest, 1e-3) << degrees;
             EXPECT_NEAR(double(bar.getWorldTransform().getOrigin().z()), 0.01 - slop, 1e-4) << degrees;
-            EXPECT_LT(double(bar.getLinearVelocity().length()), 1e-3) << degrees;
-            EXPECT_LT(double(bar.getAngularVelocity().length()), 1e-3) << degrees;
         }
     }
+}
+
+// Edges touch once they are some hairs deep (docs/edges.md); until then they must be near.
+TEST(Speculative, NoDepthIsWithoutContact) {
+    const auto prism = Shape::make(prism_mesh(6, 0.5, 0.2)), bar = Shape::make(box_mesh(1, 0.08, 0.02));
+    Settings settings;
+    settings.speculative = true;
+    int touching = 0, near = 0;
+    for (double depth = 1e-9; depth < 1e-5; depth *= 1.05) {
+        Scene scene(settings);
+        const BodyId ground = scene.add(prism, bullet::to_pose(at(0, 0, -0.1)));
+        Pose pose;
+        pose.translation.z = 0.01 - depth;
+        const std::array pair{Pair{ground, scene.add(bar, pose)}};
+        EXPECT_GE(scene.step(pair).size(), 4u) << depth;
+        (scene.stats().contacts > 0 ? touching : near) += 1;
+    }
+    EXPECT_GT(touching, 20);
+    EXPECT_GT(near, 20);
+}
+
+// The children of a compound that a body may meet on its way are asked, and no others.
+TEST(Speculative, AFastTorusDoesNotPassTilesOfACompound) {
+    for (const double speed : {5.0, 20.0, 100.0}) {
+        TestWorld w;
+        const auto& tile = w.keep(std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(0.5, 0.5, 0.05))));
+        auto floor = std::make_unique<btCompoundShape>();
+        for (int i = 0; i < 20; ++i)
+            for (int k = 0; k < 20; ++k)
+                floor->addChildShape(at(0.5 * i - 5, 0.5 * k - 5, 0), const_cast<bullet::MeshShape*>(&tile));
+        w.add(std::move(floor), 0, at(0, 0, 0));
+        btRigidBody& body = w.add_mesh(small_torus(), 1, at(0.1, 0.2, 3));
+        body.setLinearVelocity(btVector3(0, 0, btScalar(-speed)));
+        body.setAngularVelocity(btVector3(3, 1, 2));
+        std::uint64_t pairs = 0;
+        for (int i = 0; i < 60; ++i) {
+            w.steps(1);
+            pairs = std::max(pairs, w.dispatcher.stats().mesh_pairs);
+        }
+        EXPECT_GT(double(body.getWorldTransform().getOrigin().z()), 0) << speed;
+        EXPECT_LT(pairs, speed < 10 ? 20u : 150u) << speed;
+    }
+}
+
+// What is near is no contact for a query.
+TEST(Speculative, QueriesFindWhatTouches) {
+    Settings asked;
+    asked.speculative = true;
+    for (const Settings& settings : {by_default, asked}) {
+        TestWorld w(settings);
+        btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+        btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.401));
+        for (const double gap : {0.001, -0.001}) {
+            body.setWorldTransform(at(0, 0, 0.4 + gap));
+            w.world.performDiscreteCollisionDetection();
+            EXPECT_GT(w.dispatcher.stats().contacts, 0u);
+            EXPECT_EQ(w.dispatcher.scene().stats().contacts > 0, gap < 0);
+            Count pair, all;
+            w.world.contactPairTest(&body, &ground, pair);
+            w.world.contactTest(&body, all);
+            EXPECT_EQ(pair.points > 0, gap < 0);
+            EXPECT_EQ(all.points > 0, gap < 0);
+        }
+    }
+}
+
+TEST(Speculative, AUserCanDoWithout) {
+    TestWorld w(without);
+    w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
+    const btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 1));
+    for (int i = 0; i < 120; ++i) {
+        w.steps(1);
+        EXPECT_EQ(w.dispatcher.scene().stats().contacts_speculative, 0u);
+        EXPECT_EQ(w.dispatcher.scene().contacts().size(), w.dispatcher.stats().contacts);
+        // Only a point that is held, and was deep, may be near.
+        for (int m = 0; m < w.dispatcher.getNumManifolds(); ++m) {
+            const btPersistentManifold& manifold = *w.dispatcher.getManifoldByIndexInternal(m);
+            if (w.dispatcher.stats().points_held > 0) continue;
+            for (int k = 0; k < manifold.getNumContacts(); ++k)
+                EXPECT_LT(double(manifold.getContactPoint(k).getDistance()), 0);
+        }
+    }
+    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.4, 0.003);
 }
 
 } // namespace
