@@ -299,16 +299,17 @@ TEST(Speculative, AFastTorusDoesNotPassTilesOfACompound) {
     }
 }
 
-// What is near is no contact for a query.
+// What is near is no contact for a query. All is tilted: the boxes of the two overlap.
 TEST(Speculative, QueriesFindWhatTouches) {
+    const btTransform tilted(btQuaternion(btVector3(1, 0, 0), btScalar(0.3)));
     Settings asked;
     asked.speculative = true;
     for (const Settings& settings : {by_default, asked}) {
         TestWorld w(settings);
-        btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
-        btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.401));
+        btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, tilted * at(0, 0, -0.5));
+        btRigidBody& body = w.add_mesh(table(), 5, tilted * at(0, 0, 0.401));
         for (const double gap : {0.001, -0.001}) {
-            body.setWorldTransform(at(0, 0, 0.4 + gap));
+            body.setWorldTransform(tilted * at(0, 0, 0.4 + gap));
             w.world.performDiscreteCollisionDetection();
             EXPECT_GT(w.dispatcher.stats().contacts, 0u);
             EXPECT_EQ(w.dispatcher.scene().stats().contacts > 0, gap < 0);
