@@ -38,7 +38,7 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
             const auto space = bullet::only_face(mesh, mesh_pose, box, box_pose);
             if (!space) continue;
             std::vector<bullet::PlaneContact> below;
-            bullet::plane_contacts(mesh, mesh_pose, *space, below);
+            bullet::plane_contacts(mesh, mesh_pose, *space, 0, below);
             double deepest = 0;
             Depths ours;
             for (const auto& c : below) {

@@ -141,7 +141,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         return leave_out(error, false);
     }
     const btTransform before = leaf.pose;
-    leaf.pose = placed.pose;
+    leaf.pose = leaf.next = placed.pose;
     if (placed.drifted) ++mended_.made_rigid;
     if (placed.stretch != no_stretch) ++mended_.scaled;
     const Stretch& stretch = stretch_of(leaf.kind, placed);
@@ -191,9 +191,9 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
     for (Leaf& leaf : record.leaves) {
         if (leaf.body == Leaf::no_body || leaf.left_out()) continue;
         try {
-            const btTransform pose = place(then * leaf.local).pose;
-            scene_.set_next_pose(leaf.body, to_pose(pose));
-            leaf.way = longest_way(*leaf.converted.shape, leaf.pose, pose);
+            leaf.next = place(then * leaf.local).pose;
+            scene_.set_next_pose(leaf.body, to_pose(leaf.next));
+            leaf.way = longest_way(*leaf.converted.shape, leaf.pose, leaf.next);
         } catch (const InputError&) {
             return;
         }
