@@ -172,7 +172,8 @@ TEST(Speculative, EachReboundIsAsThatBefore) {
                 const double after = double(body.getLinearVelocity().z());
                 if (before >= 0 || after <= 0) continue;
                 ++rebounds;
-                EXPECT_NEAR(after / -before, 0.9, 0.018) << slop << ", rebound " << rebounds << ", plane: " << (ground == plane_ground);
+                EXPECT_NEAR(after / -before, 0.9, 0.018)
+                    << slop << ", rebound " << rebounds << ", plane: " << (ground == plane_ground);
             }
         }
     }
