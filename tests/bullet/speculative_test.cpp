@@ -217,7 +217,8 @@ double deepest_of_falls(const Settings& settings, const std::shared_ptr<const Sh
     w.add(ground(), 0, at(0, 0, 0));
     std::vector<const btRigidBody*> bodies;
     for (int i = 0; i < 6; ++i) {
-        btTransform pose = at(4 * (i % 3) - 4, 4 * (i / 3) - 2, height + shape->radius());
+        const int column = i % 3, row = i / 3;
+        btTransform pose = at(4 * column - 4, 4 * row - 2, height + shape->radius());
         pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
         bodies.push_back(&w.add_mesh(shape, 5, pose));
     }
