@@ -111,7 +111,7 @@ void Simulation::State::configure() {
     const Vec3& g = description.gravity;
     world.setGravity(btVector3(btScalar(g.x), btScalar(g.y), btScalar(g.z)));
     // A sweep of the boxes along the motion adds pairs that have speculative contacts alone.
-    world.getDispatchInfo().m_useContinuous = description.settings.is_speculative();
+    world.getDispatchInfo().m_useContinuous = dispatcher.scene().settings().is_speculative();
     if (!response.bullet_defaults)
         bullet::recommend(world, {.slop = response.slop, .erp = response.erp, .iterations = response.iterations});
     // Nobody sleeps, so islands save nothing.

@@ -16,6 +16,9 @@ namespace {
 constexpr double sideways = 1e-6, arc = 0.1;
 // Edges that are more parallel have no one point where they are nearest: vertices have.
 constexpr double least_sine = 1e-3;
+// Edges touch, by PairEdges, from where they pass each other though both bodies are moved inward by a hair and shaken.
+// Until they are so many hairs deep, they are near.
+constexpr double hairs_until_touching = 2.2;
 
 // Calls visit(edge or vertex, its near faces) for each.
 template <class Visit>
@@ -271,7 +274,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                 if (across != NONE) out = out + unit(area_normal(b, across));
                 if (dot(n, out) < 0) n = -1.0 * n;
                 const double gap = gap_along(n, *at);
-                if (gap >= -hair && gap <= pair.margin && is_in_arcs(n, along)) tell(n, *at);
+                if (gap >= -hairs_until_touching * hair && gap <= pair.margin && is_in_arcs(n, along)) tell(n, *at);
             }
     });
 }

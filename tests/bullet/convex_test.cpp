@@ -252,18 +252,18 @@ TEST(Convex, ChangedDimensionsAreSeen) {
     EXPECT_NEAR(double(lifted.getWorldTransform().getOrigin().z()), 1.05, 0.01);
 }
 
-TEST(Convex, ContinuousSeesABoxComing) {
+TEST(Convex, SpeculativeContactsStopAMeshAtABox) {
     // A mesh at 60 m/s on a box of 5 cm: it moves by a metre in a step.
-    for (const bool continuous : {false, true}) {
+    for (const bool speculative : {false, true}) {
         Settings settings;
-        settings.continuous = continuous;
+        settings.speculative = speculative;
         TestWorld w(settings);
         w.world.setGravity(btVector3(0, 0, 0));
         w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.025))), 0, at(0, 0, 0));
         btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 1.7));
         body.setLinearVelocity(btVector3(0, 0, -60));
         w.steps(20);
-        EXPECT_EQ(double(body.getWorldTransform().getOrigin().z()) > 0, continuous);
+        EXPECT_EQ(double(body.getWorldTransform().getOrigin().z()) > 0, speculative);
     }
 }
 

@@ -39,7 +39,9 @@ struct BatchEntry {
     btScalar reach;
 };
 
+// A plane has no end.
 btScalar diagonal(const Leaf& leaf) {
+    if (leaf.kind == Kind::plane) return BT_LARGE_FLOAT;
     const Vec3 a = leaf.converted.shape->box_min(), b = leaf.converted.shape->box_max();
     return btVector3(btScalar(b.x - a.x), btScalar(b.y - a.y), btScalar(b.z - a.z)).length();
 }
@@ -150,6 +152,7 @@ struct CollisionDispatcher::State {
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
     PairState& state_of(btBroadphasePair& pair, const btCollisionObject& a, const btCollisionObject& b);
     void gather(PairState& state, const Object& a, const Object& b, const btDispatcherInfo& info);
+    btScalar margin(const Leaf& a, const Leaf& b) const;
     bool apart(const Leaf& a, const Leaf& b) const;
     std::optional<HalfSpace> face_between(const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
@@ -391,13 +394,22 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
     }
 }
 
-// Vertices reach an open mesh from beyond its box; other methods follow, and speculative contacts have, what is apart.
+btScalar CollisionDispatcher::State::margin(const Leaf& a, const Leaf& b) const {
+    const btScalar share = btScalar(speculative_share) * btMin(diagonal(a), diagonal(b));
+    const std::optional<double> metres = scene.settings().speculative_margin;
+    return metres ? btScalar(*metres) : share;
+}
+
+// Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what
+// is nearer than the margin, or may come so near.
 bool CollisionDispatcher::State::apart(const Leaf& a, const Leaf& b) const {
     const Settings& settings = scene.settings();
-    if (settings.is_speculative() || (settings.method != Method::standard && settings.method != Method::certified))
-        return false;
+    if (settings.method != Method::standard && settings.method != Method::certified) return false;
     if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
-    return !TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
+    btScalar reach = 0;
+    if (settings.is_speculative()) reach = a.way + b.way + margin(a, b);
+    const btVector3 around(reach, reach, reach);
+    return !TestAabbAgainstAabb2(a.low - around, a.high + around, b.low, b.high);
 }
 
 // The batch alone knows other directions, and what does not touch yet.
@@ -418,8 +430,17 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
     const btVector3& normal = space.normal;
-    plane_contacts(mesh.converted, mesh.pose, space, below);
+    const bool speculative = scene.settings().is_speculative();
+    const btScalar near_by = speculative ? margin(a, b) : 0;
+    plane_contacts(mesh.converted, mesh.pose, space, speculative ? btMax(near_by, mesh.way) : 0, below);
+    const Pose next = to_pose(mesh.next);
+    const auto will_touch = [&](const PlaneContact& c) {
+        return depth_in(space, transform_point(next, mesh.converted.shape->vertices()[c.vertex])) >= 0;
+    };
+    // Four points would do for what rests; in a fast fall one that is left out may go deep.
+    const btScalar reach = speculative ? manifolds.patch_reach * diagonal(mesh) : diagonal(mesh);
     for (const PlaneContact& c : below) {
+        if (c.depth < -near_by && !will_touch(c)) continue;
         const btVector3 on_plane = c.point + normal * c.depth;
         Candidate candidate;
         candidate.key = {leaf0, leaf1, mesh_is_0 ? 0 : 1,
@@ -428,7 +449,8 @@ void CollisionDispatcher::State::add_plane(PairState& state, int leaf0, int leaf
         candidate.on1 = mesh_is_0 ? on_plane : c.point;
         candidate.normal = mesh_is_0 ? normal : -normal;
         candidate.distance = -c.depth;
-        candidate.reach = diagonal(mesh);
+        candidate.speculative = c.depth <= 0;
+        candidate.reach = reach;
         state.candidates.push_back(candidate);
     }
 }

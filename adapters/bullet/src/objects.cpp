@@ -18,6 +18,13 @@ bool unmoved(const btTransform& a, const btTransform& b) {
     return all;
 }
 
+/// No point of the shape moves farther from one pose to the other. Nor does it if the scene lets the same motion go on.
+btScalar longest_way(const Shape& shape, const btTransform& from, const btTransform& to) {
+    btScalar turn = 0;
+    for (int i = 0; i < 3; ++i) turn += (to.getBasis()[i] - from.getBasis()[i]).length2();
+    return (to.getOrigin() - from.getOrigin()).length() + btSqrt(turn) * btScalar(shape.radius());
+}
+
 /// What a new stretch is compared with; that of a plane is not rounded.
 const Stretch& kept_stretch(const Leaf& leaf) {
     return leaf.kind == Kind::plane ? no_stretch : leaf.stretch;
@@ -133,7 +140,8 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     } catch (const InputError& error) {
         return leave_out(error, false);
     }
-    leaf.pose = placed.pose;
+    const btTransform before = leaf.pose;
+    leaf.pose = leaf.next = placed.pose;
     if (placed.drifted) ++mended_.made_rigid;
     if (placed.stretch != no_stretch) ++mended_.scaled;
     const Stretch& stretch = stretch_of(leaf.kind, placed);
@@ -153,8 +161,10 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     }
     leaf.fault.clear();
     if (!in_scene(leaf.kind) || leaf.flat) return;
+    leaf.way = 0;
     if (leaf.body != Leaf::no_body) {
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
+        leaf.way = longest_way(*leaf.converted.shape, before, leaf.pose);
     } else {
         try {
             leaf.converted = shapes_.get(*leaf.shape);
@@ -171,17 +181,19 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
 
 // As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object, and
 // of one whose speed is beyond all bounds.
-void Objects::expect(const btCollisionObject& object, const Object& record) {
+void Objects::expect(const btCollisionObject& object, Object& record) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     if (body == nullptr || body->isStaticOrKinematicObject()) return;
     const btVector3 velocity =
         body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
     btTransform then;
     btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
-    for (const Leaf& leaf : record.leaves) {
+    for (Leaf& leaf : record.leaves) {
         if (leaf.body == Leaf::no_body || leaf.left_out()) continue;
         try {
-            scene_.set_next_pose(leaf.body, to_pose(place(then * leaf.local).pose));
+            leaf.next = place(then * leaf.local).pose;
+            scene_.set_next_pose(leaf.body, to_pose(leaf.next));
+            leaf.way = longest_way(*leaf.converted.shape, leaf.pose, leaf.next);
         } catch (const InputError&) {
             return;
         }

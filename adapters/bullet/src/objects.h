@@ -29,9 +29,11 @@ struct Leaf {
     BodyId body = no_body;                         ///< in the scene; of the same kinds
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid; of all kinds but `other`
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
-    bool flat = false;                     ///< a convex shape without a mesh to stand for it
-    std::string fault;                     ///< why it is left out; empty: it takes part
-    bool unusable = false;                 ///< no mesh can be made of it, which is its fault; else its transform
+    btTransform next = btTransform::getIdentity(); ///< pose, or where a moving body is expected at the next dispatch
+    btScalar way = 0;      ///< how far its points go until then, at most; also as the scene expects it
+    bool flat = false;     ///< a convex shape without a mesh to stand for it
+    std::string fault;     ///< why it is left out; empty: it takes part
+    bool unusable = false; ///< no mesh can be made of it, which is its fault; else its transform
     static constexpr BodyId no_body = ~BodyId{0};
 
     bool left_out() const { return !fault.empty(); }
@@ -132,7 +134,7 @@ private:
     void drop_bodies(Object& record);
     void place_object(const btCollisionObject& object, Object& record);
     void place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole);
-    void expect(const btCollisionObject& object, const Object& record);
+    void expect(const btCollisionObject& object, Object& record);
 
     Scene& scene_;
     ConvexShapes convex_;

@@ -25,12 +25,16 @@ HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_p
     return space;
 }
 
-void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space,
+double depth_in(const HalfSpace& space, const Vec3& point) {
+    const btVector3& n = space.normal;
+    return space.height - (double(n.x()) * point.x + double(n.y()) * point.y + double(n.z()) * point.z);
+}
+
+void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space, btScalar reach,
                     std::vector<PlaneContact>& out) {
     out.clear();
     const btVector3& normal = space.normal;
-    const double nx = double(normal.x()), ny = double(normal.y()), nz = double(normal.z());
-    const double height = space.height;
+    const double height = space.height + double(reach);
 
     // The tree prunes in the mesh's frame, with slack; the depth is computed in double, in the world.
     const btVector3 local = normal * mesh_pose.getBasis(); // row vector: the inverse rotation
@@ -41,8 +45,8 @@ void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const H
     const Pose pose = to_pose(mesh_pose);
     for (const std::uint32_t v : below) {
         const Vec3 p = transform_point(pose, mesh.shape->vertices()[v]);
-        const double depth = height - (nx * p.x + ny * p.y + nz * p.z);
-        if (depth > 0) out.push_back({v, to_bullet(p), btScalar(depth)});
+        const double depth = depth_in(space, p);
+        if (depth > -double(reach)) out.push_back({v, to_bullet(p), btScalar(depth)});
     }
 }
 

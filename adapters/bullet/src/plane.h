@@ -11,11 +11,11 @@
 
 namespace raycontact::bullet {
 
-/// A vertex below a plane.
+/// A vertex below a plane, or near to it.
 struct PlaneContact {
     std::uint32_t vertex; ///< of the shape
     btVector3 point;      ///< the vertex, world
-    btScalar depth;       ///< > 0, along the plane's normal, metres
+    btScalar depth;       ///< along the plane's normal, metres; <= 0: it is above
 };
 
 /// All points p with normal . p <= height. World frame.
@@ -26,8 +26,11 @@ struct HalfSpace {
 HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose,
                      const Stretch& stretch = no_stretch);
 
-/// Every vertex of the mesh within the half space, ascending.
-void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space,
+/// How far a point is below the surface, metres.
+double depth_in(const HalfSpace& space, const Vec3& point);
+
+/// Every vertex of the mesh that is in the half space, or nearer to it than `reach`, ascending.
+void plane_contacts(const Converted& mesh, const btTransform& mesh_pose, const HalfSpace& space, btScalar reach,
                     std::vector<PlaneContact>& out);
 
 } // namespace raycontact::bullet

@@ -136,7 +136,7 @@ void Queries::run_plane(const Placed& a, const Placed& b, btManifoldResult& resu
         half_space(static_cast<const btStaticPlaneShape&>(*plane.leaf.shape), plane.leaf.pose, plane.leaf.stretch);
     const btVector3& normal = space.normal;
     std::vector<PlaneContact> found;
-    plane_contacts(mesh.leaf.converted, mesh.leaf.pose, space, found);
+    plane_contacts(mesh.leaf.converted, mesh.leaf.pose, space, 0, found);
     for (const PlaneContact& c : found) {
         const int vertex = static_cast<int>(mesh.leaf.converted.shape->vertex_index()[c.vertex]);
         identify(result, a_is_mesh, name_of_feature(mesh.leaf, {.vertex = vertex}), {});

@@ -16,8 +16,8 @@ namespace raycontact::bullet {
 class Queries {
 public:
     Queries(const Settings& settings, Objects& objects, ConvexShapes convex, btCollisionDispatcher& dispatcher)
-        : scene_(settings), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()), convex_(convex),
-          dispatcher_(dispatcher) {}
+        : scene_(touching(settings)), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()),
+          convex_(convex), dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
@@ -32,6 +32,11 @@ private:
         btTransform pose; ///< world, as Bullet has it; the leaf's is rigid
         int index;
     };
+    /// What is asked is whether two objects touch; nothing moves.
+    static Settings touching(Settings settings) {
+        settings.speculative = false;
+        return settings;
+    }
     std::vector<Placed> leaves_of(const btCollisionObjectWrapper& wrap);
     void convert(Placed& placed, const btCollisionObjectWrapper& whole);
     void run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,

@@ -23,8 +23,8 @@ struct ManifoldSettings {
     /// ... and points within this part of the smaller body's box diagonal from the patch's centre.
     btScalar patch_reach = btScalar(0.25);
     /// A point whose contact is gone lives on for this many steps while its surfaces stay within the manifold's
-    /// breaking threshold: rays find only vertices that penetrate, and a resting body must not lose its support in
-    /// between. At most 255.
+    /// breaking threshold: a resting body must not lose its support for a moment. Without speculative contacts it often
+    /// would, since only what penetrates is found. At most 255.
     int keep_steps = 8;
 };
 
@@ -38,13 +38,15 @@ enum class ConvexShapes {
 
 /// What the last dispatch did.
 struct DispatcherStats {
-    std::uint64_t pairs = 0;          ///< pairs of objects that RayContact handled
-    std::uint64_t mesh_pairs = 0;     ///< pairs of meshes, or their like, in its batch (a compound gives several)
-    std::uint64_t plane_pairs = 0;    ///< pairs of a mesh and a plane, or a box's face that it lies wholly over
+    std::uint64_t pairs = 0;      ///< pairs of objects that RayContact handled
+    std::uint64_t mesh_pairs = 0; ///< pairs of meshes, or their like, in its batch (a compound gives several)
+    /// Pairs of a mesh and a plane; without speculative contacts also of a mesh and a box's face that it lies wholly
+    /// over.
+    std::uint64_t plane_pairs = 0;
     std::uint64_t round_pairs = 0;    ///< pairs of a mesh and a ball or capsule
     std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
-    std::uint64_t contacts = 0;       ///< contacts found, those to come, and of balls and capsules those that are near
+    std::uint64_t contacts = 0;       ///< found, speculative ones and those of balls and capsules that are near, too
     std::uint64_t points = 0;         ///< kept as manifold points
     std::uint64_t points_matched = 0; ///< of those, points that were there in the step before (same key)
     std::uint64_t points_held = 0;    ///< points kept although their contact is gone (ManifoldSettings::keep_steps)
@@ -82,11 +84,16 @@ struct PointKey {
 /// callback of your own is asked about every pair; the batch has those for which it calls defaultNearCallback, or
 /// findAlgorithm and processCollision. Call refresh() for a mesh or hull that was changed in place. Not thread-safe,
 /// like Bullet's.
+///
+/// Unless Settings::speculative is false, meshes have speculative contacts, too (docs/speculative.md), except with
+/// balls and capsules: points that do not touch yet. Their distance is positive, so Bullet's solver stops bodies at the
+/// surface. Of a point that will bounce, getDistance() is no gap once the callbacks were called: it is far below 0,
+/// which makes the solver give back what restitution says. The point's positions stay true.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction
     /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
-    /// scene() has the weights.
+    /// scene() has the weights. Settings::speculative that is empty means true here.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
                                  const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
     ~CollisionDispatcher() override;
@@ -122,7 +129,7 @@ public:
     /// mesh is prepared beside the dispatches once it meets others a second time.
     void prepare();
 
-    /// The batch: contacts(), pairs() and stats() of the last dispatch.
+    /// The batch: contacts(), speculative ones too, pairs() and stats() of the last dispatch.
     const Scene& scene() const;
     const DispatcherStats& stats() const;
 

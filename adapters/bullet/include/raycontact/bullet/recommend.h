@@ -9,8 +9,9 @@ namespace raycontact::bullet {
 
 /// What recommend() asks of Bullet's solver. docs/solver.md has the reason and the figure of each.
 struct SolverSettings {
-    /// Metres that a contact may stay deep. A vertex is in contact only while it is inside: pushed out to the surface,
-    /// it would be lost, and come back. For bodies of 0.2 to 5 m; a thousandth to a hundredth of the smallest.
+    /// Metres that a contact may stay deep. Without speculative contacts a vertex is in contact only while it is
+    /// inside: pushed out to the surface, it would be lost, and come back. With them 0 serves as well. For bodies of
+    /// 0.2 to 5 m; a thousandth to a hundredth of the smallest.
     double slop = 0.001;
     double erp = 0.3;    ///< part of the depth beyond the slop that a step undoes, without giving speed; 0 to 1
     int iterations = 20; ///< at least 1; Bullet's own are 10
