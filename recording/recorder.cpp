@@ -96,7 +96,7 @@ Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
 void Recorder::step() {
     State& s = *state_;
-    if (!recording::must_agree(s.settings, s.scene.settings()))
+    if (!recording::find_alike(s.settings, s.scene.settings()))
         throw InputError(
             "Recorder::step: method, direction, features or thresholds of the scene have changed; a recording has one "
             "set of them, so begin another");

@@ -74,20 +74,33 @@ double WrongRays::percent() const {
                              : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool must_agree(const Settings& recorded, const Settings& used) {
+namespace {
+
+bool is_reduced(const Settings& settings) {
+    return settings.max_contacts_per_pair != 0 || settings.max_contacts != 0;
+}
+
+} // namespace
+
+bool find_alike(const Settings& recorded, const Settings& used) {
     const auto exact = [](Method method) { return method == Method::standard || method == Method::certified; };
     if (used.direction != recorded.direction || used.features != recorded.features
         || used.max_contacts_per_pair != recorded.max_contacts_per_pair || used.max_contacts != recorded.max_contacts)
         return false;
-    // Where bodies were expected is not recorded, and what stays of all contacts depends on it.
-    if ((used.max_contacts_per_pair != 0 || used.max_contacts != 0)
-        && (used.is_speculative() || recorded.is_speculative()))
+    // What stays of all contacts depends on the speculative ones.
+    if (is_reduced(used)
+        && (used.is_speculative() != recorded.is_speculative()
+            || used.speculative_margin != recorded.speculative_margin))
         return false;
     if (exact(used.method) && exact(recorded.method)) return true;
     return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
            && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance
            && used.distance_extension == recorded.distance_extension && used.max_iterations == recorded.max_iterations
            && used.cast_lost_walks == recorded.cast_lost_walks && used.skip_outside == recorded.skip_outside;
+}
+
+bool must_agree(const Settings& recorded, const Settings& used) {
+    return find_alike(recorded, used) && !(is_reduced(used) && used.is_speculative());
 }
 
 Replay replay(Reader& reader, const ReplayOptions& options) {

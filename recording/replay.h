@@ -69,8 +69,11 @@ struct ReplayOptions {
     std::function<bool()> stop;                  ///< asked after each step; true: the replay ends there
 };
 
-/// Whether contacts found with `used` must be those found with `recorded`: direction and features are the same, and
-/// method and thresholds, too, unless both methods find what `standard` finds.
+/// Whether contacts found with `used` are those found with `recorded`, where bodies are expected in the same places:
+/// direction, features and limits are the same, and method and thresholds, too, unless both methods find what
+/// `standard` finds.
+bool find_alike(const Settings& recorded, const Settings& used);
+/// Whether they must be in a replay, too, which does not know where bodies were expected.
 bool must_agree(const Settings& recorded, const Settings& used);
 
 /// Detection only, over all recorded steps, or up to where it was stopped. Throws InputError for a damaged recording or
