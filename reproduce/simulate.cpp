@@ -38,6 +38,7 @@ scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneO
     how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
+    how.settings.speculative = false; // the paper has none
     if (options.paper_response) how.response = paper_response();
     return make(how);
 }

@@ -54,6 +54,7 @@ void sweep(const SeedOptions& options, const std::function<void(const std::strin
         scenes::AvalancheOptions how;
         how.bodies = options.bodies;
         how.seed = options.first + i;
+        how.settings.speculative = false;
         scenes::Simulation simulation(scenes::avalanche(how));
         const scenes::RunLog& log = simulation.log();
         Settings standard;

@@ -129,6 +129,7 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
     scenes::AvalancheOptions how;
     how.bodies = options.bodies;
     how.seed = options.seed;
+    how.settings.speculative = false; // what the peers find, too, is in each other
     scenes::Simulation scene(scenes::avalanche(how));
     Work work;
     work.name = "avalanche";
