@@ -288,6 +288,19 @@ void Scene::set_next_pose(BodyId body, const Pose& pose) {
     refuse_faulty(pose, body);
     if (state_->narrow.settings().is_speculative()) state_->next_poses.set(slot_of(body), moving.generation, pose);
 }
+void Scene::set_speculative_margin(BodyId body, std::optional<double> margin) {
+    PlacedBody& own = state_->existing(body, "Scene::set_speculative_margin");
+    Settings alone;
+    alone.speculative_margin = margin;
+    try {
+        check_settings(alone);
+    } catch (const InputError& error) {
+        throw InputError("Scene::set_speculative_margin: " + name_of(body) + ": " + error.what());
+    }
+    if (own.margin == margin.value_or(-1)) return;
+    own.margin = margin.value_or(-1);
+    state_->narrow.parts().forget(); // what is kept was sought by the old one
+}
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
     const Settings& old = state_->narrow.settings();

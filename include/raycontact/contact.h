@@ -59,8 +59,8 @@ inline bool is_speculative(const Contact& contact) {
 Vec3 point_on_a(const Contact& contact);
 Vec3 point_on_b(const Contact& contact);
 
-/// A contact that touched in the last step and does not in this one. Read it before the next add(), which may give the slot
-/// of a removed body to another body.
+/// A contact that touched in the last step and does not in this one. Read it before the next add(), which may give the
+/// slot of a removed body to another body.
 struct LostContact {
     std::uint32_t body_a = 0; ///< its slot; body_a < body_b
     std::uint32_t body_b = 0;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,9 +43,9 @@ struct StepStats {
     std::uint64_t walk_casts = 0;        ///< of those, how many were cast in full instead
     std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
     std::uint64_t pair_bytes = 0;        ///< memory kept for the open pairs
-    std::uint64_t contacts = 0; ///< that touch
-    std::uint64_t contacts_new = 0;  ///< whose key the last step did not have
-    std::uint64_t contacts_lost = 0; ///< of the last step, whose key this step does not have
+    std::uint64_t contacts = 0;          ///< that touch
+    std::uint64_t contacts_new = 0;      ///< whose key the last step did not have
+    std::uint64_t contacts_lost = 0;     ///< of the last step, whose key this step does not have
     /// Beside them in Scene::contacts().
     std::uint64_t contacts_speculative = 0;
     /// Found, but left out by Settings::max_contacts_per_pair or max_contacts.
@@ -84,6 +85,10 @@ public:
     /// is expected to go on as it did since the last step. Nothing without Settings::speculative. Throws InputError as
     /// set_pose().
     void set_next_pose(BodyId body, const Pose& pose);
+    /// Metres: the margin of its speculative contacts with any body, instead of Settings::speculative_margin; of two
+    /// such bodies the larger counts. Empty: as the settings say. Keeps until the body is removed. Throws InputError
+    /// unless it is finite and at least 0.
+    void set_speculative_margin(BodyId body, std::optional<double> margin);
     const Shape& shape(BodyId body) const;
     /// A number of your own for each body, such as the address of your object; 0 at first.
     void set_user_data(BodyId body, std::uint64_t data);

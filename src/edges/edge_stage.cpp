@@ -163,9 +163,8 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     }
     const std::span<const FeatureContact> coming = question.speculative.of(asked.pair);
     const bool told = in_contact || !coming.empty();
-    if (const SpeculativePair soon{a, b, speculative_margin(settings, a, b)};
-        settings.is_speculative() && asked.edges && soon.asks_edges(told))
-        find_speculative_edges(soon, told, near, work.found);
+    if (settings.is_speculative() && asked.edges && asks_speculative_edges(a, b, told))
+        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
     work.found.insert(work.found.end(), coming.begin(), coming.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {

@@ -12,6 +12,7 @@ double smaller_size(const PlacedBody& a, const PlacedBody& b) {
 }
 
 double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b) {
+    if (const double own = std::max(a.margin, b.margin); own >= 0) return own;
     return settings.speculative_margin ? *settings.speculative_margin : speculative_share * smaller_size(a, b);
 }
 

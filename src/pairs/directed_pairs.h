@@ -18,6 +18,7 @@ struct PlacedBody {
     Pose pose;                     ///< of the body frame
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
     Pose next{};                   ///< of that frame, where it is expected at the next step; with speculative contacts
+    double margin = -1;            ///< of its own for speculative contacts, metres; negative: none
 };
 
 /// The pose of the frame about the shape's centre.

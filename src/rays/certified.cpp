@@ -41,11 +41,6 @@ bool is_in_contact(const ByPair<kernels::LocalContact>& contacts, std::uint32_t 
     return contacts.first(2 * pair) != contacts.first(2 * pair + 2);
 }
 
-SpeculativePair speculative_pair(const Update& update, std::uint32_t pair) {
-    const PlacedBody &a = update.bodies[update.pairs[pair].first], &b = update.bodies[update.pairs[pair].second];
-    return {a, b, speculative_margin(update.settings, a, b)};
-}
-
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
     return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
@@ -278,7 +273,8 @@ void CertifiedRays::find_points(const Update& update, const ByPair<kernels::Loca
     for (WakeUp::Slice& slice : wake_up_.slices())
         for (DueNear& due : slice.near) {
             if (!due.points || !due.edges || table_.hot(due.pair).has_points || is_in_contact(contacts, due.pair)
-                || !speculative_pair(update, due.pair).asks_edges(false))
+                || !asks_speculative_edges(update.bodies[update.pairs[due.pair].first],
+                                           update.bodies[update.pairs[due.pair].second], false))
                 continue;
             seek_edges(update, due, false, true);
         }
@@ -307,9 +303,10 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
         for (DueNear& due : slice.near) {
             if (due.sought) continue;
             const bool in_contact = is_in_contact(contacts, due.pair);
-            const bool near =
-                update.settings.is_speculative()
-                && speculative_pair(update, due.pair).asks_edges(in_contact || !speculative.of(due.pair).empty());
+            const bool near = update.settings.is_speculative()
+                              && asks_speculative_edges(update.bodies[update.pairs[due.pair].first],
+                                                        update.bodies[update.pairs[due.pair].second],
+                                                        in_contact || !speculative.of(due.pair).empty());
             const Slack& slack = table_.hot(due.pair);
             if (due.edges || !(in_contact || slack.all) || (near && !slack.near))
                 seek_edges(update, due, in_contact, near);

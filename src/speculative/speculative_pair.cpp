@@ -54,16 +54,18 @@ Vec3 border_normal(const ShapeData& mesh, std::uint32_t face, std::uint32_t edge
 std::optional<Approach> nearest(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& p, double margin,
                                 double hair) {
     double least2 = margin * margin;
+    Box within = box_of(p, p, margin);
     std::uint32_t face = NONE;
     NearestPoint best;
     for (const NearEdge& near : faces) {
         const Vec3 a = target.corner(near.face, 0), b = target.corner(near.face, 1), c = target.corner(near.face, 2);
-        if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(box_of(p, p, std::sqrt(least2)))) continue;
+        if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(within)) continue;
         const NearestPoint point = nearest_of(p, a, b, c);
         const Vec3 off = p - point.point;
         const double away2 = dot(off, off);
         if (away2 > least2 || (away2 == least2 && near.face > face)) continue;
         least2 = away2;
+        within = box_of(p, p, std::sqrt(least2));
         face = near.face;
         best = point;
     }
@@ -159,10 +161,8 @@ struct Side {
 
 std::array<Side, 2> sides_of(const SpeculativePair& pair) {
     const ShapeData &a = pair.a.shape->data(), &b = pair.b.shape->data();
-    const PairPlace now = place_pair(pair.a.centred, pair.b.centred, 0), next = place_pair(pair.a.next, pair.b.next, 0);
-    const auto ways = pair.ways();
-    return {Side{a, b, now.pose, next.pose, ways[0] > pair.margin},
-            Side{b, a, now.pose_of_second(), next.pose_of_second(), ways[1] > pair.margin}};
+    return {Side{a, b, pair.now.pose, pair.next.pose, pair.ways[0] > pair.margin},
+            Side{b, a, pair.now.pose_of_second(), pair.next.pose_of_second(), pair.ways[1] > pair.margin}};
 }
 
 double hair_of(const SpeculativePair& pair) {
@@ -171,14 +171,15 @@ double hair_of(const SpeculativePair& pair) {
 
 } // namespace
 
-std::array<double, 2> SpeculativePair::ways() const {
-    return displacement_bounds(place_pair(a.centred, b.centred, 0), place_pair(a.next, b.next, 0),
-                               a.shape->data().reach, b.shape->data().reach);
-}
+SpeculativePair::SpeculativePair(const PlacedBody& first, const PlacedBody& second, double within)
+    : a(first), b(second), margin(within), now(place_pair(a.centred, b.centred, 0)),
+      next(place_pair(a.next, b.next, 0)),
+      ways(displacement_bounds(now, next, a.shape->data().reach, b.shape->data().reach)) {}
 
-bool SpeculativePair::asks_edges(bool told) const {
-    if (!raycontact::asks_edges(a, b)) return false;
-    return !has_short_edges_alone(a, b) || !(told || std::ranges::max(ways()) > short_length(a, b));
+bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told) {
+    if (!asks_edges(a, b)) return false;
+    if (!has_short_edges_alone(a, b)) return true;
+    return !told && !(std::ranges::max(SpeculativePair(a, b, 0).ways) > short_length(a, b));
 }
 
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
@@ -209,7 +210,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                             std::vector<FeatureContact>& found) {
     const Side side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
-    const bool long_alone = told || std::ranges::max(pair.ways()) > short_length(pair.a, pair.b);
+    const bool long_alone = told || std::ranges::max(pair.ways) > short_length(pair.a, pair.b);
     const double hair = hair_of(pair), least_length = long_alone ? short_edge * smaller_size(pair.a, pair.b) : 0;
     const std::size_t touching = found.size();
     const auto touches = [&](std::uint32_t edge, std::uint32_t other) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "edges/pair_meshes.h"
+#include "pairs/displacement.h"
 #include "pairs/near_edges.h"
 
 #include <array>
@@ -13,15 +14,18 @@ namespace raycontact {
 /// A pair whose speculative contacts are asked for (docs/speculative.md): what is nearer than a margin, and what will
 /// touch on its way to the next step. They are found in double, so they are the same for every device.
 struct SpeculativePair {
-    const PlacedBody &a, &b;
-    double margin; ///< metres
+    SpeculativePair(const PlacedBody& first, const PlacedBody& second, double within);
 
-    /// How far a vertex of a, of b, may go in the other's frame until the next step, metres.
-    std::array<double, 2> ways() const;
-    /// Whether edges are asked; told: a vertex of the pair has a contact, of whatever kind. Of short edges neither
-    /// bodies that vertices tell of are asked, nor those that go farther than a short edge is long.
-    bool asks_edges(bool told) const;
+    const PlacedBody &a, &b;
+    double margin;       ///< metres
+    PairPlace now, next; ///< of b's frame
+    std::array<double, 2>
+        ways; ///< how far a vertex of a, of b, may go in the other's frame until the next step, metres
 };
+
+/// Whether edges are asked; told: a vertex of the pair has a contact, of whatever kind. Of short edges neither bodies
+/// that vertices tell of are asked, nor those that go farther than a short edge is long.
+bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told);
 
 /// Adds those of vertices in any order. near: vertices and the faces that they may come near, each vertex's together.
 /// touching: the contacts of a, of b, which are left out.

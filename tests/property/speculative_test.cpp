@@ -590,6 +590,41 @@ TEST(Speculative, WithoutANextPoseTheLastMotionGoesOn) {
     EXPECT_TRUE(scene.step().empty());
 }
 
+// Two bodies on either side of a third, at gaps of 1 and 4 % of their size.
+TEST(Speculative, ABodyMayHaveAMarginOfItsOwn) {
+    const Subject& prism = closed_subjects()[6];
+    const double size = prism.solid.diagonal;
+    const double wide = prism.solid.box_max.x - prism.solid.box_min.x;
+    for (const Method method : {Method::standard, Method::certified}) {
+        Settings settings = speculative_settings();
+        settings.method = method;
+        settings.features = Features::edges;
+        Scene scene(settings);
+        const BodyId middle = scene.add(prism.shape);
+        const BodyId left = scene.add(prism.shape, {.translation = {-wide - 0.01 * size, 0, 0}});
+        scene.add(prism.shape, {.translation = {wide + 0.04 * size, 0, 0}});
+        const auto pairs_of = [&] {
+            scene.step();
+            std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+            for (const Contact& c : scene.contacts()) pairs.emplace(c.body_a, c.body_b);
+            return pairs.size();
+        };
+        EXPECT_EQ(pairs_of(), 0u);
+        scene.set_speculative_margin(left, 0.02 * size);
+        EXPECT_EQ(pairs_of(), 1u);
+        scene.set_speculative_margin(middle, 0.05 * size);
+        EXPECT_EQ(pairs_of(), 2u) << "the larger counts";
+        scene.set_speculative_margin(middle, std::nullopt);
+        EXPECT_EQ(pairs_of(), 1u);
+        EXPECT_THROW(scene.set_speculative_margin(left, -1), InputError);
+        scene.remove(left);
+        EXPECT_EQ(pairs_of(), 0u);
+        scene.add(prism.shape, {.translation = {-wide - 0.01 * size, 0, 0}});
+        EXPECT_EQ(pairs_of(), 0u) << "another body in its slot";
+        EXPECT_THROW(scene.set_speculative_margin(left, 0.02), InputError);
+    }
+}
+
 TEST(Speculative, BadMarginsAreRefused) {
     Settings settings = speculative_settings();
     for (const double bad :
