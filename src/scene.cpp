@@ -136,8 +136,9 @@ struct Scene::State {
             if (bodies[i].shape == nullptr) continue;
             const Shape& shape = *bodies[i].shape;
             const bool open = !shape.has_inside();
-            // The margins of two bodies together are at least that of their pair.
-            const double near = next.empty() ? 0 : 0.5 * speculative_margin(narrow.settings(), bodies[i], bodies[i]);
+            // What two boxes are wider by is at least the margin of their pair.
+            const double share = bodies[i].margin >= 0 ? 1 : 0.5;
+            const double near = next.empty() ? 0 : share * speculative_margin(narrow.settings(), bodies[i], bodies[i]);
             const auto box_at = [&](const Pose& pose) {
                 return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
             };
