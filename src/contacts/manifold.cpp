@@ -110,7 +110,7 @@ std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, 
         });
     if (gone != chosen.end()) chosen.erase(gone);
     take(deepest);
-    std::ranges::rotate(chosen, chosen.end() - 1);
+    std::rotate(chosen.begin(), chosen.end() - 1, chosen.end());
     while (!left.empty() && chosen.size() < most_points) take(*std::ranges::max_element(left, {}, by_depth));
     return chosen;
 }
