@@ -41,6 +41,8 @@ void Changes::mark(std::span<Contact> contacts) {
         if (touches && contact.is_new) ++new_count_;
     }
     for (; old < previous_.size(); ++old) lose(old);
+    previous_.reserve(contacts.size()); // either may throw: then both stay as they are
+    touched_.reserve(contacts.size());
     previous_.resize(contacts.size());
     touched_.resize(contacts.size());
     give_back(previous_, touched_, lost_);
