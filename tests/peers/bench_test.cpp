@@ -140,7 +140,8 @@ TEST(BenchPeers, AvalancheAndItsRecordingAreTheSameWork) {
     const Folder folder;
     fs::create_directories(folder.path);
     const std::string file = (folder.path / "small.glb").string();
-    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE "\" run avalanche --bodies 8 --steps 60 --json --record \""
+    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE
+                               "\" run avalanche --bodies 8 --steps 60 --speculative off --json --record \""
                                + file + "\" >/dev/null 2>&1";
     ASSERT_EQ(std::system(record.c_str()), 0);
     const std::string how =
@@ -233,7 +234,8 @@ TEST(BenchSweep, ARecording) {
     const Folder folder;
     fs::create_directories(folder.path);
     const std::string file = (folder.path / "small.glb").string();
-    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE "\" run avalanche --bodies 8 --steps 50 --json --record \""
+    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE
+                               "\" run avalanche --bodies 8 --steps 50 --speculative off --json --record \""
                                + file + "\" >/dev/null 2>&1";
     ASSERT_EQ(std::system(record.c_str()), 0);
     const std::string how = " --bodies 8 --first 20 --steps 30 --values 2 --runs 1 --json --only thresholds";
