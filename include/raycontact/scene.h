@@ -44,9 +44,9 @@ struct StepStats {
     std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
     std::uint64_t pair_bytes = 0;        ///< memory kept for the open pairs
     std::uint64_t contacts = 0;          ///< that touch
-    std::uint64_t contacts_new = 0;      ///< whose key the last step did not have
-    std::uint64_t contacts_lost = 0;     ///< of the last step, whose key this step does not have
-    /// Beside them in Scene::contacts().
+    std::uint64_t contacts_new = 0;      ///< of these, those that did not touch in the last step
+    std::uint64_t contacts_lost = 0;     ///< that touched in the last step, and do not in this one
+    /// Beside them in Scene::contacts(): those that do not touch yet.
     std::uint64_t contacts_speculative = 0;
     /// Found, but left out by Settings::max_contacts_per_pair or max_contacts.
     std::uint64_t contacts_reduced = 0;

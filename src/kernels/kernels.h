@@ -13,6 +13,6 @@
 #include "kernels/find_clusters.h"
 #include "kernels/find_vertices.h"
 #include "kernels/cast_rays.h"
-#include "kernels/find_edges.h"
+#include "kernels/find_near.h"
 #include "kernels/follow.h"
 #include "kernels/emit_contacts.h"

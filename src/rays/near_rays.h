@@ -8,7 +8,7 @@
 namespace raycontact {
 
 /// The edges of pairs that may cross faces, or the edges or vertices that come near, found and cast as rays are. In
-/// float32, with a margin for what that could hide (find_edges.h): some more than cross. Nothing waits.
+/// float32, with a margin for what that could hide (find_near.h): some more than cross. Nothing waits.
 class NearRays {
 public:
     explicit NearRays(BlockSearch::Sources sources) : search_(sources), sources_(sources) {}

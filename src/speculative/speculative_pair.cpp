@@ -111,7 +111,7 @@ std::optional<Approach> first_met(const ShapeData& target, std::span<const NearE
 }
 
 // By how much a unit direction leaves the arc between the normals of a convex edge's faces; of a border the half plane
-// above its face. from, along: the edge; turn: of its mesh.
+// above its face. along: the edge, unit, as its own face runs about it; turn: turns the mesh's normals.
 template <class Turn>
 double beyond_arc(const ShapeData& mesh, std::uint32_t edge, const Vec3& along, const Vec3& direction, Turn&& turn) {
     const auto [own, across] = faces_of(mesh, edge);
@@ -183,7 +183,7 @@ bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told)
 }
 
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
-                               const std::array<std::span<const kernels::LocalContact>, 2>& touching,
+                               const std::array<std::span<const std::uint32_t>, 2>& touching,
                                std::vector<FeatureContact>& found) {
     const double hair = hair_of(pair);
     const auto sides = sides_of(pair);
@@ -191,7 +191,7 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
         const auto own = static_cast<std::size_t>(body);
         const Side& side = sides[own];
         by_source(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
-            if (std::ranges::find(touching[own], v, &kernels::LocalContact::vertex) != touching[own].end()) return;
+            if (std::ranges::binary_search(touching[own], v)) return;
             const Vec3 point = side.source.point(v), p = transform_point(side.now, point);
             std::optional<Approach> approach;
             if (side.moves) approach = first_met(side.target, faces, p, transform_point(side.next, point), hair);

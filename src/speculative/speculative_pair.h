@@ -28,9 +28,9 @@ struct SpeculativePair {
 bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told);
 
 /// Adds those of vertices in any order. near: vertices and the faces that they may come near, each vertex's together.
-/// touching: the contacts of a, of b, which are left out.
+/// touching: the vertices of a, of b, in contact, sorted; they have no other.
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
-                               const std::array<std::span<const kernels::LocalContact>, 2>& touching,
+                               const std::array<std::span<const std::uint32_t>, 2>& touching,
                                std::vector<FeatureContact>& found);
 
 /// Adds those of two edges in any order, but for those that `found` has already. told: as above. near: as NearEdges.

@@ -20,21 +20,28 @@ void SpeculativeVertices::run(const Update& update, const ByPair<kernels::LocalC
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     ends_.assign(update.pairs.size() + 1, 0);
     update.executor.each(block_count, 1, [&](std::uint32_t k) {
-        std::vector<FeatureContact>& block = blocks_[k];
-        block.clear();
+        auto& [found, touches] = blocks_[k];
+        found.clear();
         const std::size_t first = k * pairs_in_block;
         for (const AskedPair& one : asked.subspan(first, std::min(pairs_in_block, asked.size() - first))) {
-            const std::size_t before = block.size();
+            const std::size_t before = found.size();
             const PlacedBody &a = update.bodies[update.pairs[one.pair].first],
                              &b = update.bodies[update.pairs[one.pair].second];
+            for (std::size_t side = 0; side < 2; ++side) {
+                touches[side].clear();
+                for (const kernels::LocalContact& c : touching.of(2 * one.pair + side))
+                    touches[side].push_back(c.vertex);
+                std::sort(touches[side].begin(), touches[side].end());
+            }
             find_speculative_vertices({a, b, speculative_margin(update.settings, a, b)}, {one.near[0], one.near[1]},
-                                      {touching.of(2 * one.pair), touching.of(2 * one.pair + 1)}, block);
-            ends_[one.pair + 1] = static_cast<std::uint32_t>(block.size() - before);
+                                      {touches[0], touches[1]}, found);
+            ends_[one.pair + 1] = static_cast<std::uint32_t>(found.size() - before);
         }
     });
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     found_.clear();
-    for (std::size_t k = 0; k < block_count; ++k) found_.insert(found_.end(), blocks_[k].begin(), blocks_[k].end());
+    for (std::size_t k = 0; k < block_count; ++k)
+        found_.insert(found_.end(), blocks_[k].found.begin(), blocks_[k].found.end());
 }
 
 void SpeculativeVertices::clear() {
@@ -43,7 +50,7 @@ void SpeculativeVertices::clear() {
 }
 
 void SpeculativeVertices::give_back() {
-    for (std::vector<FeatureContact>& block : blocks_) raycontact::give_back(block);
+    for (Block& block : blocks_) raycontact::give_back(block.found, block.touching[0], block.touching[1]);
     raycontact::give_back(found_, ends_);
 }
 

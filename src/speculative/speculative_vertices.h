@@ -6,6 +6,7 @@
 #include "pairs/near_edges.h"
 #include "pairs/update.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,15 @@ public:
     void give_back();
 
 private:
-    std::vector<std::vector<FeatureContact>> blocks_; ///< of some pairs each
-    std::vector<FeatureContact> found_;               ///< in the order of the pairs
-    std::vector<std::uint32_t> ends_;                 ///< of the pair before, by pair
+    /// Some pairs.
+    struct Block {
+        std::vector<FeatureContact> found;
+        std::array<std::vector<std::uint32_t>, 2> touching; ///< of one pair: the vertices of a, of b, sorted
+    };
+
+    std::vector<Block> blocks_;
+    std::vector<FeatureContact> found_; ///< in the order of the pairs
+    std::vector<std::uint32_t> ends_;   ///< of the pair before, by pair
 };
 
 } // namespace raycontact
