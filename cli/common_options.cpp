@@ -101,7 +101,7 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     add_word(
         command, "--direction",
         "what normal and depth are made of: ray, weighted (as ray, and each contact has its vertex's area in m^2 as "
-        "weight) or reprojected",
+        "weight), reprojected (along the normal of the face that was hit) or refined (to the nearest face)",
         "WORD", std::string(to_string(settings.direction)),
         [&](const std::string& word) { settings.direction = direction_from(word); });
     add_word(command, "--features",

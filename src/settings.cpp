@@ -27,7 +27,8 @@ constexpr std::array casters{std::pair{Caster::basic, std::string_view("basic")}
                              std::pair{Caster::bvh, std::string_view("bvh")}};
 constexpr std::array directions{std::pair{Direction::ray, std::string_view("ray")},
                                 std::pair{Direction::weighted, std::string_view("weighted")},
-                                std::pair{Direction::reprojected, std::string_view("reprojected")}};
+                                std::pair{Direction::reprojected, std::string_view("reprojected")},
+                                std::pair{Direction::refined, std::string_view("refined")}};
 constexpr std::array features{std::pair{Features::vertices, std::string_view("vertices")},
                               std::pair{Features::edges, std::string_view("edges")}};
 constexpr std::array schedules{std::pair{Schedule::balanced, std::string_view("balanced")},

@@ -29,6 +29,7 @@ enum class Direction {
     ray,         ///< along the ray itself, depth = |r| (Hermann et al. 2008)
     weighted,    ///< as ray, and each contact has its vertex's area as weight (after Hermann et al. 2008)
     reprojected, ///< along the normal of the face that was hit, depth = r . n (paper section 3.2, equation 2)
+    refined,     ///< to the nearest point of the faces by which the vertex can leave; depth = its distance
 };
 
 /// Which features of a mesh can be in contact.

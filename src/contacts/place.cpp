@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
+#include "contacts/refine.h"
 #include "mesh/vector.h"
 #include "platform/prefetch.h"
 #include "shape/shape_data.h"
@@ -48,6 +49,7 @@ void place(Contact& contact, const Side& side, const kernels::LocalContact& loca
     Vec3 out; // the direction in which the source leaves the target
     switch (side.direction) {
     case Direction::reprojected:
+    case Direction::refined: // refined after this
         out = rotated(side.target_pose.rotation, {local.normal.x, local.normal.y, local.normal.z});
         contact.depth = local.distance * local.facing;
         break;
@@ -88,6 +90,9 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
             } while (!begins_pair(++next));
             std::sort(order_.begin() + begin, order_.begin() + next);
             for (std::uint32_t i = begin; i < next; ++i) place(contacts[i], side, local[order_[i] & 0xffffffff]);
+            if (direction != Direction::refined) continue;
+            const Refiner refiner(source, target);
+            for (std::uint32_t i = begin; i < next; ++i) refiner.refine(contacts[i], local[order_[i] & 0xffffffff]);
         }
     });
 }

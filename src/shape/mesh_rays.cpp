@@ -132,10 +132,14 @@ NearestPoint nearest_of(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
     return best;
 }
 
-NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough, double bound) {
+namespace {
+
+// The nearest of the faces that count, and no farther than `found`; the first within `enough`.
+template <class Counts>
+NearestFace nearest_of_faces(const ShapeData& mesh, const Vec3& point, double enough, NearestFace found,
+                             Counts&& counts) {
     constexpr double rounding = 1 + 1e-12;
-    NearestFace found;
-    double least2 = bound * bound;
+    double least2 = found.distance * found.distance;
     const auto farthest = [&] { return found.distance <= enough ? 0.0 : least2; };
     const auto away = [&](const kernels::Node& node, Lanes<double>& lanes) {
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box_of(node, lane).squared_distance(point);
@@ -156,6 +160,7 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             if (!(boxes2[lane] <= rounding * least2)) continue;
             const std::uint32_t face = block.triangle[lane];
+            if (!counts(face)) continue;
             const Vec3 nearest = nearest_point(point, mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2));
             const Vec3 off = point - nearest;
             const double distance2 = dot(off, off);
@@ -165,6 +170,21 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
         }
     });
     return found;
+}
+
+} // namespace
+
+NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough, double bound) {
+    const NearestFace found = nearest_of_faces(mesh, point, enough, {bound, NONE}, [](std::uint32_t) { return true; });
+    return found.face == NONE ? NearestFace() : found;
+}
+
+NearestFace nearest_way_out(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known) {
+    constexpr double sideways = 1e-6;
+    return nearest_of_faces(mesh, point, 0, known, [&](std::uint32_t face) {
+        const Vec3 n = area_normal(mesh, face);
+        return dot(n, out) > sideways * length(n) && dot(n, mesh.corner(face, 0) - point) >= 0;
+    });
 }
 
 } // namespace raycontact

@@ -48,6 +48,10 @@ struct NearestFace {
 NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough,
                          double bound = std::numeric_limits<double>::infinity());
 
+/// The nearest of the faces by which a vertex at `point` can leave along `out`: they have it behind them and look along
+/// `out` (unit), by more than rounding. No farther than `known`, which is one that counts in any case.
+NearestFace nearest_way_out(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known);
+
 /// What of a triangle is nearest to a point.
 struct NearestPoint {
     Vec3 point;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -55,7 +56,8 @@ Pose wild_pose(fuzz::Source& source) {
 }
 
 void change(Settings& settings, fuzz::Source& source) {
-    settings.direction = reference::directions[source.below(3)];
+    settings.direction =
+        reference::directions[source.below(static_cast<std::uint32_t>(std::size(reference::directions)))];
     settings.caster = source.below(2) == 0 ? Caster::bvh : Caster::basic;
     settings.features = source.below(2) == 0 ? Features::vertices : Features::edges;
     settings.skip_outside = source.below(2) == 0;

@@ -256,7 +256,8 @@ private:
             return;
         }
         for (const Contact& c : found) {
-            if (c.feature != Feature::vertex) continue; // they follow from the vertices that were found
+            if (c.feature != Feature::vertex) continue;             // they follow from the vertices that were found
+            if (settings.direction == Direction::refined) continue; // it names another face than the ray met
             if (is_genuine(c, guests_[c.body_a], guests_[c.body_b])) {
                 ++counts_.genuine;
                 Contact lie = c;

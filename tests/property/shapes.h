@@ -43,7 +43,8 @@ std::vector<Pair> add_all(Scene& scene, const std::vector<Placement>& placements
 /// The contacts of placement i out of all, which are sorted by body.
 std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts, std::size_t pairs);
 
-inline constexpr Direction directions[] = {Direction::ray, Direction::weighted, Direction::reprojected};
+inline constexpr Direction directions[] = {Direction::ray, Direction::weighted, Direction::reprojected,
+                                           Direction::refined};
 
 /// What a scene with these settings that has seen nothing finds for the bodies, poses and pairs of the last step.
 std::vector<Contact> contacts_of_fresh_scene(const Scene& scene, const Settings& settings);

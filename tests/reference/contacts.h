@@ -17,10 +17,12 @@ struct CastRay {
     bool contact = false;
     std::uint32_t triangle = 0; ///< of the target solid; only with a contact, as all that follows
     Vec3 point;                 ///< world frame
-    Vec3 normal;                ///< unit, world frame: the outward normal of the face hit, or the direction of the ray
-    double depth = 0;           ///< metres
-    double ray_length = 0;      ///< metres
+    Vec3 normal; ///< unit, world frame: the outward normal of the face hit, the direction of the ray, or to the nearest
+                 ///< point
+    double depth = 0;      ///< metres
+    double ray_length = 0; ///< metres
     double weight = 1;
+    double least_depth = 0; ///< with direction `refined`, where rounding may decide which faces count: the other answer
 };
 
 /// Every vertex of `source` inside the bounds of `target`, cast by the rule of contact; in order of vertices.

@@ -138,7 +138,8 @@ private:
     void change(Random& random) {
         constexpr Method methods[] = {Method::certified, Method::standard, Method::iterative, Method::predictive};
         settings_.method = methods[random.below(4)];
-        settings_.direction = reference::directions[random.below(3)];
+        settings_.direction =
+            reference::directions[random.below(static_cast<std::uint32_t>(std::size(reference::directions)))];
         settings_.caster = random.below(8) == 0 ? Caster::basic : Caster::bvh;
         settings_.features = random.below(8) == 0 ? Features::edges : Features::vertices;
         scene_.set_settings(settings_);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Direction `refined` where the face that a ray meets is not the way out. agreement_test holds it against brute force.
+#include "reference/meshes.h"
+#include "reference/vector.h"
+
+#include <raycontact/collide.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace raycontact {
+namespace {
+
+using namespace reference;
+
+std::vector<Contact> vertices_of(const Mesh& a, const Pose& pose, const Mesh& b, Direction direction) {
+    return collide(*Shape::make(a), pose, *Shape::make(b), {},
+                   {.direction = direction, .features = Features::vertices});
+}
+
+// A roof whose ridge runs along y: the two slopes meet at z = 1.
+Mesh roof() {
+    Mesh mesh;
+    mesh.vertices = {{-1, -1, 0}, {1, -1, 0}, {0, -1, 1}, {-1, 1, 0}, {1, 1, 0}, {0, 1, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}};
+    return mesh;
+}
+
+// A needle that stands on its tip; its axis, and so the ray of its tip, points along `axis`.
+Mesh needle(const Vec3& tip, const Vec3& axis) {
+    const Vec3 side{0, 1, 0}, other = cross(axis, side);
+    Mesh mesh;
+    mesh.vertices = {tip};
+    for (const auto& [along, across] : {std::pair(0.3, 0.0), std::pair(-0.15, 0.26), std::pair(-0.15, -0.26)})
+        mesh.vertices.push_back(tip + axis + along * side + across * other);
+    mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+    return mesh;
+}
+
+// The tip is 0.035 m below the left slope, which its ray nearly follows, and 0.106 m below the right one, which it
+// meets.
+TEST(Refined, LeavesByTheNearerSlopeOfARidge) {
+    const Vec3 tip{-0.05, 0, 0.9}, axis = unit(Vec3{0.633, 0, 0.774});
+    const Vec3 left = unit(Vec3{-1, 0, 1}), right = unit(Vec3{1, 0, 1});
+    const auto reprojected = vertices_of(needle(tip, axis), {}, roof(), Direction::reprojected);
+    const auto refined = vertices_of(needle(tip, axis), {}, roof(), Direction::refined);
+    ASSERT_EQ(reprojected.size(), 1u);
+    ASSERT_EQ(refined.size(), 1u);
+    EXPECT_NEAR(reprojected[0].depth, dot(right, Vec3{0, 0, 1} - tip), 1e-6);
+    EXPECT_NEAR(refined[0].depth, dot(left, Vec3{0, 0, 1} - tip), 1e-6);
+    EXPECT_NEAR(refined[0].normal[0], -left.x, 1e-6); // from the needle to the roof
+    EXPECT_NEAR(refined[0].normal[2], -left.z, 1e-6);
+    EXPECT_GE(refined[0].triangle, 6u); // of the left slope
+    EXPECT_EQ(refined[0].ray_length, reprojected[0].ray_length);
+}
+
+// A corner is 1 mm below the top of the other cube, and 0.2 mm from its sides: by these it must not leave.
+TEST(Refined, ACubeOnACubeLeavesUpwards) {
+    const Mesh cube = box_mesh({0.5, 0.5, 0.5});
+    Pose pose;
+    pose.translation = {0.0002, 0.0002, 0.999};
+    const auto contacts = vertices_of(cube, pose, cube, Direction::refined);
+    ASSERT_FALSE(contacts.empty());
+    for (const Contact& contact : contacts) {
+        EXPECT_NEAR(contact.normal[2], -1, 1e-6);
+        EXPECT_NEAR(contact.depth, 0.001, 1e-6);
+    }
+}
+
+} // namespace
+} // namespace raycontact
