@@ -23,6 +23,7 @@ struct ReproduceCommand {
     std::string what = "all", out;
     bool quick = false, tiny = false;
     std::vector<double> constants;
+    std::uint32_t seeds = 0;
 };
 
 std::string as_text(const repro::Table& table) {
@@ -52,6 +53,10 @@ void reproduce(const ReproduceCommand& given) {
         constants.confidence = given.constants[1];
         constants.distance_extension = given.constants[2];
         raycontact::check_settings(repro::as_in_the_paper(raycontact::Method::predictive, constants));
+    }
+    if (given.seeds > 0 && given.seeds != options.plan.seeds) {
+        options.plan.seeds = given.seeds;
+        if (options.plan.is_full()) options.plan.name = "other seeds";
     }
     options.what = given.what;
     options.out = given.out;
@@ -91,6 +96,8 @@ void add_reproduce(CLI::App& app) {
         ->type_name("T,C,E")
         ->delimiter(',')
         ->expected(3);
+    command->add_option("--seeds", given->seeds, "of table2 and lengths; 5 unless given, 1 with --quick")
+        ->check(CLI::Range(1, 1000));
     command->add_flag("--quick", given->quick, "a short version: fewer bodies, steps, seeds and orientations");
     command->add_flag("--tiny", given->tiny, "for tests")->group("");
     command->footer("Results are kept in DIR/cache: a run that was ended goes on where it was, and nothing is done\n"

@@ -84,7 +84,7 @@ std::string paragraph(const std::string& text, const char* look = "") {
 std::string section(const Section& s) {
     std::string html = fmt::format("<h2 id=\"{}\">{}</h2>\n", escape_html(s.name), escape_html(s.title));
     for (const std::string& text : s.outcome.paragraphs) html += paragraph(text);
-    html += verdicts(s.outcome.numbers);
+    if (!s.outcome.numbers.empty()) html += verdicts(s.outcome.numbers);
     for (const std::string& picture : s.outcome.pictures)
         html += "<img alt=\"the scene after its last step\" src=\"data:image/jpeg;base64," + picture + "\">\n";
     for (const PackedView& view : s.outcome.views)

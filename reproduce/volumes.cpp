@@ -148,23 +148,31 @@ Outcome show(const std::vector<Run>& all, const std::vector<Json>& found) {
         lengths.lines.push_back(by_length);
         volumes.lines.push_back(by_volume);
     }
-    Table disagree{"Where length and volume put two runs in another order",
-                   {"shorter", "less volume", "by length", "by volume"},
-                   {}};
+    // Two runs, the one with the shorter rays first: a negative share of volume is a disagreement.
+    Table order{"Two runs, by length and by volume",
+                {"run", "against", "shorter rays", "less volume", "sampled steps in another order"},
+                {}};
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t k = 0; k < all.size(); ++k) {
-            const double shorter = less_by(sum(found[k]["ray"].get<Series>()), sum(found[i]["ray"].get<Series>()));
-            const double less = less_by(sum(found[i]["volume"].get<Series>()), sum(found[k]["volume"].get<Series>()));
-            if (shorter > 0 && less > 0)
-                disagree.rows.push_back({all[i].name, all[k].name, percent(shorter), percent(less)});
+            const auto length = found[i]["ray"].get<Series>(), other_length = found[k]["ray"].get<Series>();
+            const auto volume = found[i]["volume"].get<Series>(), other_volume = found[k]["volume"].get<Series>();
+            if (!(sum(length) < sum(other_length))) continue;
+            std::size_t otherwise = 0;
+            for (std::size_t at = 0; at < length.size(); ++at)
+                otherwise += (length[at] < other_length[at] && volume[at] > other_volume[at])
+                             || (length[at] > other_length[at] && volume[at] < other_volume[at]);
+            order.rows.push_back({all[i].name, all[k].name, percent(less_by(sum(other_length), sum(length))),
+                                  percent(less_by(sum(other_volume), sum(volume))),
+                                  fmt::format("{} of {}", otherwise, length.size())});
         }
     out.plots = {lengths, volumes};
-    out.tables = {sums, disagree, steps};
+    out.tables = {sums, order, steps};
     out.paragraphs = {
         "The paper takes the cumulative length of all rays for the amount of interpenetration (section 5.2). Here the "
         "volume that bodies share stands beside it, summed over all pairs, on sampled steps of several runs. It is "
         "exact but for rounding. The rays are those of standard along the poses of each run, before re-projection "
         "(ray), after it, and times the area of their vertex, which is a volume, too.",
+        "A negative share of volume means that length and volume put two runs in another order. "
         "Rank correlation is Spearman's: over the sampled steps of a run, and over all pairs of bodies in all of them. "
         "Pairs without a contact share a volume, but have no vertex in each other by the paper's rule."};
     return out;
