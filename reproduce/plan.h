@@ -17,8 +17,8 @@ struct SceneSize {
 /// extent is 1 m in both scenes. docs/reproduction.md says how they were chosen.
 struct Constants {
     double displacement_threshold = 0.04; ///< metres: 4 % of a body's size
-    double confidence = 2;                ///< so cullingDist (equation 1) is 0.08 m
-    double distance_extension = 0.08;     ///< metres; above displacement_threshold (section 3.1)
+    double confidence = 1;                ///< the least; so cullingDist (equation 1) is 0.04 m
+    double distance_extension = 0.0404;   ///< metres; just above displacement_threshold (section 3.1)
     std::uint32_t max_iterations = 16;    ///< maxIt
 
     /// With another threshold, and a distanceExtension in proportion.
