@@ -38,6 +38,7 @@ std::string as_text(const repro::Table& table) {
     });
     each([&](const std::vector<std::string>& row) {
         for (std::size_t k = 0; k < row.size(); ++k) text += fmt::format("{:<{}}  ", row[k], width[k]);
+        text.erase(text.find_last_not_of(' ') + 1);
         text += '\n';
     });
     return text + '\n';
