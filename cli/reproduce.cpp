@@ -8,10 +8,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -20,12 +22,43 @@ namespace repro = raycontact::reproduce;
 struct ReproduceCommand {
     std::string what = "all", out;
     bool quick = false, tiny = false;
+    std::vector<double> constants;
+    std::uint32_t seeds = 0;
 };
+
+std::string as_text(const repro::Table& table) {
+    std::string text = table.title + "\n";
+    std::vector<std::size_t> width(table.head.size());
+    const auto each = [&](const auto& look) {
+        look(table.head);
+        for (const auto& row : table.rows) look(row);
+    };
+    each([&](const std::vector<std::string>& row) {
+        for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], row[k].size());
+    });
+    each([&](const std::vector<std::string>& row) {
+        for (std::size_t k = 0; k < row.size(); ++k) text += fmt::format("{:<{}}  ", row[k], width[k]);
+        text.erase(text.find_last_not_of(' ') + 1);
+        text += '\n';
+    });
+    return text + '\n';
+}
 
 void reproduce(const ReproduceCommand& given) {
     repro::Options options;
     if (given.quick) options.plan = repro::quick_plan();
     if (given.tiny) options.plan = repro::tiny_plan();
+    if (!given.constants.empty()) {
+        repro::Constants& constants = options.plan.constants;
+        constants.displacement_threshold = given.constants[0];
+        constants.confidence = given.constants[1];
+        constants.distance_extension = given.constants[2];
+        raycontact::check_settings(repro::as_in_the_paper(raycontact::Method::predictive, constants));
+    }
+    if (given.seeds > 0 && given.seeds != options.plan.seeds) {
+        options.plan.seeds = given.seeds;
+        if (options.plan.is_full()) options.plan.name = "other seeds";
+    }
     options.what = given.what;
     options.out = given.out;
     std::optional<Progress> bar;
@@ -35,8 +68,10 @@ void reproduce(const ReproduceCommand& given) {
     };
     options.progress = [&](std::uint32_t done) { bar->show(done); };
     options.end = [&] { bar->done(); };
+    std::string text;
+    options.table = [&](const repro::Table& table) { text += as_text(table); };
     const auto numbers = repro::reproduce(options);
-    std::string text = options.plan.is_full() ? "" : options.plan.warning() + "\n\n";
+    text += options.plan.is_full() ? "" : options.plan.warning() + "\n\n";
     for (const repro::Number& n : numbers)
         text += fmt::format("{:<28} paper {:>10.5g}   ours {:>10.5g}   {:<16} {}\n", n.id, n.paper, n.ours,
                             repro::to_string(n.verdict), n.unit);
@@ -54,6 +89,16 @@ void add_reproduce(CLI::App& app) {
     add_out(*command, "--out", given->out, "write report.html, results.json and cache/ there")
         ->type_name("DIR")
         ->required();
+    const repro::Constants usual;
+    command
+        ->add_option("--constants", given->constants,
+                     fmt::format("displacementThreshold (m), confidence, distanceExtension (m); {},{},{} unless given",
+                                 usual.displacement_threshold, usual.confidence, usual.distance_extension))
+        ->type_name("T,C,E")
+        ->delimiter(',')
+        ->expected(3);
+    command->add_option("--seeds", given->seeds, "of table2 and lengths; 5 unless given, 1 with --quick")
+        ->check(CLI::Range(1, 1000));
     command->add_flag("--quick", given->quick, "a short version: fewer bodies, steps, seeds and orientations");
     command->add_flag("--tiny", given->tiny, "for tests")->group("");
     command->footer("Results are kept in DIR/cache: a run that was ended goes on where it was, and nothing is done\n"

@@ -9,6 +9,7 @@ std::vector<Experiment> all_experiments(const Workshop& shop) {
     all.push_back(table1(shop));
     for (const std::string& scene : scenes) all.push_back(wrong_rays(shop, scene));
     all.push_back(lengths(shop));
+    all.push_back(volumes(shop));
     for (const std::string& scene : scenes) all.push_back(times(shop, scene));
     all.push_back(table2(shop));
     for (const std::string& scene : scenes) all.push_back(two_devices(shop, scene));

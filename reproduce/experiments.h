@@ -12,6 +12,7 @@ namespace raycontact::reproduce {
 Experiment table1(const Workshop& shop);
 Experiment wrong_rays(const Workshop& shop, const std::string& scene); ///< Figures 9 and 10, and the scene's size
 Experiment lengths(const Workshop& shop);                              ///< section 5.2
+Experiment volumes(const Workshop& shop);                              ///< section 5.2, beside the exact volume
 Experiment times(const Workshop& shop, const std::string& scene);      ///< Figures 11 and 12, section 5.3
 Experiment table2(const Workshop& shop);
 Experiment two_devices(const Workshop& shop, const std::string& scene); ///< Figures 14 and 15

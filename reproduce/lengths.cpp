@@ -24,13 +24,13 @@ double longest_pair_of(const Json& found) {
 }
 
 SimulationOptions driven_by(const Workshop& shop, Method method, const std::string& scene, std::uint64_t seed) {
-    return {scene, seed, shop.plan().size(scene), as_in_the_paper(method), true};
+    return {scene, seed, shop.plan().size(scene), as_in_the_paper(method, shop.plan().constants), true};
 }
 
 /// The same at another displacement threshold; of the avalanche, seed 1.
 SimulationOptions at_threshold(const Workshop& shop, Method method, double threshold) {
     SimulationOptions options = driven_by(shop, method, curve_scene, 1);
-    options.settings = as_in_the_paper(method, threshold);
+    options.settings = as_in_the_paper(method, shop.plan().constants.at(threshold));
     return options;
 }
 
@@ -87,7 +87,7 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
                         "threshold, which the paper does not state: {} m here, chosen so that this number is about the "
                         "paper's in both scenes; other thresholds in the table",
                         shorter.size(), percent(*least), percent(*most), percent(most_of_one), percent(median(without)),
-                        constants::displacement_threshold)));
+                        shop.plan().constants.displacement_threshold)));
         out.plots.push_back(plot);
         out.tables.push_back(table);
     }

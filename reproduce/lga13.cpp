@@ -14,8 +14,8 @@ namespace {
 constexpr const char* scene = "avalanche";
 
 /// The first two cast every ray of a full look, as the paper's do; the others are spared some by the library's grids.
-std::vector<Settings> contestants(Caster caster) {
-    std::vector<Settings> all{as_in_the_paper(Method::iterative), by_default(Method::standard)};
+std::vector<Settings> contestants(const Plan& plan, Caster caster) {
+    std::vector<Settings> all{as_in_the_paper(Method::iterative, plan.constants), by_default(Method::standard)};
     all[1].skip_outside = false;
     if (caster == Caster::bvh) {
         for (std::size_t k = 0; k < 2; ++k) {
@@ -30,7 +30,7 @@ std::vector<Settings> contestants(Caster caster) {
 Json measure(const Workshop& shop, Caster caster, double cost, const Tick& tick) {
     const auto file = shop.recording(shop.base(scene), [](double) {});
     std::vector<Follow> follow;
-    for (const Settings& settings : contestants(caster)) follow.push_back({file, settings});
+    for (const Settings& settings : contestants(shop.plan(), caster)) follow.push_back({file, settings});
     Json result = Json::array();
     for (std::size_t k = 0; k < follow.size(); ++k) result.push_back(Json::array());
     side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
@@ -103,7 +103,7 @@ Experiment lga13(const Workshop& shop) {
     e.title = "LGA13: iterative against standard";
     for (const Caster caster : {Caster::basic, Caster::bvh}) {
         Json settings{{"bodies", shop.plan().avalanche.bodies}, {"steps", shop.plan().avalanche.steps}};
-        for (const Settings& one : contestants(caster)) settings["methods"].push_back(to_json(one));
+        for (const Settings& one : contestants(shop.plan(), caster)) settings["methods"].push_back(to_json(one));
         const double cost = Workshop::cost(shop.base(scene)) * (caster == Caster::basic ? 5 : 0.7);
         e.parts.push_back({fmt::format("lga13-{}", to_string(caster)), shop.key("lga13", settings), cost,
                            [&shop, caster, cost](const Tick& tick) { return measure(shop, caster, cost, tick); }});

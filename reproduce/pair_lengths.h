@@ -16,6 +16,7 @@ class PairLengths {
 public:
     void add(std::span<const Contact> contacts) {
         for (const Contact& contact : contacts) {
+            if (is_speculative(contact)) continue;
             Sums& sums = pairs_[std::uint64_t{contact.body_a} << 32 | contact.body_b];
             sums.ray += static_cast<double>(contact.ray_length);
             sums.depth += static_cast<double>(contact.depth);

@@ -22,6 +22,7 @@ Plan quick_plan() {
     Plan plan;
     plan.name = "quick";
     plan.avalanche = {343, 300};
+    plan.volume_every = 30;
     plan.rain = {160, 960};
     plan.seeds = 1;
     plan.thresholds = {0.01};
@@ -36,6 +37,7 @@ Plan tiny_plan() {
     plan.name = "tiny";
     plan.avalanche = {8, 90};
     plan.rain = {6, 90};
+    plan.volume_every = 10;
     plan.seeds = 2;
     plan.thresholds = {0.01};
     plan.orientations = 6;
@@ -44,14 +46,14 @@ Plan tiny_plan() {
     return plan;
 }
 
-Settings as_in_the_paper(Method method, double displacement_threshold) {
+Settings as_in_the_paper(Method method, const Constants& constants) {
     Settings settings;
     settings.features = Features::vertices; // the paper's rule
     settings.method = method;
-    settings.displacement_threshold = displacement_threshold;
-    settings.confidence = constants::confidence;
-    settings.distance_extension = constants::confidence * displacement_threshold;
-    settings.max_iterations = constants::max_iterations;
+    settings.displacement_threshold = constants.displacement_threshold;
+    settings.confidence = constants.confidence;
+    settings.distance_extension = constants.distance_extension;
+    settings.max_iterations = constants.max_iterations;
     settings.cast_lost_walks = false;
     settings.skip_outside = false; // grids are not the paper's
     return settings;

@@ -4,6 +4,7 @@
 #include <raycontact/scene.h>
 #include <scenes/models/trigonometry.h>
 #include <scenes/random.h>
+#include <scenes/response/penalty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,13 +44,11 @@ double lowest(const Shape& shape, const std::array<double, 9>& r) {
     return z;
 }
 
-struct Force {
-    double x = 0, y = 0, z = 0;
-};
-
 } // namespace
 
 Deviation plane_deviation(const PlaneTest& test, Direction direction) {
+    // Nothing moves: no damper acts, and nothing slides. A ratio of forces does not depend on the stiffness.
+    constexpr scenes::Penalty springs{.stiffness = 1};
     Settings settings;
     settings.features = Features::vertices;
     settings.method = Method::standard;
@@ -80,15 +79,13 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
             poses[k].translation = {0, 0, height[k] - depth};
             scene.set_pose(bodies[k], poses[k]);
         }
-        std::vector<Force> force(test.orientations);
+        std::vector<Vec3> force(test.orientations); // on the plane
         for (const Contact& contact : scene.step(pairs)) {
-            Force& of = force[contact.body_a];
-            const double strength = static_cast<double>(contact.weight) * static_cast<double>(contact.depth);
-            of.x += strength * static_cast<double>(contact.normal[0]);
-            of.y += strength * static_cast<double>(contact.normal[1]);
-            of.z += strength * static_cast<double>(contact.normal[2]);
+            const Vec3 push = scenes::penalty_force(springs, contact);
+            Vec3& of = force[contact.body_a];
+            of = {of.x + push.x, of.y + push.y, of.z + push.z};
         }
-        for (const Force& of : force) {
+        for (const Vec3& of : force) {
             if (of.z == 0) continue;
             ratios += std::sqrt(of.x * of.x + of.y * of.y) / std::fabs(of.z);
             ++result.cases;

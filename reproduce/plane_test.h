@@ -21,8 +21,8 @@ struct Deviation {
     std::uint64_t cases = 0; ///< with contacts
 };
 
-/// The ground is a closed slab far wider than the object; contacts come from a Scene with that direction. A contact's
-/// force is its weight x depth along its normal. Orientations are random, the same in every call.
+/// The ground is a closed slab far wider than the object; contacts come from a Scene with that direction, their forces
+/// from springs (scenes/response/penalty.h). Orientations are random, the same in every call.
 Deviation plane_deviation(const PlaneTest& test, Direction direction);
 
 } // namespace raycontact::reproduce

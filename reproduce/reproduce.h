@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <reproduce/experiment.h>
 #include <reproduce/number.h>
 #include <reproduce/plan.h>
 
@@ -21,6 +22,8 @@ struct Options {
     std::function<void(const std::string& experiment, std::uint32_t total)> begin;
     std::function<void(std::uint32_t done)> progress;
     std::function<void()> end;
+    /// May be empty. Given the tables of the experiment, if `what` is one.
+    std::function<void(const Table&)> table;
 };
 
 /// "all" and the names of the experiments.

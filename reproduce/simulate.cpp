@@ -38,7 +38,7 @@ scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneO
     how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
-    how.settings.speculative = false; // the paper has none
+    how.settings.speculative = options.speculative;
     if (options.paper_response) how.response = paper_response();
     return make(how);
 }
@@ -101,7 +101,8 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
         pairs.add(scene.contacts());
         if (record) record->step();
         double depth = 0;
-        for (const Contact& contact : scene.contacts()) depth += static_cast<double>(contact.depth);
+        for (const Contact& contact : scene.contacts())
+            if (!is_speculative(contact)) depth += static_cast<double>(contact.depth);
         result["pairs"].push_back(scene.stats().pairs);
         result["contacts"].push_back(scene.stats().contacts);
         result["ray_length"].push_back(scene.stats().ray_length);

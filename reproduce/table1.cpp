@@ -127,8 +127,9 @@ Outcome show(const Plan& plan, const std::vector<Json>& found) {
     out.tables = {table};
     out.paragraphs = {
         "Each object is pressed into a plane (the top of a wide closed slab) in random orientations and "
-        "evenly spaced depths, as in Figure 13. The contacts of a scene with each direction act as penalty "
-        "forces: depth along the normal, times the weight. The table shows the mean of |tangential| / "
+        "evenly spaced depths, as in Figure 13. Each contact of a scene with that direction answers with a spring, as "
+        "in the penalty response that the tests hold against Bullet: depth along the normal, times the weight. The "
+        "table shows the mean of |tangential| / "
         "|normal| over all cases with contacts.",
         "irregular was a bumpy sphere at first, chosen for its bumps; its triangles are even, so plain rays deviate "
         "little, and it now stands in a row of its own. The bunny of 1 085 vertices took its place before its figure "

@@ -13,7 +13,7 @@ namespace raycontact::reproduce {
 namespace {
 
 SimulationOptions driven_by(const Workshop& shop, Method method, const std::string& scene) {
-    return {scene, 1, shop.plan().size(scene), as_in_the_paper(method), true};
+    return {scene, 1, shop.plan().size(scene), as_in_the_paper(method, shop.plan().constants), true};
 }
 
 constexpr Method both[] = {Method::iterative, Method::predictive};
@@ -22,7 +22,7 @@ constexpr Method both[] = {Method::iterative, Method::predictive};
 Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool own, double cost, const Tick& tick) {
     std::vector<Follow> follow;
     for (const Method method : both) {
-        Settings settings = as_in_the_paper(method);
+        Settings settings = as_in_the_paper(method, shop.plan().constants);
         settings.caster = caster;
         const SimulationOptions options = own ? driven_by(shop, method, scene) : shop.base(scene);
         follow.push_back({shop.recording(options, [](double) {}), settings});
@@ -49,7 +49,7 @@ struct Measured {
 constexpr Measured all_measured[] = {
     {Caster::basic, true}, {Caster::bvh, true}, {Caster::basic, false}, {Caster::bvh, false}};
 
-Outcome show(const std::string& scene, const std::vector<Json>& found) {
+Outcome show(const Constants& constants, const std::string& scene, const std::vector<Json>& found) {
     Outcome out;
     const bool rain = scene == "rain";
     Table table{
@@ -96,7 +96,7 @@ Outcome show(const std::string& scene, const std::vector<Json>& found) {
                             "of bounds that are {:.0f} cm wider on each side, and a body's size is 1 m. The paper does "
                             "not state "
                             "by how much it widens them; it measured on a GTX 660, \"an average\"",
-                            word, in_c, rays, 100 * constants::confidence * constants::displacement_threshold)));
+                            word, in_c, rays, 100 * constants.distance_extension)));
     }
     out.tables.push_back(table);
     out.paragraphs = {
@@ -120,7 +120,8 @@ Experiment times(const Workshop& shop, const std::string& scene) {
                       {"caster", to_string(caster)},
                       {"bodies", shop.plan().size(scene).bodies},
                       {"steps", shop.plan().size(scene).steps}};
-        for (const Method method : both) settings[std::string(to_string(method))] = to_json(as_in_the_paper(method));
+        for (const Method method : both)
+            settings[std::string(to_string(method))] = to_json(as_in_the_paper(method, shop.plan().constants));
         const double cost = Workshop::cost(shop.base(scene)) * (caster == Caster::basic ? (rain ? 12 : 4) : 0.7);
         e.parts.push_back({fmt::format("times-{}-{}-{}", scene, to_string(caster), own ? "own" : "same"),
                            shop.key("times", settings), cost,
@@ -128,7 +129,7 @@ Experiment times(const Workshop& shop, const std::string& scene) {
                                return measure(shop, scene, caster, own, cost, tick);
                            }});
     }
-    e.show = [scene](const std::vector<Json>& found) { return show(scene, found); };
+    e.show = [&shop, scene](const std::vector<Json>& found) { return show(shop.plan().constants, scene, found); };
     return e;
 }
 

@@ -33,8 +33,8 @@ Choice devices() {
     return {{"cpu"}, false, "the CPU's only core"};
 }
 
-Settings on(const Choice& choice, std::size_t count) {
-    Settings settings = as_in_the_paper(Method::iterative);
+Settings on(const Plan& plan, const Choice& choice, std::size_t count) {
+    Settings settings = as_in_the_paper(Method::iterative, plan.constants);
     settings.schedule = Schedule::sticky; // section 4
     settings.devices = choice.ids[0];
     if (count > 1) settings.devices += "," + choice.ids[1];
@@ -46,7 +46,8 @@ Json measure(const Workshop& shop, const std::string& scene, double cost, const 
     const Choice choice = devices();
     const auto file = shop.recording(shop.base(scene), [](double) {});
     std::vector<Follow> follow;
-    for (std::size_t count = 1; count <= choice.ids.size(); ++count) follow.push_back({file, on(choice, count)});
+    for (std::size_t count = 1; count <= choice.ids.size(); ++count)
+        follow.push_back({file, on(shop.plan(), choice, count)});
     Json result{{"ms", Json::array({Json::array(), Json::array()})}, {"named", choice.named}, {"gpus", choice.gpus}};
     result["devices"] = choice.ids.size();
     side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
@@ -89,7 +90,7 @@ Experiment two_devices(const Workshop& shop, const std::string& scene) {
     e.title = fmt::format("{}: one device against two, {}", rain ? "Figure 15" : "Figure 14", scene);
     const Choice choice = devices();
     const Json settings{{"scene", scene},
-                        {"one", to_json(on(choice, 1))},
+                        {"one", to_json(on(shop.plan(), choice, 1))},
                         {"count", choice.ids.size()},
                         {"last", choice.ids.back()},
                         {"bodies", shop.plan().size(scene).bodies},

@@ -51,6 +51,7 @@ Json Workshop::key(const std::string& what, const SimulationOptions& o) const {
                           {"bodies", o.size.bodies},
                           {"steps", o.size.steps},
                           {"paper_response", o.paper_response},
+                          {"speculative", o.speculative},
                           {"settings", to_json(o.settings)}});
 }
 

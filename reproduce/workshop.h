@@ -24,6 +24,7 @@ struct SimulationOptions {
     /// Bullet as it comes: its solver's defaults, and four points a pair of bodies, none kept longer than its contact:
     /// what contact reduction was in 2013. Else the scene's own response.
     bool paper_response = false;
+    bool speculative = false; ///< speculative contacts, which the paper has not
 };
 
 /// A scene that follows a recording.

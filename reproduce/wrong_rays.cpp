@@ -19,9 +19,9 @@ struct Contestant {
     Settings settings;
 };
 
-std::vector<Contestant> contestants() {
-    return {{"paper_iterative", "iterative", as_in_the_paper(Method::iterative)},
-            {"paper_predictive", "predictive", as_in_the_paper(Method::predictive)},
+std::vector<Contestant> contestants(const Plan& plan) {
+    return {{"paper_iterative", "iterative", as_in_the_paper(Method::iterative, plan.constants)},
+            {"paper_predictive", "predictive", as_in_the_paper(Method::predictive, plan.constants)},
             {"default_iterative", "iterative", by_default(Method::iterative)},
             {"default_predictive", "predictive", by_default(Method::predictive)},
             {"default_certified", "certified", by_default(Method::certified)}};
@@ -33,7 +33,7 @@ Json compare(const Workshop& shop, const std::string& scene, double cost, const 
     const SimulationOptions base = shop.base(scene);
     const auto file = shop.recording(base, [](double) {});
     std::vector<Follow> follow{{file, standard}};
-    const std::vector<Contestant> all = contestants();
+    const std::vector<Contestant> all = contestants(shop.plan());
     for (const Contestant& one : all) follow.push_back({file, one.settings});
     Json result{{"rays", Json::array()}};
     std::vector<recording::WrongRays> sums(all.size());
@@ -64,6 +64,7 @@ double fewer(const Json& found, const std::string& before) {
 
 Outcome show(const Workshop& shop, const std::string& scene, const Json& base, const Json& found) {
     Outcome out;
+    const Constants& constants = shop.plan().constants;
     const auto rays = found["rays"].get<Series>();
     const double paper = fewer(found, "paper"), ours = fewer(found, "default");
     const std::string figure = scene == "rain" ? "Figure 10" : "Figure 9";
@@ -99,7 +100,7 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
                                     + " fewer. certified finds what standard finds.",
                           {},
                           report::over_steps(1.0 / 60)};
-        for (const Contestant& one : contestants())
+        for (const Contestant& one : contestants(shop.plan()))
             if (std::string(one.key).starts_with(before))
                 plot.lines.push_back(percent_line(one.name, found[one.key]["wrong"].get<Series>(), rays));
         out.plots.push_back(plot);
@@ -107,7 +108,7 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
     Table table{"Wrong rays of the whole " + scene,
                 {"method", "settings", "wrong", "missed", "invented", "other triangle", "of all rays"},
                 {}};
-    for (const Contestant& one : contestants()) {
+    for (const Contestant& one : contestants(shop.plan())) {
         const Json& of = found[one.key];
         const double wrong = sum(of["wrong"].get<Series>());
         table.rows.push_back({one.name, std::string(one.key).starts_with("paper") ? "constants fixed" : "default",
@@ -121,8 +122,8 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
         "poses. Constants fixed: displacementThreshold {} m, confidence {}, distanceExtension {} m, maxIt {}, "
         "the same for both methods, and no full cast for a walk that ends nowhere.",
         scene, shop.plan().size(scene).bodies, shop.plan().size(scene).steps, base["mesh_source"].get<std::string>(),
-        constants::displacement_threshold, constants::confidence,
-        constants::confidence * constants::displacement_threshold, constants::max_iterations)};
+        constants.displacement_threshold, constants.confidence, constants.distance_extension,
+        constants.max_iterations)};
     return out;
 }
 
@@ -137,7 +138,7 @@ Experiment wrong_rays(const Workshop& shop, const std::string& scene) {
                   {"scene", scene},
                   {"bodies", shop.plan().size(scene).bodies},
                   {"steps", shop.plan().size(scene).steps}};
-    for (const Contestant& one : contestants()) settings[one.key] = to_json(one.settings);
+    for (const Contestant& one : contestants(shop.plan())) settings[one.key] = to_json(one.settings);
     const double cost = 2 * Workshop::cost(shop.base(scene));
     e.parts = {shop.base_part(scene),
                {"wrong-rays-" + scene, shop.key("wrong rays", settings), cost,

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -153,6 +154,22 @@ TEST(Manifold, SeveralPatchesAPair) {
     btBroadphasePair& pair = w.broadphase.getOverlappingPairCache()->getOverlappingPairArray()[0];
     pair.m_algorithm->getAllContactManifolds(all);
     EXPECT_EQ(std::uint64_t(all.size()), w.dispatcher.stats().manifolds);
+}
+
+// As a patch for all that a pair has asks for it: a reach beyond every size must not make all points one place.
+TEST(Manifold, APatchOfAnyReachKeepsFourPoints) {
+    TestWorld w({}, {btScalar(-1), btScalar(1e9), 0});
+    w.add_mesh(Shape::make(box_mesh(6, 6, 1)), 0, at(0, 0, -0.5));
+    w.add_mesh(table(), 5, at(0, 0, 0.39));
+    w.world.performDiscreteCollisionDetection();
+    EXPECT_EQ(w.dispatcher.stats().manifolds, 1u);
+    EXPECT_EQ(w.dispatcher.stats().points, 4u);
+    double low = 1, high = -1;
+    each_point(w, [&](btPersistentManifold&, btManifoldPoint& p) {
+        low = std::min(low, double(p.getPositionWorldOnA().x()));
+        high = std::max(high, double(p.getPositionWorldOnA().x()));
+    });
+    EXPECT_GT(high - low, 0.9); // of a table of 1 m
 }
 
 TEST(Manifold, PointsAreHeldForAWhile) {

@@ -55,6 +55,7 @@ std::set<std::string> all_ids() {
     for (const std::string scene : {"avalanche", "rain"})
         for (const std::string what : {"table2.", "wrong_rays.", "lengths.", "devices.two.", "pairs."})
             ids.insert(what + scene);
+    for (const std::string scene : {"avalanche", "rain"}) ids.insert("table2." + scene + ".speculative");
     return ids;
 }
 
@@ -135,7 +136,42 @@ TEST_F(Reproduce, GoesOnAfterItWasKilled) {
               numbers_without_times(folder_.path() / "whole" / "results.json"));
 }
 
+TEST_F(Reproduce, OneExperimentPrintsItsTables) {
+    const auto volume = run({"volume", "--out", "out"});
+    ASSERT_EQ(volume.status, 0) << volume.err;
+    EXPECT_NE(volume.out.find("Two runs, by length and by volume"), std::string::npos) << volume.out;
+    std::istringstream lines(volume.out);
+    std::string line;
+    while (std::getline(lines, line) && !line.starts_with("iterative ")) {
+    }
+    std::istringstream row(line);
+    std::string run_name, unit;
+    double ray = 0, reprojected = 0, area = 0, litres = 0;
+    row >> run_name >> ray >> unit >> reprojected >> unit >> area >> unit >> litres >> unit;
+    EXPECT_EQ(unit, "l") << line;
+    EXPECT_GT(litres, 0.1) << line;
+    EXPECT_LT(litres, area) << line; // rays of vertices lie side by side and are longer than the overlap is thick
+    EXPECT_LT(reprojected, ray) << line;
+    EXPECT_EQ(run({"--out", "all"}).out.find("Two runs"), std::string::npos);
+}
+
+// A threshold beyond what anything moves leaves iterative with what it found when pairs were new.
+TEST_F(Reproduce, ConstantsAreThoseOfTheOption) {
+    const auto length = [&](const std::string& constants) {
+        const auto ran = run({"lengths", "--constants", constants, "--out", constants});
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        for (const Json& number : Json::parse(text_of(folder_.path() / constants / "results.json")))
+            if (number["id"] == "lengths.avalanche") return number["ours"].get<double>();
+        return 0.0;
+    };
+    EXPECT_NE(length("0.2,1,0.21"), length("0.01,1,0.011"));
+}
+
 TEST_F(Reproduce, BadInputIsStatusTwo) {
+    EXPECT_EQ(run({"lengths", "--constants", "0.04,0.5,0.08", "--out", "out"}).status, 2); // confidence below 1
+    EXPECT_EQ(run({"lengths", "--constants", "0.04,1,0.03", "--out", "out"}).status, 2);   // below the threshold
+    EXPECT_EQ(run({"lengths", "--constants", "0.04,1", "--out", "out"}).status, 2);
+
     EXPECT_EQ(run({"fig13", "--out", "out"}).status, 2);
     EXPECT_NE(run({"fig13", "--out", "out"}).err.find("known are all, fig9"), std::string::npos);
     EXPECT_EQ(run({"table1"}).status, 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/pair_lengths.h>
 #include <reproduce/phases.h>
+#include <reproduce/rank_correlation.h>
 #include <reproduce/series.h>
 
 #include <gtest/gtest.h>
@@ -22,6 +23,15 @@ TEST(Series, WindowsKeepTheSumAndCoverAllSteps) {
 TEST(Series, PercentOfNothingIsZero) {
     EXPECT_EQ(percent_line("", {1, 1}, {4, 0}).points[0].second, 25);
     EXPECT_EQ(percent_line("", {1, 1}, {4, 0}).points[1].second, 0);
+}
+
+TEST(Series, RankCorrelationLooksAtTheOrderAlone) {
+    EXPECT_NEAR(rank_correlation({1, 2, 3, 4}, {1, 10, 100, 1000}), 1, 1e-12);
+    EXPECT_NEAR(rank_correlation({1, 2, 3, 4}, {8, 7, 0, -1}), -1, 1e-12);
+    EXPECT_NEAR(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}), 0.8, 1e-12); // 1 - 6 x 4 / (5 x 24)
+    EXPECT_NEAR(rank_correlation({1, 1, 2}, {5, 5, 9}), 1, 1e-12);
+    EXPECT_EQ(rank_correlation({1, 1, 1}, {5, 6, 9}), 0);
+    EXPECT_EQ(rank_correlation({}, {}), 0);
 }
 
 TEST(Phases, SecondsWithManyFullLooksAreB) {

@@ -27,7 +27,7 @@ int absent_steps(const btManifoldPoint& p) {
 
 /// Cosine from which on two normals at one place count as one.
 constexpr btScalar like_normals = btScalar(0.9);
-constexpr double one_place = 0.04; // of the reach
+constexpr double one_place = 0.04; // of the usual reach
 
 /// A point of the step before, moved along with its bodies.
 struct Old {
@@ -176,6 +176,9 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
             before[c] = o;
         }
     }
+    // Who asks for wider patches, as for one of a whole body, does not ask for fewer points in them.
+    const double place =
+        one_place * std::min(1.0, double(ManifoldSettings{}.patch_reach) / double(settings.patch_reach));
     std::vector<ManifoldPoint> points;
     points.reserve(candidates.size());
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -185,7 +188,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
         point.normal = to_vec(contact.normal);
         point.depth = double(-contact.distance);
         point.reach = double(contact.reach);
-        point.place = one_place * double(contact.reach);
+        point.place = place * double(contact.reach);
         point.present = before[c] != nullptr;
         // A little more tolerance than for a newcomer, or points at the limit would change patches every step.
         if (before[c]

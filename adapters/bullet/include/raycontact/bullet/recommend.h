@@ -7,7 +7,7 @@ class btDiscreteDynamicsWorld;
 
 namespace raycontact::bullet {
 
-/// What recommend() asks of Bullet's solver. docs/solver.md has the reason and the figure of each.
+/// What recommend() asks of Bullet's solver. docs/solvers.md has the reason and the figure of each.
 struct SolverSettings {
     /// Metres that a contact may stay deep. Without speculative contacts a vertex is in contact only while it is
     /// inside: pushed out to the surface, it would be lost, and come back. With them 0 serves as well. For bodies of

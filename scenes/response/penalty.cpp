@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <scenes/response/penalty.h>
+
+#include "mesh/vector.h"
+
+#include <algorithm>
+
+namespace raycontact::scenes {
+
+Vec3 penalty_force(const Penalty& penalty, const Contact& contact, const Vec3& velocity) {
+    if (is_speculative(contact)) return {};
+    const Vec3 normal{static_cast<double>(contact.normal[0]), static_cast<double>(contact.normal[1]),
+                      static_cast<double>(contact.normal[2])};
+    const double parting = dot(velocity, normal);
+    const double pressed = static_cast<double>(contact.weight)
+                           * (penalty.stiffness * static_cast<double>(contact.depth) - penalty.damping * parting);
+    if (!(pressed > 0)) return {}; // a damper would pull a body back that leaves fast
+    const Vec3 sliding = velocity - parting * normal;
+    return pressed * normal - (penalty.friction * pressed / std::max(length(sliding), penalty.slip_speed)) * sliding;
+}
+
+} // namespace raycontact::scenes
