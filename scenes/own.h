@@ -24,7 +24,7 @@ struct OwnOptions {
     double density = 1000;     ///< kg/m^3
     Nesting nesting = Nesting::as_wound;
     Settings settings; ///< of RayContact
-    /// Its slop is that of bodies of 1 m, and becomes smaller or larger with the smallest.
+    /// Its plain_slop is that of bodies of 1 m, and becomes smaller or larger with the smallest.
     Response response;
 };
 

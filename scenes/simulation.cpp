@@ -48,7 +48,7 @@ void check(const SceneDescription& d) {
             "gravity must be finite");
     require(not_negative(r.friction), "friction must not be negative");
     require(r.iterations >= 1, "iterations must be at least 1");
-    require(not_negative(r.slop), "slop must not be negative");
+    require(not_negative(r.slop.value_or(0)) && not_negative(r.plain_slop), "slop must not be negative");
     require(share(r.erp), "erp must be from 0 to 1");
     require(share(r.linear_damping) && share(r.angular_damping), "damping must be from 0 to 1");
     require(not_negative(d.depth_limit), "the depth limit must not be negative");
@@ -111,9 +111,11 @@ void Simulation::State::configure() {
     const Vec3& g = description.gravity;
     world.setGravity(btVector3(btScalar(g.x), btScalar(g.y), btScalar(g.z)));
     // A sweep of the boxes along the motion adds pairs that have speculative contacts alone.
-    world.getDispatchInfo().m_useContinuous = dispatcher.scene().settings().is_speculative();
+    const bool speculative = dispatcher.scene().settings().is_speculative();
+    world.getDispatchInfo().m_useContinuous = speculative;
+    const double slop = response.slop.value_or(speculative ? 0 : response.plain_slop);
     if (!response.bullet_defaults)
-        bullet::recommend(world, {.slop = response.slop, .erp = response.erp, .iterations = response.iterations});
+        bullet::recommend(world, {.slop = slop, .erp = response.erp, .iterations = response.iterations});
     // Nobody sleeps, so islands save nothing.
     world.getSimulationIslandManager()->setSplitIslands(false);
 
