@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that hardly move keep their contacts: the same keys, at the same points of the features.
+#include "property/shapes.h"
+#include "reference/vector.h"
+
+#include <raycontact/scene.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+using namespace raycontact;
+using namespace raycontact::reference;
+
+namespace {
+
+/// Turned and shifted by a part of the size.
+Pose nudged(const Pose& pose, double by, double size, Random& random) {
+    Pose moved = pose;
+    const Vec3 axis = random.direction(), way = random.direction();
+    auto& r = moved.rotation;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 column{r[k], r[3 + k], r[6 + k]}, turned = column + by * cross(axis, column);
+        r[k] = turned.x;
+        r[3 + k] = turned.y;
+        r[6 + k] = turned.z;
+    }
+    moved = nearest_rigid_pose(moved);
+    moved.translation = moved.translation + by * size * way;
+    return moved;
+}
+
+/// Of one feature: contacts that are there in both steps, and those that went or came.
+struct Kept {
+    std::uint64_t kept = 0, changed = 0;
+    std::uint64_t jumps = 0; ///< along the feature, by more than a hundredth of the smaller body's size
+    double farthest = 0;     ///< of all points, in such sizes
+};
+using Keys = std::map<std::pair<std::uint32_t, std::string>, Contact>;
+
+Keys by_key(std::span<const Contact> contacts) {
+    Keys keys;
+    for (const Contact& c : contacts) keys.emplace(std::pair(c.body_a, contact_key(c)), c);
+    return keys;
+}
+
+using Features = std::array<Kept, 4>; // vertices, edges; then the same before they touch
+
+/// Pairs that are moved by a part of their size, once each.
+Features move(std::size_t batches, double by) {
+    const auto subjects = pointers(closed_subjects());
+    Random random(20260101);
+    Features found;
+    for (std::size_t batch = 0; batch < batches; ++batch) {
+        Settings settings;
+        settings.speculative = true;
+        Scene scene(settings);
+        std::vector<Placement> placements;
+        for (std::size_t i = 0; i < 100; ++i) placements.push_back(random_placement(subjects, random));
+        const auto pairs = add_all(scene, placements);
+        const Keys before = by_key(scene.step(pairs));
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            scene.set_pose(pairs[i].second, nudged(placements[i].pose_b, by, placements[i].b->solid.diagonal, random));
+        const Keys after = by_key(scene.step(pairs));
+        const auto of = [&](const Contact& c) -> Kept& {
+            return found[(c.feature == Feature::edges ? 1u : 0u) + (is_speculative(c) ? 2u : 0u)];
+        };
+        for (const auto& [key, c] : before) of(c).changed += !after.contains(key);
+        for (const auto& [key, c] : after) {
+            const auto at = before.find(key);
+            if (at == before.end()) {
+                ++of(c).changed;
+                continue;
+            }
+            const Placement& p = placements[c.body_a / 2];
+            const double jump = length(c.point - at->second.point) / std::min(p.a->solid.diagonal, p.b->solid.diagonal);
+            Kept& kept = of(c);
+            ++kept.kept;
+            kept.jumps += jump > 0.01;
+            kept.farthest = std::max(kept.farthest, jump);
+        }
+    }
+    return found;
+}
+
+TEST(persistence, contacts_stay_while_bodies_hardly_move) {
+    for (const double by : {1e-6, 1e-5}) {
+        const Features found = move(40, by);
+        constexpr const char* names[] = {"vertices", "edges", "vertices before they touch", "edges before they touch"};
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const Kept& k = found[i];
+            std::printf(
+                "[ counts   ] moved by %g: %llu %s kept, %llu went or came, %llu jumped, the farthest by %.2g\n", by,
+                static_cast<unsigned long long>(k.kept), names[i], static_cast<unsigned long long>(k.changed),
+                static_cast<unsigned long long>(k.jumps), k.farthest);
+            EXPECT_LE(static_cast<double>(k.changed), 2 + 100 * by * static_cast<double>(k.kept)) << names[i];
+            // Flush edges have no one point where they meet (docs/edges.md).
+            EXPECT_LE(static_cast<double>(k.jumps), i % 2 == 1 ? 0.002 * static_cast<double>(k.kept) : 0) << names[i];
+        }
+        // A vertex goes with its body, whose diagonal may be many times that of the smaller one.
+        EXPECT_LT(std::max(found[0].farthest, found[2].farthest), 20 * by);
+        EXPECT_GT(found[0].kept, 20000u);
+        EXPECT_GT(found[1].kept, 1000u);
+        EXPECT_GT(found[2].kept, 1000u);
+    }
+}
+
+} // namespace
