@@ -19,7 +19,7 @@ class Hand : public Course {
 public:
     explicit Hand(double reach, double hertz) : reach_(reach), last_second_(static_cast<std::size_t>(hertz)) {}
     void before_step(StackWorld& world, double) override {
-        constexpr double stiff = 1000, damped = 60; // 1/s^2, 1/s, for each kilogram
+        constexpr double stiff = 400, damped = 30; // 1/s^2, 1/s, for each kilogram
         btRigidBody& body = world.body(1);
         const btScalar mass = 1 / body.getInvMass();
         const btVector3 way = btVector3(btScalar(reach_), 0, 1) - body.getWorldTransform().getOrigin();

@@ -273,7 +273,7 @@ Mesh involute_gear(std::uint32_t teeth, double module, double width) {
     const double first = std::max(base, root);
     for (std::uint32_t k = 0; k < teeth; ++k) {
         const double middle = 2 * std::numbers::pi * k / teeth;
-        if (root < base) add(root, middle - half);
+        if (root < base) add(root, middle - half - 0.01);
         for (std::uint32_t i = 0; i <= flank; ++i) {
             const double radius = first + (tip - first) * i / flank;
             add(radius, middle - half + involute(radius));
@@ -282,7 +282,7 @@ Mesh involute_gear(std::uint32_t teeth, double module, double width) {
             const double radius = tip - (tip - first) * i / flank;
             add(radius, middle + half - involute(radius));
         }
-        if (root < base) add(root, middle + half);
+        if (root < base) add(root, middle + half + 0.01);
     }
     return drawn_out("gear", polygon, -width / 2, width / 2);
 }
@@ -319,9 +319,10 @@ void add_thread(Skin& skin, const Thread& thread, double play, bool starts_insid
     }
     const std::uint32_t around = thread.around;
     const auto a_pitch = static_cast<std::uint32_t>(corners.size());
-    // The lines begin at a whole pitch at or above low, and end before high: the last climbs a pitch more.
-    const auto first_pitch = static_cast<int>(std::ceil(low / thread.pitch - 1e-9));
-    const auto last_pitch = static_cast<int>(std::floor(high / thread.pitch - corners[0].at + 1e-9)) - 1;
+    // The lines keep off the rings. The last one climbs a pitch more.
+    constexpr double off = 0.1;
+    const auto first_pitch = static_cast<int>(std::ceil(low / thread.pitch + off - corners[0].at));
+    const auto last_pitch = static_cast<int>(std::floor(high / thread.pitch - off - corners[0].at)) - 1;
     std::vector<Loop> columns(around + 1);
     const auto lines = static_cast<std::uint32_t>(last_pitch - first_pitch) * a_pitch + 1;
     for (std::uint32_t i = 0; i < around; ++i) {
@@ -341,19 +342,27 @@ void add_thread(Skin& skin, const Thread& thread, double play, bool starts_insid
             skin.quad(columns[i][k], columns[i + 1][k], columns[i + 1][k + 1], columns[i][k + 1]);
     bottom = skin.add_ring(end, low, around);
     top = skin.add_ring(end, high, around);
-    const std::uint32_t last = around - 1;
+    const std::uint32_t last = around - 1, end_line = lines - 1;
     for (std::uint32_t i = 0; i < last; ++i) {
         skin.quad(bottom[i], bottom[i + 1], columns[i + 1][0], columns[i][0]);
-        skin.quad(columns[i][lines - 1], columns[i + 1][lines - 1], top[i + 1], top[i]);
+        const std::uint32_t k = i + 1;
+        skin.quad(columns[k][end_line], columns[k + 1][end_line], top[(k + 1) % around], top[k]);
     }
-    // Where a line has come round, it lies a pitch above its beginning.
-    skin.triangle(bottom[last], bottom[0], columns[0][0]);
-    for (std::uint32_t k = 0; k < a_pitch; ++k) skin.triangle(bottom[last], columns[0][k], columns[0][k + 1]);
-    skin.triangle(bottom[last], columns[around][0], columns[last][0]);
-    skin.triangle(columns[last][lines - 1], columns[around][lines - 1], top[last]);
-    for (std::uint32_t k = lines - 1; k < lines - 1 + a_pitch; ++k)
-        skin.triangle(columns[0][k + 1], columns[0][k], top[0]);
-    skin.triangle(top[last], columns[0][lines - 1 + a_pitch], top[0]);
+    // Where a line has come round, it lies a pitch above its beginning. There the thread begins and ends with a wall:
+    // the ridge's cut, between the second line and the last of a pitch.
+    const std::uint32_t before = columns[last][0], after = columns[1][end_line];
+    const std::uint32_t* s = columns[0].data();
+    skin.quad(bottom[last], bottom[0], s[0], before);
+    skin.triangle(before, s[0], s[1]);
+    skin.triangle(before, s[1], s[6]);
+    skin.quad(s[1], s[2], s[5], s[6]);
+    skin.quad(s[2], s[3], s[4], s[5]);
+    s += end_line;
+    skin.triangle(after, s[1], s[0]);
+    skin.triangle(after, s[6], s[1]);
+    skin.quad(after, top[1], top[0], s[6]);
+    skin.quad(s[6], s[5], s[2], s[1]);
+    skin.quad(s[5], s[4], s[3], s[2]);
 }
 
 } // namespace

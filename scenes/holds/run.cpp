@@ -3,7 +3,9 @@
 
 #include <scenes/holds/depth.h>
 
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <btBulletDynamicsCommon.h>
+#include <cstdlib>
 
 #include <algorithm>
 #include <chrono>
@@ -94,6 +96,11 @@ HoldResult run_hold(const Hold& hold, Finder finder, const HoldOptions& options)
                      finder, solver_of(hold, finder, options));
     DepthProbe probe(hold.stack, hold.ground);
     const auto course = hold.course();
+    if (const char* w = std::getenv("XWARM")) world.world().getSolverInfo().m_warmstartingFactor = btScalar(std::atof(w));
+    if (const char* w = std::getenv("XERP")) world.world().getSolverInfo().m_erp2 = btScalar(std::atof(w));
+    if (const char* w = std::getenv("XMODE")) world.world().getSolverInfo().m_solverMode |= std::atoi(w);
+    static btNNCGConstraintSolver nncg;
+    if (std::getenv("XNNCG")) world.world().setConstraintSolver(&nncg);
     course->begin(world);
     const auto& bodies = hold.stack.bodies;
     const double dt = 1 / hold.hertz;

@@ -245,7 +245,7 @@ void StackWorld::print_points(std::FILE* out) const {
         const btPersistentManifold& m = *state_->dispatcher->getManifoldByIndexInternal(i);
         for (int k = 0; k < m.getNumContacts(); ++k) {
             const btManifoldPoint& p = m.getContactPoint(k);
-            std::fprintf(out, "%d-%d at %.4f %.4f %.4f normal %.4f %.4f %.4f distance %.6f impulse %.3f age %d",
+            std::fprintf(out, "%d-%d at %.4f %.4f %.4f normal %.4f %.4f %.4f distance %.7f impulse %.4g age %d",
                          number(m.getBody0()), number(m.getBody1()), double(p.m_positionWorldOnB.x()),
                          double(p.m_positionWorldOnB.y()), double(p.m_positionWorldOnB.z()),
                          double(p.m_normalWorldOnB.x()), double(p.m_normalWorldOnB.y()), double(p.m_normalWorldOnB.z()),
