@@ -2,7 +2,7 @@
 // What holds: scenes that a user expects to stand, hang, turn or stop, in a Bullet world that differs by one line and
 // its solver: RayContact with recommend(), GImpact and, where all that moves is convex, Bullet's own shapes, both with
 // Bullet's own settings. Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|gimpact|convex]
-// [--seconds S] [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES]
+// [--seconds S] [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES] [--hertz N]
 // [--print FROM TO] [--out DIR]: at most S seconds a scene (20); a run ends early once its steps have taken S seconds;
 // Bullet's finders get the recommended solver, too; contacts of the steps FROM to TO are printed.
 #include <bench/peers/files.h>
@@ -167,6 +167,8 @@ Options parse(int count, char** words) {
             options.hold.iterations = std::atoi(value.c_str());
         else if (word == "--slop")
             options.hold.slop = std::atof(value.c_str());
+        else if (word == "--hertz")
+            options.hold.hertz = std::atof(value.c_str());
         else if (word == "--speculative")
             options.hold.speculative = value != "off";
         else if (word == "--print" && i + 1 < count) {

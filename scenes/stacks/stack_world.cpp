@@ -162,6 +162,8 @@ void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const b
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
     info.m_startWorldTransform = to_bullet(body.pose);
     info.m_friction = btScalar(body.friction);
+    info.m_linearDamping = info.m_angularDamping = btScalar(body.damping);
+    info.m_rollingFriction = info.m_spinningFriction = btScalar(body.rolling);
     bodies.push_back(std::make_unique<btRigidBody>(info));
     if (mass > 0) bodies.back()->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(bodies.back().get());
