@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds: scenes that a user expects to stand, hang, turn or stop, in a Bullet world that differs by one line and
-// its solver: RayContact with recommend(), GImpact and, where all that moves is convex, Bullet's own shapes, both with
-// Bullet's own settings. Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|gimpact|convex]
+// its solver: RayContact with recommend(), the same with 500
+// iterations, GImpact and, where all that moves is convex, Bullet's own shapes, both with
+// Bullet's own settings. Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|ours-500|gimpact|convex]
 // [--seconds S] [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES] [--hertz N]
 // [--print FROM TO] [--out DIR]: at most S seconds a scene (20); a run ends early once its steps have taken S seconds;
 // Bullet's finders get the recommended solver, too; contacts of the steps FROM to TO are printed.
@@ -35,11 +36,15 @@ struct Row {
     HoldResult result;
 };
 
-constexpr Finder finders[] = {Finder::edges, Finder::gimpact, Finder::convex};
-
-std::string name_of(Finder finder) {
-    return finder == Finder::edges ? "ours" : std::string(to_string(finder));
-}
+struct Variant {
+    const char* name;
+    Finder finder;
+    int iterations; ///< 0: as the solver has them
+};
+constexpr Variant variants[] = {{"ours", Finder::edges, 0},
+                                {"ours-500", Finder::edges, 500},
+                                {"gimpact", Finder::gimpact, 0},
+                                {"convex", Finder::convex, 0}};
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
@@ -61,11 +66,12 @@ std::string asleep(const HoldResult& result) {
 
 void print_row(const Row& row) {
     const HoldResult& r = row.result;
-    std::printf("%-34s %-8s %8.3f %4d %9.2f %9.2f %9.1f %6s %8.2f  %s\n", row.hold->name.c_str(), row.finder.c_str(),
-                1000 * r.deepest, r.passed, 1000 * r.speed_median, 1000 * r.speed_max, 1000 * r.drift,
-                asleep(r).c_str(), r.step_ms, verdict(r).c_str());
+    std::printf("%-36s %-8s %8.3f %5.1f %8.3f %4d %9.2f %9.2f %9.1f %6s %8.2f  %s\n", row.hold->name.c_str(),
+                row.finder.c_str(), 1000 * r.deepest, r.deepest_time, 1000 * r.deepest_end, r.passed,
+                1000 * r.speed_median, 1000 * r.speed_max, 1000 * r.drift, asleep(r).c_str(), r.step_ms,
+                verdict(r).c_str());
     for (const Figure& figure : r.figures)
-        std::printf("%-34s %-8s   %s %.4g %s\n", "", "", figure.name.c_str(), figure.value, figure.unit.c_str());
+        std::printf("%-36s %-8s   %s %.4g %s\n", "", "", figure.name.c_str(), figure.value, figure.unit.c_str());
     std::fflush(stdout);
 }
 
@@ -97,7 +103,7 @@ std::string page(const std::vector<Row>& rows, const std::string& heading, const
             page.plots.back().over = "time, s";
         }
         rc::report::Line line{row.finder, {}};
-        line.colour = row.finder == "ours" ? 0 : row.finder == "gimpact" ? 1 : 2;
+        line.colour = row.finder == "ours" ? 0 : row.finder == "gimpact" ? 1 : row.finder == "convex" ? 2 : 3;
         for (const auto& [time, speed] : r.speeds) line.points.emplace_back(time, 1000 * speed);
         page.plots.back().lines.push_back(line);
         std::string figures =
@@ -122,8 +128,8 @@ int run_all(const Options& options) {
         folder->claim(csv_name);
         folder->claim(page_name);
     }
-    std::printf("%s\n%-34s %-8s %8s %4s %9s %9s %9s %6s %8s\n", rc::bench::heading(machine).c_str(), "scene", "finder",
-                "deep mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep", "ms/step");
+    std::printf("%s\n%-36s %-8s %8s %5s %8s %4s %9s %9s %9s %6s %8s\n", rc::bench::heading(machine).c_str(), "scene",
+                "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep", "ms/step");
     std::string csv = std::string(rc::bench::machine_columns)
                       + ",scene,finder,hertz,seconds,holds,deepest_mm,passed,speed_median_mm_s,speed_max_mm_s,"
                         "moved_mm,asleep_s,step_ms,figures,verdict\n";
@@ -131,10 +137,12 @@ int run_all(const Options& options) {
     std::vector<Row> rows;
     for (const Hold& hold : holds) {
         if (hold.name.find(options.only) == std::string::npos) continue;
-        for (const Finder finder : finders) {
-            if (!options.finder.empty() && name_of(finder) != options.finder) continue;
-            if (finder == Finder::convex && !hold.stack.convex()) continue;
-            rows.push_back({&hold, name_of(finder), run_hold(hold, finder, options.hold)});
+        for (const Variant& variant : variants) {
+            if (!options.finder.empty() && variant.name != options.finder) continue;
+            if (variant.finder == Finder::convex && !hold.stack.convex()) continue;
+            HoldOptions asked = options.hold;
+            if (variant.iterations > 0) asked.iterations = variant.iterations;
+            rows.push_back({&hold, variant.name, run_hold(hold, variant.finder, asked)});
             print_row(rows.back());
             csv += csv_row(machine, rows.back());
         }

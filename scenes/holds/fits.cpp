@@ -137,7 +137,7 @@ Hold nut_on_a_bolt(double friction, double hertz) {
     hold.slop = 1e-5;
     hold.deepest = 0.003;
     hold.hertz = hertz;
-    hold.seconds = held ? 5 : 2;
+    hold.seconds = held ? 3 : 2;
     if (!held) hold.rest = std::nullopt;
     hold.sample = static_cast<int>(hertz / 20);
     hold.ground = Ground::none;

@@ -3,9 +3,7 @@
 
 #include <scenes/holds/depth.h>
 
-#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <btBulletDynamicsCommon.h>
-#include <cstdlib>
 
 #include <algorithm>
 #include <chrono>
@@ -98,11 +96,6 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
                      finder, solver_of(hold, finder, options));
     DepthProbe probe(hold.stack, hold.ground);
     const auto course = hold.course();
-    if (const char* w = std::getenv("XWARM")) world.world().getSolverInfo().m_warmstartingFactor = btScalar(std::atof(w));
-    if (const char* w = std::getenv("XERP")) world.world().getSolverInfo().m_erp2 = btScalar(std::atof(w));
-    if (const char* w = std::getenv("XMODE")) world.world().getSolverInfo().m_solverMode |= std::atoi(w);
-    static btNNCGConstraintSolver nncg;
-    if (std::getenv("XNNCG")) world.world().setConstraintSolver(&nncg);
     course->begin(world);
     const auto& bodies = hold.stack.bodies;
     const double dt = 1 / hold.hertz;
@@ -110,6 +103,7 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
     const int second = static_cast<int>(std::lround(hold.hertz)), curve = std::max(1, second / 10);
     HoldResult result;
     std::vector<Pose> poses = world.poses();
+    result.deepest_start = probe.deepest(poses);
     std::vector<std::vector<double>> last_second; // of each step
     double spent = 0;
     int done = 0;
@@ -139,6 +133,7 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
         result.ended_early = spent > options.patience;
         if (done % hold.sample == 0 || done == steps || result.ended_early) {
             const double deepest = probe.deepest(poses);
+            result.deepest_end = deepest;
             if (deepest > result.deepest) {
                 result.deepest = deepest;
                 result.deepest_time = done * dt;

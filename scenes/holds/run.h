@@ -15,8 +15,8 @@ struct HoldOptions {
     bool recommended_for_all = false; ///< Bullet's own finders get the recommended solver, too
     bool speculative = true;
     int iterations = 0;                 ///< of the solver; 0: as it is
-    double slop = -1; ///< metres; negative: the scene's
-    double hertz = 0; ///< 0: the scene's
+    double slop = -1;                   ///< metres; negative: the scene's
+    double hertz = 0;                   ///< 0: the scene's
     int print_from = -1, print_to = -1; ///< steps whose contacts are printed
 };
 
@@ -24,13 +24,15 @@ struct HoldOptions {
 struct HoldResult {
     double seconds = 0;       ///< that were run
     bool ended_early = false; ///< patience was at an end
+    double deepest_start = 0; ///< before the first step
     double deepest = 0;       ///< of the sampled steps
-    double deepest_time = 0;
-    int passed = 0;          ///< bodies, the most of the sampled steps
-    double speed_max = 0;    ///< of any body in any step of the last second, m/s; turning counts with half a size
-    double speed_median = 0; ///< of all bodies and steps of that second
-    double drift = 0;        ///< the most that a centre is from where it began
-    double asleep = -1;      ///< seconds after which all slept, with deactivation switched on at the end; -1: not in 5
+    double deepest_time = 0;  ///< when, seconds
+    double deepest_end = 0;   ///< of the last look
+    int passed = 0;           ///< bodies, the most of the sampled steps
+    double speed_max = 0;     ///< of any body in any step of the last second, m/s; turning counts with half a size
+    double speed_median = 0;  ///< of all bodies and steps of that second
+    double drift = 0;         ///< the most that a centre is from where it began
+    double asleep = -1;       ///< seconds after which all slept, with deactivation switched on at the end; -1: not in 5
     double step_ms = 0;
     std::vector<Figure> figures;
     std::vector<std::string> failures;             ///< what did not hold, in words; none: it holds

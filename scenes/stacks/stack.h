@@ -14,6 +14,7 @@ namespace raycontact::scenes {
 struct StackShape {
     Mesh mesh;
     std::optional<Vec3> box; ///< its size, if it is a box
+    double ball = 0;         ///< its radius, if it is a btSphereShape for every finder
     bool convex = true;
     double size = 0; ///< longest edge of its box, metres
 };

@@ -125,7 +125,9 @@ btCollisionShape& StackWorld::State::add_fixed(const Mesh& mesh) {
 }
 
 btCollisionShape& StackWorld::State::add_moving(const StackShape& shape, bool convex) {
-    if (convex && shape.box) {
+    if (shape.ball > 0) {
+        shapes.push_back(std::make_unique<btSphereShape>(btScalar(shape.ball)));
+    } else if (convex && shape.box) {
         shapes.push_back(std::make_unique<btBoxShape>(to_bullet(*shape.box) / 2));
     } else if (convex) {
         auto hull = std::make_unique<btConvexHullShape>();
