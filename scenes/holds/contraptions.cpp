@@ -35,6 +35,7 @@ public:
     }
     int passed(const std::vector<Pose>& poses) const override { return poses[1].translation.x > 0; }
     std::vector<Figure> figures() const override {
+        if (along_.empty()) return {};
         const auto from = along_.end() - static_cast<std::ptrdiff_t>(std::min(along_.size(), last_second_));
         const auto [least, most] = std::minmax_element(from, along_.end());
         return {{.name = "shakes by", .unit = "mm", .value = 1000 * (*most - *least), .most = 0.05}};
@@ -215,7 +216,7 @@ Hold mug_on_a_hook() {
     hold.stack.bodies.push_back({0, turned_at({0, -0.4, 0}, {0, 0, 1}, 0.25), true});
     Pose pose = turned_at({}, {0, 1, 0}, -0.25); // the handle up
     const Vec3 inner = transform_point(pose, {0.4 + 0.55 - 0.06 - middle.x, 0, 5.0 / 12 + 1.0 / 12 - middle.z});
-    pose.translation = {-inner.x, -inner.y, 0.04 - inner.z - 0.002};
+    pose.translation = {-inner.x, -inner.y, 0.04 - inner.z + 0.002};
     hold.stack.bodies.push_back({1, pose});
     hold.stack.bodies.back().damping = 0.5;
     hold.stack.bodies.back().rolling = 0.005;

@@ -70,15 +70,15 @@ Hold bowl() {
 
 Hold bin() {
     Hold hold = heap("bin of bunnies", "27 bunnies lie in it at rest");
-    hold.stack = {"bin", {tray_of({3.8, 3.8, 4}, 0.1)}, {}};
+    hold.stack = {"bin", {tray_of({4.2, 4.2, 4.2}, 0.1)}, {}};
     hold.stack.shapes.push_back(shape_of(scene_model("bunny", 902).mesh, false));
     double low = 0;
     for (const Vec3& v : hold.stack.shapes[0].mesh.vertices) low = std::min(low, v.z);
     hold.stack.bodies.push_back({0, at(0, 0, -low), true});
-    drop(hold.stack, 3, 3, 1.06, 0.9);
+    drop(hold.stack, 3, 3, 1.25, 0.9);
     hold.course = [] {
         return std::make_unique<Inside>(
-            1, [](const Vec3& p) { return p.z < 0.1 || (p.z < 4 && std::max(std::abs(p.x), std::abs(p.y)) > 1.85); });
+            1, [](const Vec3& p) { return p.z < 0.1 || (p.z < 4 && std::max(std::abs(p.x), std::abs(p.y)) > 2.05); });
     };
     return hold;
 }

@@ -103,7 +103,6 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
     const int second = static_cast<int>(std::lround(hold.hertz)), curve = std::max(1, second / 10);
     HoldResult result;
     std::vector<Pose> poses = world.poses();
-    result.deepest_start = probe.deepest(poses);
     std::vector<std::vector<double>> last_second; // of each step
     double spent = 0;
     int done = 0;

@@ -24,7 +24,6 @@ struct HoldOptions {
 struct HoldResult {
     double seconds = 0;       ///< that were run
     bool ended_early = false; ///< patience was at an end
-    double deepest_start = 0; ///< before the first step
     double deepest = 0;       ///< of the sampled steps
     double deepest_time = 0;  ///< when, seconds
     double deepest_end = 0;   ///< of the last look
