@@ -294,4 +294,48 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     give(2, found);
 }
 
+// Goes on by the distance of what is nearest ahead, until that is next to nothing.
+std::optional<RoundContact> first_touch(const Converted& mesh, const btTransform& mesh_pose,
+                                        const btTransform& mesh_next, const Round& round, const btTransform& round_pose,
+                                        const btTransform& round_next) {
+    constexpr int most_looks = 64;
+    constexpr btScalar glancing = btScalar(0.1); // sine
+    constexpr int coming = 1 << 20;              // apart from the places that are near now
+    const btScalar touching = btScalar(0.01) * round.radius;
+    const btTransform now = mesh_pose.inverseTimes(round_pose), then = mesh_next.inverseTimes(round_next);
+    btVector3 from[2], way[2];
+    for (int e = 0; e < 2; ++e) {
+        from[e] = now(round.ends[e]);
+        way[e] = then(round.ends[e]) - from[e];
+    }
+    const btScalar length = btSqrt(btMax(way[0].length2(), way[1].length2()));
+    static thread_local std::vector<RoundContact> places;
+    Round there = round;
+    btScalar part = 0;
+    for (int look = 0; look < most_looks && part < 1; ++look) {
+        for (int e = 0; e < 2; ++e) there.ends[e] = from[e] + part * way[e];
+        round_contacts(mesh, btTransform::getIdentity(), there, btTransform::getIdentity(), (1 - part) * length,
+                       places);
+        const RoundContact* nearest = nullptr;
+        for (const RoundContact& c : places) {
+            const btScalar towards = -btMin(c.normal.dot(way[0]), c.normal.dot(way[1]));
+            if (towards > glancing * length && (nearest == nullptr || c.distance < nearest->distance)) nearest = &c;
+        }
+        if (nearest == nullptr) return std::nullopt;
+        if (nearest->distance <= touching) {
+            if (look == 0) return std::nullopt; // it touches already
+            RoundContact touch = *nearest;
+            const btScalar height =
+                btMin(touch.normal.dot(from[0] - touch.point), touch.normal.dot(from[1] - touch.point));
+            touch.distance = btMax(height - round.radius, btScalar(0));
+            touch.place += coming;
+            touch.point = mesh_pose(touch.point);
+            touch.normal = mesh_pose.getBasis() * touch.normal;
+            return touch;
+        }
+        part += nearest->distance / length;
+    }
+    return std::nullopt;
+}
+
 } // namespace raycontact::bullet
