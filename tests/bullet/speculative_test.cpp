@@ -360,8 +360,9 @@ TEST(Speculative, AFastBallOrCapsuleDoesNotPassASheetOrAMeshABall) {
                     body.setLinearVelocity(btVector3(btScalar(0.3 * speed), 0, btScalar(-speed)));
                     w.steps(static_cast<int>(60 * 2.5 / speed) + 3);
                     const bool passed = body.getWorldTransform().getOrigin().z() < 0;
-                    passed_without += passed && &settings == &without;
-                    EXPECT_FALSE(passed && settings.speculative != false) << speed << ", flight " << i;
+                    passed_without += passed && !settings.speculative.value_or(true);
+                    EXPECT_FALSE(passed && settings.speculative.value_or(true))
+                        << speed << ", flight " << i << ", " << body.getCollisionShape()->getName();
                 }
             }
             TestWorld w;
@@ -391,7 +392,7 @@ TEST(Speculative, ABallIsStoppedByWhatIsInItsWayAlone) {
         w.steps(1);
         EXPECT_NEAR(double(ball.getLinearVelocity().x()), 50, 1e-3) << "step " << i;
         EXPECT_NEAR(double(ball.getLinearVelocity().y()), 0, 1e-3) << "step " << i;
-        EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().z()), 0.3, 2e-3) << "step " << i;
+        EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().z()), 0.3, 3e-3) << "step " << i;
     }
     w.steps(10);
     EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().x()), 10 - 0.305, 2e-3);

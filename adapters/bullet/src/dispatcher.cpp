@@ -467,8 +467,7 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
     round_contacts(mesh.converted, mesh.pose, round, ball.pose, reach, near);
     const std::size_t near_now = near.size();
     if (scene.settings().is_speculative())
-        if (const auto touch = first_touch(mesh.converted, mesh.pose, mesh.next, round, ball.pose, ball.next))
-            near.push_back(*touch);
+        first_touches(mesh.converted, mesh.pose, mesh.next, round, ball.pose, ball.next, near);
     for (std::size_t i = 0; i < near.size(); ++i) {
         const RoundContact& c = near[i];
         const btVector3 on_ball = c.point + c.normal * c.distance;
