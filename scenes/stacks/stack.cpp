@@ -11,30 +11,6 @@ namespace raycontact::scenes {
 
 namespace {
 
-StackShape shape_of(Mesh mesh) {
-    StackShape shape;
-    Vec3 low = mesh.vertices[0], high = low;
-    for (const Vec3& v : mesh.vertices) {
-        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    shape.size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    shape.mesh = std::move(mesh);
-    return shape;
-}
-
-StackShape box_of(const Vec3& size) {
-    StackShape shape = shape_of(solid_box(size));
-    shape.box = size;
-    return shape;
-}
-
-StackShape tray_of(const Vec3& size, double thick) {
-    StackShape shape = shape_of(solid_tray(size, thick));
-    shape.convex = false;
-    return shape;
-}
-
 // Turned about z.
 Pose placed(double x, double y, double z, double degrees = 0) {
     const double half = degrees * 3.14159265358979323846 / 360;
@@ -49,8 +25,31 @@ double lowest(const StackShape& shape) {
 
 } // namespace
 
+StackShape shape_of(Mesh mesh, bool convex) {
+    StackShape shape;
+    Vec3 low = mesh.vertices[0], high = low;
+    for (const Vec3& v : mesh.vertices) {
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    shape.size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    shape.mesh = std::move(mesh);
+    shape.convex = convex;
+    return shape;
+}
+
+StackShape box_of(const Vec3& size) {
+    StackShape shape = shape_of(solid_box(size), true);
+    shape.box = size;
+    return shape;
+}
+
+StackShape tray_of(const Vec3& size, double thick) {
+    return shape_of(solid_tray(size, thick), false);
+}
+
 bool Stack::convex() const {
-    return std::ranges::all_of(shapes, [](const StackShape& s) { return s.convex; });
+    return std::ranges::all_of(bodies, [this](const StackBody& b) { return b.fixed || shapes[b.shape].convex; });
 }
 
 Stack column() {
@@ -108,7 +107,7 @@ Stack corner() {
 
 Stack wedges() {
     const Vec3 size{1, 0.6, 0.27};
-    Stack stack{"wedges", {shape_of(solid_wedge(size, false)), shape_of(solid_wedge(size, true))}, {}};
+    Stack stack{"wedges", {shape_of(solid_wedge(size, false), true), shape_of(solid_wedge(size, true), true)}, {}};
     for (int k = 0; k < 3; ++k) // their corners meet at the origin's corner of the box
         for (std::size_t half = 0; half < 2; ++half) {
             const Vec3& corner = stack.shapes[half].mesh.vertices[0];

@@ -14,6 +14,7 @@ namespace raycontact::scenes {
 struct StackShape {
     Mesh mesh;
     std::optional<Vec3> box; ///< its size, if it is a box
+    double ball = 0;         ///< its radius, if it is a btSphereShape for every finder
     bool convex = true;
     double size = 0; ///< longest edge of its box, metres
 };
@@ -21,15 +22,25 @@ struct StackShape {
 struct StackBody {
     std::size_t shape = 0;
     Pose pose;
+    bool fixed = false;    ///< part of the ground
+    double density = 500;  ///< kg/m^3
+    double friction = 0.8; ///< two that touch have the product
+    double damping = 0;    ///< part of its speeds that a body loses in a second
+    double rolling = 0;    ///< friction against rolling and spinning, metres; of two the mean by their frictions
 };
 
-/// Bodies that stand on a ground with its top at z = 0, or fall on it. All of one density.
+StackShape shape_of(Mesh mesh, bool convex); ///< the mesh's origin must be its centre of mass
+StackShape box_of(const Vec3& size);
+StackShape tray_of(const Vec3& size, double thick); ///< solid_tray
+
+/// Bodies that stand on a ground with its top at z = 0, or fall on it.
 struct Stack {
     std::string name;
     std::vector<StackShape> shapes;
     std::vector<StackBody> bodies;
-    bool stands = true;  ///< where it was put; otherwise it falls, and must not pass through anything
-    bool convex() const; ///< all bodies are
+    bool stands = true;    ///< where it was put; otherwise it falls, and must not pass through anything
+    double gravity = 9.81; ///< m/s^2
+    bool convex() const;   ///< all bodies that move are
 };
 
 Stack column();        ///< ten cubes

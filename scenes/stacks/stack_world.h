@@ -8,6 +8,10 @@
 #include <memory>
 #include <string_view>
 
+class btDiscreteDynamicsWorld;
+class btRigidBody;
+class btTypedConstraint;
+
 namespace raycontact::scenes {
 
 /// What finds the contacts in Bullet.
@@ -22,20 +26,25 @@ enum class Ground {
     slab,  ///< a mesh of 12 triangles, 1 m thick
     box,   ///< btBoxShape of the slab's size
     quad,  ///< two triangles
+    none,
 };
 inline constexpr double ground_reach = 10; ///< half its width, metres; the plane has none
 std::string_view to_string(Finder finder);
 std::string_view to_string(Ground ground);
+/// Of the ground that is a slab or a quad.
+Mesh ground_mesh(Ground ground);
 
 /// Of Bullet's solver, the same for every finder. Defaults: Bullet's own.
 struct StackSolver {
     int iterations = 10;
     double slop = 0;                      ///< metres
     bool two_friction_directions = false; ///< fixed by the normal
+    bool recommended = false;             ///< the rest as bullet::recommend() sets it
+    bool speculative = true;              ///< RayContact's contacts, not the solver's
 };
 
-/// A stack in a Bullet world with deactivation off. z is up, 60 steps a second, friction 0.8 x 0.8. Moving meshes are
-/// btGImpactMeshShape for every finder: one line differs.
+/// A stack in a Bullet world with deactivation off. z is up. Meshes that move are btGImpactMeshShape, those that do not
+/// btBvhTriangleMeshShape, for every finder: one line differs.
 class StackWorld {
 public:
     /// Throws InputError for Finder::convex where bodies are not.
@@ -44,11 +53,16 @@ public:
     StackWorld(const StackWorld&) = delete;
     StackWorld& operator=(const StackWorld&) = delete;
 
-    void step();
+    void step(double seconds = 1.0 / 60);
     Pose pose(std::size_t body) const;
     std::vector<Pose> poses() const;
     /// Every manifold point of the last step; the ground is body -1.
     void print_points(std::FILE* out) const;
+
+    btDiscreteDynamicsWorld& world() const;
+    btRigidBody& body(std::size_t index) const;
+    /// Adds it to the world; the two bodies do not collide.
+    void keep(std::unique_ptr<btTypedConstraint> constraint);
 
 private:
     struct State;

@@ -340,6 +340,64 @@ TEST(Speculative, AFastTorusDoesNotPassTilesOfACompound) {
     }
 }
 
+std::vector<std::unique_ptr<btConvexInternalShape>> round_shapes() {
+    std::vector<std::unique_ptr<btConvexInternalShape>> all;
+    all.push_back(std::make_unique<btSphereShape>(btScalar(0.3)));
+    all.push_back(std::make_unique<btCapsuleShapeZ>(btScalar(0.1), btScalar(0.6)));
+    all.push_back(std::make_unique<btCapsuleShapeX>(btScalar(0.1), btScalar(0.6)));
+    return all;
+}
+
+TEST(Speculative, AFastBallOrCapsuleDoesNotPassASheetOrAMeshABall) {
+    for (const double speed : {5.0, 20.0, 100.0}) {
+        int passed_without = 0;
+        for (int i = 0; i < 8; ++i) {
+            for (const Settings& settings : {by_default, without}) {
+                for (auto& shape : round_shapes()) {
+                    TestWorld w(settings);
+                    w.add_mesh(Shape::make(box_mesh(8, 8, 0.001)), 0, at(0, 0, 0));
+                    btRigidBody& body = w.add(std::move(shape), 1, at(0.1, 0.2, 2 + speed / 60 * i / 8));
+                    body.setLinearVelocity(btVector3(btScalar(0.3 * speed), 0, btScalar(-speed)));
+                    w.steps(static_cast<int>(60 * 2.5 / speed) + 3);
+                    const bool passed = body.getWorldTransform().getOrigin().z() < 0;
+                    passed_without += passed && !settings.speculative.value_or(true);
+                    EXPECT_FALSE(passed && settings.speculative.value_or(true))
+                        << speed << ", flight " << i << ", " << body.getCollisionShape()->getName();
+                }
+            }
+            TestWorld w;
+            w.world.setGravity(btVector3(0, 0, 0));
+            w.add(std::make_unique<btSphereShape>(btScalar(0.3)), 0, at(0, 0, 0));
+            btRigidBody& plate = w.add_mesh(Shape::make(box_mesh(1, 1, 0.02)), 1, at(0, 0, 2 + speed / 60 * i / 8));
+            plate.setLinearVelocity(btVector3(0, 0, btScalar(-speed)));
+            w.steps(static_cast<int>(60 * 2.5 / speed) + 3);
+            EXPECT_GT(double(plate.getWorldTransform().getOrigin().z()), 0.3) << speed << ", flight " << i;
+        }
+        if (speed > 50) {
+            EXPECT_GT(passed_without, 0) << "else nothing is shown";
+        }
+    }
+}
+
+// It rolls on a floor, past a box, and stops at the wall.
+TEST(Speculative, ABallIsStoppedByWhatIsInItsWayAlone) {
+    TestWorld w;
+    w.add_mesh(Shape::make(box_mesh(40, 8, 1)), 0, at(0, 0, -0.5));
+    w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(-2, 0.85, 0.5)); // 5 cm beside its way
+    w.add_mesh(Shape::make(box_mesh(0.01, 8, 2)), 0, at(10, 0, 1));
+    btRigidBody& ball = w.add(std::make_unique<btSphereShape>(btScalar(0.3)), 1, at(-15, 0, 0.3));
+    ball.setFriction(0);
+    ball.setLinearVelocity(btVector3(50, 0, 0));
+    for (int i = 0; i < 28; ++i) {
+        w.steps(1);
+        EXPECT_NEAR(double(ball.getLinearVelocity().x()), 50, 1e-3) << "step " << i;
+        EXPECT_NEAR(double(ball.getLinearVelocity().y()), 0, 1e-3) << "step " << i;
+        EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().z()), 0.3, 3e-3) << "step " << i;
+    }
+    w.steps(10);
+    EXPECT_NEAR(double(ball.getWorldTransform().getOrigin().x()), 10 - 0.305, 2e-3);
+}
+
 // What is near is no contact for a query. All is tilted: the boxes of the two overlap.
 TEST(Speculative, QueriesFindWhatTouches) {
     const btTransform tilted(btQuaternion(btVector3(1, 0, 0), btScalar(0.3)));

@@ -465,7 +465,11 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
     const btScalar reach =
         btMin(gContactBreakingThreshold, ball.shape->getContactBreakingThreshold(gContactBreakingThreshold));
     round_contacts(mesh.converted, mesh.pose, round, ball.pose, reach, near);
-    for (const RoundContact& c : near) {
+    const std::size_t near_now = near.size();
+    if (scene.settings().is_speculative())
+        first_touches(mesh.converted, mesh.pose, mesh.next, round, ball.pose, ball.next, near);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        const RoundContact& c = near[i];
         const btVector3 on_ball = c.point + c.normal * c.distance;
         Candidate candidate;
         candidate.key = {leaf0, leaf1, mesh_is_0 ? 1 : 0, c.place};
@@ -475,6 +479,7 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
         candidate.normal = mesh_is_0 ? -c.normal : c.normal;
         candidate.distance = c.distance;
         candidate.reach = btMin(diagonal(mesh), 2 * round.radius + (round.ends[1] - round.ends[0]).length());
+        candidate.speculative = i >= near_now;
         state.candidates.push_back(candidate);
     }
 }

@@ -189,9 +189,10 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
     btTransform then;
     btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     for (Leaf& leaf : record.leaves) {
-        if (leaf.body == Leaf::no_body || leaf.left_out()) continue;
+        if ((leaf.body == Leaf::no_body && leaf.kind != Kind::round) || leaf.left_out()) continue;
         try {
             leaf.next = place(then * leaf.local).pose;
+            if (leaf.kind == Kind::round) continue;
             scene_.set_next_pose(leaf.body, to_pose(leaf.next));
             leaf.way = longest_way(*leaf.converted.shape, leaf.pose, leaf.next);
         } catch (const InputError&) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -292,6 +293,81 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     give(0, first);
     give(1, second);
     give(2, found);
+}
+
+namespace {
+
+/// How the ends of a round go in a step, in the mesh's frame.
+struct Way {
+    btVector3 from[2], by[2];
+};
+
+constexpr int most_looks = 64;
+constexpr btScalar glancing = btScalar(0.1); // sine
+constexpr int coming = 1 << 20;              // apart from the places that are near now
+
+// Goes on by the distance of what is nearest ahead, until that is next to nothing.
+std::optional<RoundContact> touch_on(const Converted& mesh, Round round, const Way& way) {
+    const btScalar touching = btScalar(0.01) * round.radius;
+    const btScalar length = btSqrt(btMax(way.by[0].length2(), way.by[1].length2()));
+    static thread_local std::vector<RoundContact> places;
+    btScalar part = 0;
+    for (int look = 0; look < most_looks && part < 1; ++look) {
+        for (int e = 0; e < 2; ++e) round.ends[e] = way.from[e] + part * way.by[e];
+        round_contacts(mesh, btTransform::getIdentity(), round, btTransform::getIdentity(), (1 - part) * length,
+                       places);
+        const RoundContact* nearest = nullptr;
+        for (const RoundContact& c : places) {
+            const btScalar towards = -btMin(c.normal.dot(way.by[0]), c.normal.dot(way.by[1]));
+            if (towards > glancing * length && (nearest == nullptr || c.distance < nearest->distance)) nearest = &c;
+        }
+        if (nearest == nullptr) return std::nullopt;
+        if (nearest->distance <= touching) {
+            if (look == 0) return std::nullopt; // it touches already
+            // The place of the axis that comes there, and what is below it now: a push there does not turn a ball.
+            const btVector3 axis = round.ends[1] - round.ends[0];
+            const btScalar along =
+                round.balls == 1
+                    ? 0
+                    : btClamped(axis.dot(nearest->point - round.ends[0]) / axis.length2(), btScalar(0), btScalar(1));
+            const btVector3 centre = way.from[0] + along * (way.from[1] - way.from[0]);
+            RoundContact touch = *nearest;
+            const btScalar height = touch.normal.dot(centre - touch.point);
+            touch.point = centre - height * touch.normal;
+            touch.distance = btMax(height - round.radius, btScalar(0));
+            return touch;
+        }
+        part += nearest->distance / length;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+void first_touches(const Converted& mesh, const btTransform& mesh_pose, const btTransform& mesh_next,
+                   const Round& round, const btTransform& round_pose, const btTransform& round_next,
+                   std::vector<RoundContact>& out) {
+    const btTransform now = mesh_pose.inverseTimes(round_pose), then = mesh_next.inverseTimes(round_next);
+    Way way;
+    for (int e = 0; e < 2; ++e) {
+        way.from[e] = now(round.ends[e]);
+        way.by[e] = then(round.ends[e]) - way.from[e];
+    }
+    const auto add = [&](const Round& part, const Way& its_way, int number) {
+        auto touch = touch_on(mesh, part, its_way);
+        if (!touch) return;
+        touch->place += coming * number;
+        touch->point = mesh_pose(touch->point);
+        touch->normal = mesh_pose.getBasis() * touch->normal;
+        out.push_back(*touch);
+    };
+    add(round, way, 1);
+    if (round.balls == 1) return;
+    // What lies flat is stopped at both ends.
+    for (int e = 0; e < 2; ++e) {
+        const Round end{.ends = {round.ends[e], round.ends[e]}, .balls = 1, .radius = round.radius};
+        add(end, {.from = {way.from[e], way.from[e]}, .by = {way.by[e], way.by[e]}}, 2 + e);
+    }
 }
 
 } // namespace raycontact::bullet

@@ -36,4 +36,11 @@ struct RoundContact {
 void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const Round& round,
                     const btTransform& round_pose, btScalar reach, std::vector<RoundContact>& out);
 
+/// Adds where a ball or capsule first meets a mesh which it does not touch yet, on the straight way to where both are
+/// expected next, as the mesh sees it; where a capsule's ends do, too. The distance is that from the plane of the
+/// touch. What is met at a glancing angle, as the floor that a ball rolls on, does not count.
+void first_touches(const Converted& mesh, const btTransform& mesh_pose, const btTransform& mesh_next,
+                   const Round& round, const btTransform& round_pose, const btTransform& round_next,
+                   std::vector<RoundContact>& out);
+
 } // namespace raycontact::bullet
