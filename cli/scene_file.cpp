@@ -192,7 +192,7 @@ private:
     void read_response(const JsonField& root) {
         Response& r = scene_.response;
         if (smallest_ < Region::inf) {
-            r.plain_slop *= smallest_;
+            r.size = smallest_;
             scene_.depth_limit *= smallest_;
         }
         if (const auto v = root.find("friction")) r.friction = v->not_negative();

@@ -23,8 +23,8 @@ struct Response {
     bullet::ManifoldSettings manifolds;
     double friction = 0.6;
     int iterations = bullet::SolverSettings{}.iterations;
-    std::optional<double> slop; ///< metres; empty: 0 with speculative contacts, without them plain_slop
-    double plain_slop = 0.005;  ///< of bodies of 1 m, with which figures and hashes were made; recommend() takes less
+    std::optional<double> slop; ///< metres; empty: 0.1 % of `size` with speculative contacts, 0.5 % without
+    double size = 1;            ///< of the smallest body that moves, metres
     double erp = bullet::SolverSettings{}.erp;
     bool bullet_defaults = false; ///< the solver as Bullet sets it up; iterations, slop and erp above do not apply
     double linear_damping = 0, angular_damping = 0; ///< part of the speed lost in a second, 0 to 1

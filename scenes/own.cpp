@@ -46,7 +46,7 @@ SceneDescription own(const OwnOptions& options) {
         smallest = std::min(smallest, mesh.extent);
         scene.shapes.push_back({mesh.shape, bullet::Bounds::box, mesh_in_words(file.filename().string(), *mesh.shape)});
     }
-    scene.response.plain_slop *= smallest;
+    scene.response.size = smallest;
     scene.depth_limit *= smallest;
 
     // 0.05 apart, of which the offsets of two neighbours take 0.04 at most.

@@ -24,8 +24,7 @@ struct OwnOptions {
     double density = 1000;     ///< kg/m^3
     Nesting nesting = Nesting::as_wound;
     Settings settings; ///< of RayContact
-    /// Its plain_slop is that of bodies of 1 m, and becomes smaller or larger with the smallest.
-    Response response;
+    Response response; ///< its size becomes that of the smallest body
 };
 
 /// Throws InputError for options out of range, and as load_mesh does.

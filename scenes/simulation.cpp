@@ -48,7 +48,7 @@ void check(const SceneDescription& d) {
             "gravity must be finite");
     require(not_negative(r.friction), "friction must not be negative");
     require(r.iterations >= 1, "iterations must be at least 1");
-    require(not_negative(r.slop.value_or(0)) && not_negative(r.plain_slop), "slop must not be negative");
+    require(not_negative(r.slop.value_or(0)), "slop must not be negative");
     require(share(r.erp), "erp must be from 0 to 1");
     require(share(r.linear_damping) && share(r.angular_damping), "damping must be from 0 to 1");
     require(not_negative(d.depth_limit), "the depth limit must not be negative");
@@ -113,7 +113,7 @@ void Simulation::State::configure() {
     // A sweep of the boxes along the motion adds pairs that have speculative contacts alone.
     const bool speculative = dispatcher.scene().settings().is_speculative();
     world.getDispatchInfo().m_useContinuous = speculative;
-    const double slop = response.slop.value_or(speculative ? 0 : response.plain_slop);
+    const double slop = response.slop.value_or((speculative ? 0.001 : 0.005) * response.size);
     if (!response.bullet_defaults)
         bullet::recommend(world, {.slop = slop, .erp = response.erp, .iterations = response.iterations});
     // Nobody sleeps, so islands save nothing.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/recommend.h>
 
-#include <raycontact/bullet/dispatcher.h>
 #include <raycontact/error.h>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -10,24 +9,13 @@
 
 namespace raycontact::bullet {
 
-namespace {
-
-constexpr double slop_without = 0.001; // metres, without speculative contacts
-
-bool has_speculative_contacts(btDiscreteDynamicsWorld& world) {
-    const auto* ours = dynamic_cast<const CollisionDispatcher*>(world.getDispatcher());
-    return ours != nullptr && ours->scene().settings().is_speculative();
-}
-
-} // namespace
-
 void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
-    const double slop = settings.slop.value_or(has_speculative_contacts(world) ? 0 : slop_without);
-    if (!(std::isfinite(slop) && slop >= 0)) throw InputError("SolverSettings::slop must be finite and not negative");
+    if (!(std::isfinite(settings.slop) && settings.slop >= 0))
+        throw InputError("SolverSettings::slop must be finite and not negative");
     if (!(settings.erp >= 0 && settings.erp <= 1)) throw InputError("SolverSettings::erp must be from 0 to 1");
     if (settings.iterations < 1) throw InputError("SolverSettings::iterations must be at least 1");
     btContactSolverInfo& info = world.getSolverInfo();
-    info.m_linearSlop = btScalar(slop);
+    info.m_linearSlop = btScalar(settings.slop);
     info.m_erp2 = btScalar(settings.erp);
     info.m_numIterations = settings.iterations;
     info.m_splitImpulse = 1;

@@ -3,19 +3,17 @@
 
 #include <raycontact/bullet/precision.h>
 
-#include <optional>
-
 class btDiscreteDynamicsWorld;
 
 namespace raycontact::bullet {
 
 /// What recommend() asks of Bullet's solver. docs/solvers.md has the reason and the figure of each.
 struct SolverSettings {
-    /// Metres that a contact may stay deep. Empty: 0 if the world's dispatcher is a CollisionDispatcher with
-    /// speculative contacts, else 0.001, for bodies of 0.2 to 5 m (a thousandth to a hundredth of the smallest):
-    /// without them a vertex is in contact only while it is inside, so one that was pushed out to the surface is lost,
-    /// and comes back.
-    std::optional<double> slop{};
+    /// Metres that a contact may stay deep. Without speculative contacts a vertex is in contact only while it is
+    /// inside: pushed out to the surface, it would be lost, and come back. With them heaps lie nearer with
+    /// less, but stacks and what fits closely tremble. For bodies of
+    /// 0.2 to 5 m; a thousandth to a hundredth of the smallest.
+    double slop = 0.001;
     double erp = 0.3;    ///< part of the depth beyond the slop that a step undoes, without giving speed; 0 to 1
     int iterations = 20; ///< at least 1; Bullet's own are 10
 };
