@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds: scenes that a user expects to stand, hang, turn or stop, in a Bullet world that differs by one line and
-// its solver: RayContact with recommend(), the same with 1000
-// iterations, GImpact and, where all that moves is convex, Bullet's own shapes, both with
-// Bullet's own settings. Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|ours-1000|gimpact|convex]
-// [--seconds S] [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES] [--hertz N]
-// [--print FROM TO] [--out DIR]: at most S seconds a scene (20); a run ends early once its steps have taken S seconds;
-// Bullet's finders get the recommended solver, too; contacts of the steps FROM to TO are printed.
+// its solver: RayContact with recommend(), the same with 1 000 iterations, GImpact and, where all that moves is convex,
+// Bullet's own shapes, both with Bullet's own settings.
+// Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|ours-1000|gimpact|convex] [--seconds S]
+// [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES] [--hertz N] [--print FROM TO]
+// [--out DIR]: at most S seconds a scene (20); a run ends early once its steps have taken S seconds; Bullet's finders
+// get the recommended solver, too; contacts of the steps FROM to TO are printed.
 #include <bench/peers/files.h>
 #include <report/page.h>
 #include <report/svg.h>

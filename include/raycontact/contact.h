@@ -30,9 +30,10 @@ struct Contact {
     Feature feature = Feature::vertex;
     /// The last step had no contact with this key in this pair; or none that touched, and this one does.
     bool is_new = true;
-    std::uint32_t vertex = 0;      ///< of the source, index of its file; of edges: edge_a()
-    std::uint32_t triangle = 0;    ///< of the other body, that was hit (`refined`: the nearest); index of its file; of edges: edge_b()
-    Vec3 point;                    ///< the source vertex, or a point of a's edge; world frame, metres
+    std::uint32_t vertex = 0; ///< of the source, index of its file; of edges: edge_a()
+    std::uint32_t triangle =
+        0;      ///< of the other body, that was hit (`refined`: the nearest); index of its file; of edges: edge_b()
+    Vec3 point; ///< the source vertex, or a point of a's edge; world frame, metres
     std::array<float, 3> normal{}; ///< unit, world frame, from A to B
     /// Metres along the normal (section 3.2: r . n). <= 0: a speculative contact, minus the gap (docs/speculative.md).
     float depth = 0;

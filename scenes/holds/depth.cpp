@@ -1,50 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <scenes/holds/depth.h>
 
+#include "shape/mesh_rays.h"
+
 #include <raycontact/collide.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace raycontact::scenes {
 
 namespace {
-
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-double square_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 way = minus(b, a), from = minus(p, a);
-    const double length = dot(way, way);
-    const double t = length > 0 ? std::clamp(dot(from, way) / length, 0.0, 1.0) : 0;
-    const Vec3 rest{from.x - t * way.x, from.y - t * way.y, from.z - t * way.z};
-    return dot(rest, rest);
-}
-
-double square_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 u = minus(b, a), v = minus(c, a), w = minus(p, a);
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
-    const double scale = uu * vv - uv * uv;
-    const double s = wu * vv - wv * uv, t = wv * uu - wu * uv;
-    if (scale > 0 && s >= 0 && t >= 0 && s + t <= scale) {
-        const Vec3 rest{w.x - (s * u.x + t * v.x) / scale, w.y - (s * u.y + t * v.y) / scale,
-                        w.z - (s * u.z + t * v.z) / scale};
-        return dot(rest, rest);
-    }
-    return std::min({square_to_segment(p, a, b), square_to_segment(p, b, c), square_to_segment(p, c, a)});
-}
-
-double distance_to_surface(const Shape& shape, const Vec3& p) {
-    double least = 1e300;
-    const auto vertices = shape.vertices();
-    for (const auto& t : shape.triangles())
-        least = std::min(least, square_to_triangle(p, vertices[t[0]], vertices[t[1]], vertices[t[2]]));
-    return std::sqrt(least);
-}
 
 bool is_in_box(const Shape& shape, const Vec3& p) {
     const Vec3 low = shape.box_min(), high = shape.box_max();
@@ -77,7 +42,7 @@ double DepthProbe::deepest_vertex(const Body& in, const Pose& pose_in, const Bod
     for (const Vec3& v : of.shape->vertices()) {
         const Vec3 p = transform_point(seen, v);
         if (is_in_box(*in.shape, p) && contains(*in.shape, p))
-            deepest = std::max(deepest, distance_to_surface(*in.shape, p));
+            deepest = std::max(deepest, nearest_face(in.shape->data(), p - in.shape->centre(), 0).distance);
     }
     return deepest;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <scenes/holds/meshes.h>
 #include <scenes/holds/scenes.h>
+#include <scenes/quantile.h>
 
 #include <btBulletDynamicsCommon.h>
 
@@ -90,13 +91,10 @@ public:
         return off_ > thread_.pitch / 2 || std::sqrt(p.x * p.x + p.y * p.y) > 0.005;
     }
     std::vector<Figure> figures() const override {
-        std::vector<double> speeds = speeds_;
-        std::ranges::sort(speeds);
-        const double median = speeds.empty() ? 0 : speeds[speeds.size() / 2];
         std::vector<Figure> all{
             {.name = "off the thread by", .unit = "mm", .value = 1000 * off_, .most = 0.2},
             {.name = "gains energy of", .unit = "mm of height", .value = 1000 * gained_, .most = 0.2},
-            {.name = "median speed", .unit = "m/s", .value = median, .most = 0.1}};
+            {.name = "median speed", .unit = "m/s", .value = quantile(speeds_, 0.5), .most = 0.1}};
         if (held_) {
             all.push_back({.name = "went down by", .unit = "mm", .value = 1000 * fell_, .most = 0.1});
         } else {

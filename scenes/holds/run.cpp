@@ -2,6 +2,10 @@
 #include <scenes/holds/run.h>
 
 #include <scenes/holds/depth.h>
+#include <scenes/quantile.h>
+#include <scenes/stacks/verdict.h>
+
+#include "mesh/vector.h"
 
 #include <btBulletDynamicsCommon.h>
 
@@ -14,30 +18,17 @@ namespace raycontact::scenes {
 
 namespace {
 
-double length(const Vec3& v) {
-    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 /// Metres between two poses of a body; its turn counts with half its size.
 double way(const Pose& from, const Pose& to, double size) {
     const Pose moved = relative_pose(from, to);
-    const auto& r = moved.rotation;
-    const double sine = length({r[7] - r[5], r[2] - r[6], r[3] - r[1]}), cosine = r[0] + r[4] + r[8] - 1;
-    return length(moved.translation) + std::atan2(sine, cosine) * size / 2;
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return length(moved.translation) + angle_of(moved) * size / 2;
 }
 
 StackSolver solver_of(const Hold& hold, Finder finder, const HoldOptions& options) {
     StackSolver solver;
     solver.recommended = finder == Finder::edges || finder == Finder::vertices || options.recommended_for_all;
     if (solver.recommended) {
-        solver.slop = options.slop >= 0 ? options.slop : hold.slop;
+        solver.slop = options.slop.value_or(hold.slop);
         solver.iterations = options.iterations > 0 ? options.iterations : 20;
     }
     solver.speculative = options.speculative;
@@ -126,7 +117,7 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
                                 now[i].translation.z);
             world.print_points(stdout);
         }
-        if (done % curve == 0) result.speeds.emplace_back(done * dt, median(speeds));
+        if (done % curve == 0) result.speeds.emplace_back(done * dt, quantile(speeds, 0.5));
         last_second.push_back(std::move(speeds));
         if (last_second.size() > static_cast<std::size_t>(second)) last_second.erase(last_second.begin());
         result.ended_early = spent > options.patience;
@@ -146,10 +137,9 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
     std::vector<double> all;
     for (const auto& speeds : last_second) all.insert(all.end(), speeds.begin(), speeds.end());
     for (const double speed : all) result.speed_max = std::max(result.speed_max, speed);
-    result.speed_median = median(all);
+    result.speed_median = quantile(all, 0.5);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const Vec3 &was = bodies[i].pose.translation, &is = poses[i].translation;
-        result.drift = std::max(result.drift, length({is.x - was.x, is.y - was.y, is.z - was.z}));
+        result.drift = std::max(result.drift, length(poses[i].translation - bodies[i].pose.translation));
     }
     result.figures = course->figures();
     if (hold.rest && !result.ended_early) result.asleep = fall_asleep(world, hold);

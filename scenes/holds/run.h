@@ -3,6 +3,7 @@
 
 #include <scenes/holds/hold.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,7 @@ struct HoldOptions {
     bool recommended_for_all = false; ///< Bullet's own finders get the recommended solver, too
     bool speculative = true;
     int iterations = 0;                 ///< of the solver; 0: as it is
-    double slop = -1;                   ///< metres; negative: the scene's
+    std::optional<double> slop;         ///< metres, of the recommended solver; empty: that of the scene
     double hertz = 0;                   ///< 0: the scene's
     int print_from = -1, print_to = -1; ///< steps whose contacts are printed
 };

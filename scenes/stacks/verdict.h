@@ -20,6 +20,9 @@ struct Verdict {
     bool fell(const Stack& stack, double allowed = drift_limit, double allowed_turn = turn_limit) const;
 };
 
+/// By how much a relative pose turns, radians.
+double angle_of(const Pose& moved);
+
 Verdict judge(const Stack& stack, std::span<const Pose> poses);
 
 } // namespace raycontact::scenes
