@@ -163,7 +163,7 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     }
     const std::span<const FeatureContact> coming = question.speculative.of(asked.pair);
     const bool told = in_contact || !coming.empty();
-    if (settings.is_speculative() && asked.edges && asks_speculative_edges(a, b, told))
+    if (settings.is_speculative() && asked.edges)
         find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
     work.found.insert(work.found.end(), coming.begin(), coming.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());

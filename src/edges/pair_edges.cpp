@@ -62,9 +62,9 @@ double beyond(const Vec3& direction, const Vec3& n, const Vec3& m) {
 bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
                      const std::array<std::span<const kernels::LocalContact>, 2>& vertices,
                      std::vector<FeatureContact>& found) {
-    follow_loops(pair, near, !vertices[0].empty() || !vertices[1].empty());
-    if (crossings().empty()) return false;
     list_vertices(vertices);
+    follow_loops(pair, near);
+    if (crossings().empty()) return false;
     list_pieces(pair);
     join_regions(pair);
     list_regions(pair);
@@ -84,10 +84,14 @@ bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
     return true;
 }
 
-// Every loop has been followed once each edge has been asked. Where a vertex is in contact, short edges need not be:
-// loops that they alone cross are left out.
-void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near, bool in_contact) {
-    const double least2 = in_contact ? short_edge * short_edge * pair.size() * pair.size() : 0;
+// Every loop has been followed once each edge has been asked. Where a vertex is in contact, only those need be that
+// hide much: loops that none of them crosses are left out.
+void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near) {
+    const double least = in_contact_.empty() ? -1 : least_hidden * pair.size();
+    const double least_beside = in_contact_.empty() ? -1 : least_hidden_beside * pair.size();
+    const auto is_in_contact = [&](std::size_t side, std::uint32_t vertex) {
+        return std::ranges::binary_search(in_contact_, std::uint64_t{side} << 32 | vertex, {}, &VertexContact::vertex);
+    };
     loops_.clear();
     for (std::size_t side = 0; side < 2; ++side) {
         const ShapeData& source = pair.shape(side);
@@ -98,8 +102,9 @@ void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near, bool
             if (candidate.edge != edge) {
                 edge = candidate.edge;
                 const auto [start, stop] = ends_of(source, edge);
-                const Vec3 along = source.point(stop) - source.point(start);
-                asked = dot(along, along) > least2;
+                const double hides = hidden_by(source, edge);
+                asked = hides > least_beside
+                        || (hides > least && !is_in_contact(side, start) && !is_in_contact(side, stop));
             }
             if (!asked) continue;
             face.set(pair, 1 - side, candidate.face);

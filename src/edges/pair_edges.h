@@ -89,7 +89,7 @@ private:
     std::uint32_t region_of(const Piece& piece) const {
         return region_of_[piece.crossings[0] == NONE ? piece.crossings[1] : piece.crossings[0]];
     }
-    void follow_loops(const PairMeshes& pair, const NearEdges& near, bool in_contact);
+    void follow_loops(const PairMeshes& pair, const NearEdges& near);
 
     Loops loops_;
     std::vector<std::uint32_t> by_edge_;    ///< crossings, those of an edge along it

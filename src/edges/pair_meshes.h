@@ -95,6 +95,10 @@ inline std::array<std::uint32_t, 2> ends_of(const ShapeData& shape, std::uint32_
 inline bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
     return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
 }
+/// How deep an overlap can be that it alone crosses, metres (docs/edges.md). edge: by its lowest triangle.
+inline double hidden_by(const ShapeData& shape, std::uint32_t edge) {
+    return shape.hides[edge / 3][edge % 3];
+}
 /// Whether the far corner of the one face lies below the other. Borders count as convex.
 inline bool is_convex(const ShapeData& shape, std::uint32_t edge) {
     const auto [own, across] = faces_of(shape, edge);

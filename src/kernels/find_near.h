@@ -125,17 +125,17 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
     }
 }
 
-// The edges of each block that are long enough and come into the bounds, but for those that the clearance grid knows to
+// The edges of each block that come into the bounds, but for those that the clearance grid knows to
 // be far from the surface: it does not enter the balls around their halves. vertices: 1: of vertices, as points. next:
-// where the pairs will be; null: they stay. clears: 1: it tells, too, how far the others stay away.
-KERNEL void count_edges(COUNT(count), uint vertices, uint clears, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                        READS(float) margins, READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory,
+// where the pairs will be; null: they stay. Of pairs with `ahead` (null: none) it tells, too, how far the others stay
+// away, but of nothing that is farther than that.
+KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
+                        READS(float) margins, READS(float) ahead, READS(ShapeHeader) shapes, READS(ulong) memory,
                         WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
         READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
         const float margin = margins[found_blocks[i].pair];
-        const float half_least = least ? 0.5f * least[found_blocks[i].pair] : 0.0f;
         float b[6];
         for (int k = 0; k < 3; ++k) {
             b[k] = pair->bounds[k] - margin;
@@ -144,15 +144,21 @@ KERNEL void count_edges(COUNT(count), uint vertices, uint clears, READS(Directed
         MovingLanes edges;
         place_sources(&edges, vertices, pair, block, first);
         if (next) move_sources(&edges, vertices, next + found_blocks[i].pair, block, first);
-        int found[VERTICES_AT_ONCE];
+        const float far = ahead ? ahead[found_blocks[i].pair] : 0.0f;
+        int found[VERTICES_AT_ONCE], asked[VERTICES_AT_ONCE];
+        float gap[VERTICES_AT_ONCE];
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float x = edges.middle[0][k], y = edges.middle[1][k], z = edges.middle[2][k];
             const float ex = edges.reach[0][k], ey = edges.reach[1][k], ez = edges.reach[2][k];
             const uint inside = (x + ex >= b[0]) & (x - ex <= b[3]) & (y + ey >= b[1]) & (y - ey <= b[4])
-                                & (z + ez >= b[2]) & (z - ez <= b[5]) & (edges.length[k] >= half_least);
+                                & (z + ez >= b[2]) & (z - ez <= b[5]);
+            // Those that come into the bounds later may be as near as these.
+            gap[k] = bounds_gap(b, x, y, z) - (1.0005f * edges.length[k] + edges.away[k]);
             found[k] = -(int)inside;
+            asked[k] = -(int)((uint)(block->vertex[first + k] != NONE) & (uint)(gap[k] < far));
         }
-        if (clears == 0u && pack_vertices(found) == 0u) continue;
+        const uint asks_far = pack_vertices(asked);
+        if ((pack_vertices(found) | asks_far) == 0u) continue;
         READS(ShapeHeader) target = shapes + pair->target;
         const Clearance grid = clearance_of(target);
         READS(uint) balls = AT(memory, uint, target->clearances);
@@ -166,14 +172,10 @@ KERNEL void count_edges(COUNT(count), uint vertices, uint clears, READS(Directed
             beyond[k] = (one < two ? one : two) - ((0.50025f * edges.length[k] + margin) + edges.away[k]);
             found[k] &= -(int)(beyond[k] <= 0.0f);
         }
-        if (clears != 0u) {
-            // Those that come into the bounds later may be as near as these.
+        if (asks_far != 0u) {
             FOR_LANES(k, VERTICES_AT_ONCE) {
-                const float gap = bounds_gap(b, edges.middle[0][k], edges.middle[1][k], edges.middle[2][k])
-                                  - (1.0005f * edges.length[k] + edges.away[k]);
-                const float free = gap > beyond[k] ? gap : beyond[k];
-                const uint asked = (uint)(block->vertex[first + k] != NONE) & (uint)(edges.length[k] >= half_least);
-                beyond[k] = asked != 0u ? free : UNBOUNDED;
+                const float free = gap[k] > beyond[k] ? gap[k] : beyond[k];
+                beyond[k] = asked[k] != 0 && free < far ? free : far;
             }
             const float steps = least_of_vertices(beyond) / target->tolerance;
             MIN_TO(&found_blocks[i].clear, steps > 0.0f ? (uint)(steps < MOST_CLEAR ? steps : MOST_CLEAR) : 0u);

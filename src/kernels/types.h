@@ -69,8 +69,9 @@ WIRE_SIZE(VertexBlock, 512);
 STRUCT_OF_ROWS(ClusterBlock) {
     float centre[3][VERTEX_LANES];
     float half_size[3][VERTEX_LANES];
+    float hides[VERTEX_LANES]; // what an edge below hides, at most, metres (docs/edges.md); of vertices UNBOUNDED
 };
-WIRE_SIZE(ClusterBlock, 384);
+WIRE_SIZE(ClusterBlock, 448);
 
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).

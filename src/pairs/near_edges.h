@@ -14,21 +14,22 @@ namespace raycontact {
 
 using kernels::NearEdge;
 
-/// An edge is short up to this, in diagonals of the smaller body (docs/edges.md).
-inline constexpr double short_edge = 0.2;
+/// Where a vertex of a pair is in contact, an edge counts if it hides more than this part of the smaller body's
+/// diagonal; one that ends at such a vertex, more than the second (docs/edges.md).
+inline constexpr double least_hidden = 0.01, least_hidden_beside = 0.1;
 
 /// Whether edges can be in contact at all: of two open meshes vertices alone decide.
 inline bool asks_edges(const PlacedBody& a, const PlacedBody& b) {
     return a.shape->has_inside() || b.shape->has_inside();
 }
 
-/// Metres: shorter edges of a pair in contact need not be found. A little less than what the rule leaves out.
-inline double short_length(const PlacedBody& a, const PlacedBody& b) {
-    return 0.9999 * short_edge * smaller_size(a, b);
+/// Metres: an edge of a pair in contact that hides less need not be found. A little less than what the rule leaves out.
+inline double hidden_length(const PlacedBody& a, const PlacedBody& b) {
+    return 0.9999 * least_hidden * smaller_size(a, b);
 }
-/// Whether all edges of both bodies are.
-inline bool has_short_edges_alone(const PlacedBody& a, const PlacedBody& b) {
-    return std::max(a.shape->data().longest_edge, b.shape->data().longest_edge) < short_length(a, b);
+/// Whether an edge of either body hides more than a part of the smaller one.
+inline bool hides_more(const PlacedBody& a, const PlacedBody& b, double part) {
+    return std::max(a.shape->data().hides_most, b.shape->data().hides_most) > 0.9999 * part * smaller_size(a, b);
 }
 
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.

@@ -136,8 +136,7 @@ void Pipeline::end(const Update& update) {
     local_.set(found_.values(), batch_.directed, update.pairs.size());
     find_speculative(update);
     if (casts_edges_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
-    if (update.settings.features == Features::edges && !casts_edges_)
-        certified_.find_edges(update, local_, speculative_, batch_);
+    if (update.settings.features == Features::edges && !casts_edges_) certified_.find_edges(update, local_, batch_);
     list_asked(update);
 }
 
@@ -148,7 +147,7 @@ void Pipeline::find_speculative(const Update& update) {
     if (casts_points_)
         near_points_.set(points_.found().values(), pairs_of(update).directed(), update.pairs.size());
     else
-        certified_.find_points(update, local_, batch_);
+        certified_.find_points(update, batch_);
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
         if (!casts_points_ && certified_.has_points(i)) asked_.push_back({i, false, certified_.points(i)});
         if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) continue;
@@ -169,7 +168,7 @@ void Pipeline::list_asked(const Update& update) {
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
         AskedPair asked{i, false, {}};
-        if (edges && !apart && asks_edges(a, b) && !(in_contact && has_short_edges_alone(a, b))) {
+        if (edges && !apart && asks_edges(a, b) && !(in_contact && !hides_more(a, b, least_hidden))) {
             asked.near = casts_edges_ ? std::array{near_.of(2 * i), near_.of(2 * i + 1)} : certified_.near(i);
             if (!casts_edges_) asked.apart = certified_.apart(i);
             // Without edges a pair has nothing more to tell, but that one body is inside the other.

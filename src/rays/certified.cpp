@@ -258,37 +258,22 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
 // width.
 NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin) {
     const bool empty = kept.count() == 0;
-    double more = empty ? std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size) : 0.0005 * due.size;
-    if (!empty && margin > 0) more = std::clamp(4 * due.speed, 0.002 * due.size, 0.01 * due.size);
+    double more = empty ? std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size)
+                        : std::clamp(6 * due.speed, 0.002 * due.size, 0.006 * due.size);
     if (more < 4 * due.speed) more = 0;
     double ahead = std::clamp(4 * due.speed, 0.02 * due.size, 0.1 * due.size);
-    if (margin > 0 && !empty) ahead = 0.003 * due.size;
+    if (!empty) ahead = margin > 0 ? 0.003 * due.size : 0;
     if (moves) ahead = 0;
     return {due.pair, static_cast<float>(more), static_cast<float>(ahead), static_cast<float>(margin), 0, moves};
 }
 
-// Every vertex ends an edge: where no edge is near, none is. So pairs that had no near vertices are asked for edges.
-void CertifiedRays::find_points(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
-    searches_.clear();
-    for (WakeUp::Slice& slice : wake_up_.slices())
-        for (DueNear& due : slice.near) {
-            if (!due.points || !due.edges || table_.hot(due.pair).has_points || is_in_contact(contacts, due.pair)
-                || !asks_speculative_edges(update.bodies[update.pairs[due.pair].first],
-                                           update.bodies[update.pairs[due.pair].second], false))
-                continue;
-            seek_edges(update, due, false, true);
-        }
-    edges_.find(update, searches_, table_, batch);
-    for (const NearLists::Search& search : searches_) {
-        Slack& slack = table_.hot(search.pair);
-        if (table_.state(search.pair).edges.count() == 0) slack.points = slack.edges;
-    }
+void CertifiedRays::find_points(const Update& update, RayBatch& batch) {
     searches_.clear();
     for (const WakeUp::Slice& slice : wake_up_.slices())
         for (const DueNear& due : slice.near) {
             const Slack& slack = table_.hot(due.pair);
             const WatchedPair& state = table_.state(due.pair);
-            if (!due.points || (due.sought && state.edges.count() == 0)) continue;
+            if (!due.points) continue;
             searches_.push_back(search_of(due, state.points, due.moves, double(slack.margin)));
         }
     points_.find(update, searches_, table_, batch);
@@ -296,43 +281,29 @@ void CertifiedRays::find_points(const Update& update, const ByPair<kernels::Loca
         table_.hot(search.pair).has_points = table_.state(search.pair).points.count() > 0;
 }
 
-void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
-                               const SpeculativeVertices& speculative, RayBatch& batch) {
+// What only vertices need tell is not sought: of a pair in contact edges that hide little.
+void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
     searches_.clear();
-    for (WakeUp::Slice& slice : wake_up_.slices())
-        for (DueNear& due : slice.near) {
-            if (due.sought) continue;
+    for (const WakeUp::Slice& slice : wake_up_.slices())
+        for (const DueNear& due : slice.near) {
+            Slack& slack = table_.hot(due.pair);
             const bool in_contact = is_in_contact(contacts, due.pair);
-            const bool near = update.settings.is_speculative()
-                              && asks_speculative_edges(update.bodies[update.pairs[due.pair].first],
-                                                        update.bodies[update.pairs[due.pair].second],
-                                                        in_contact || !speculative.of(due.pair).empty());
-            const Slack& slack = table_.hot(due.pair);
-            if (due.edges || !(in_contact || slack.all) || (near && !slack.near))
-                seek_edges(update, due, in_contact, near);
+            if (!due.edges && (in_contact || slack.all)) continue;
+            const auto [first, second] = update.pairs[due.pair];
+            const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
+            WatchedPair& state = table_.state(due.pair);
+            const KeptNear before = state.edges;
+            slack.apart = false;
+            slack.edges = never;
+            slack.all = !in_contact || !asks_edges(a, b);
+            edges_.release(state);
+            if (!asks_edges(a, b) || (in_contact && !hides_more(a, b, least_hidden))) continue;
+            const bool come_near = !in_contact || hides_more(a, b, least_hidden_beside);
+            NearLists::Search& search = searches_.emplace_back(
+                search_of(due, before, due.moves && come_near, come_near ? double(slack.margin) : 0));
+            search.least = in_contact ? static_cast<float>(hidden_length(a, b)) : 0;
         }
     edges_.find(update, searches_, table_, batch);
-}
-
-// What only vertices need tell is not sought: short edges of a pair in contact; and without `near`, those that only
-// come near.
-void CertifiedRays::seek_edges(const Update& update, DueNear& due, bool in_contact, bool near) {
-    const auto [first, second] = update.pairs[due.pair];
-    const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-    WatchedPair& state = table_.state(due.pair);
-    Slack& slack = table_.hot(due.pair);
-    const KeptNear before = state.edges;
-    const bool asks = asks_edges(a, b);
-    due.sought = true;
-    slack.apart = false;
-    slack.edges = never;
-    slack.all = !in_contact || !asks;
-    slack.near = near || !asks || !update.settings.is_speculative();
-    edges_.release(state);
-    if (!asks || (in_contact && has_short_edges_alone(a, b))) return;
-    NearLists::Search& search =
-        searches_.emplace_back(search_of(due, before, near && due.moves, near ? double(slack.margin) : 0));
-    search.least = in_contact ? static_cast<float>(short_length(a, b)) : 0;
 }
 
 void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pairs/by_pair.h"
 #include "pairs/range_pool.h"
 #include "rays/block_search.h"
 #include "rays/near_lists.h"
 #include "rays/ray_batch.h"
 #include "rays/wake_up.h"
-#include "speculative/speculative_vertices.h"
 
 #include <raycontact/scene.h>
 
@@ -21,10 +21,9 @@ public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
     void cast(const Update& update, RayBatch& batch);
     /// Then, when the contacts of vertices are known, the near vertices, for speculative contacts.
-    void find_points(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch);
+    void find_points(const Update& update, RayBatch& batch);
     /// Then, when those of vertices are known, the near edges.
-    void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts,
-                    const SpeculativeVertices& speculative, RayBatch& batch);
+    void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch);
     void clear();
 
     /// Of the i-th pair of the step: its near edges, and what is known while they last (AskedPair).
@@ -47,7 +46,6 @@ private:
     };
 
     static NearLists::Search search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin);
-    void seek_edges(const Update& update, DueNear& due, bool in_contact, bool near);
     void close(WatchedPair& state);
     void list_slices();
     void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);

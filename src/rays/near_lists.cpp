@@ -38,15 +38,16 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Wat
     next_.resize(update.device, move ? pairs_.size() : 0);
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
+    const bool points = kept_ == &WatchedPair::points;
     update.executor.each(due.size(), 128, [&](std::uint32_t k) {
         for (std::uint32_t side = 0; side < 2; ++side) {
             const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].pair + side);
             place_source(source, target, pairs_.in_place()[2 * k + side]);
-            if (due[k].moves)
+            if (due[k].moves && (side == 0 || points))
                 place_source(source, target, relative_pose(target.next, source.next), next_.in_place()[2 * k + side]);
             else if (move)
                 next_.in_place()[2 * k + side] = pairs_.in_place()[2 * k + side];
-            margins_.in_place()[2 * k + side] = due[k].margin + due[k].speculative;
+            margins_.in_place()[2 * k + side] = due[k].margin + (side == 0 || points ? due[k].speculative : 0);
             ahead_.in_place()[2 * k + side] = due[k].ahead;
             least_.in_place()[2 * k + side] = due[k].least;
         }
@@ -60,9 +61,9 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Wat
     found_.set(rays_.found().values(), directed_, due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
         const auto [a, b] = update.pairs[due[k].pair];
-        const double clear =
-            std::min(rays_.clear(2 * k, due[k].ahead, update.bodies[b].shape->data().header.tolerance),
-                     rays_.clear(2 * k + 1, due[k].ahead, update.bodies[a].shape->data().header.tolerance));
+        const double clear = std::min(
+            {double(due[k].ahead), rays_.clear(2 * k, due[k].ahead, update.bodies[b].shape->data().header.tolerance),
+             rays_.clear(2 * k + 1, due[k].ahead, update.bodies[a].shape->data().header.tolerance)});
         table.hot(due[k].pair).*slack_ = edge_share * (double(due[k].margin) + clear);
         WatchedPair& pair = table.state(due[k].pair);
         release(pair);
@@ -79,7 +80,7 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Wat
 }
 
 std::uint64_t NearLists::bytes() const {
-    return pool_.in_use() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
+    return edges_.capacity() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
            + next_.size() * sizeof(kernels::DirectedPair)
            + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
 }

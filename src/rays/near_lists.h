@@ -17,7 +17,7 @@ public:
         std::uint32_t pair;  ///< its place
         float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
         float speculative;   ///< of what is needed: metres within which they have speculative contacts
-        float least;         ///< metres: edges that are shorter are left out
+        float least;         ///< metres: edges that hide less may be left out (docs/edges.md)
         bool moves;          ///< what they come near on their way to the next step is needed
     };
     NearLists(BlockSearch::Sources sources, KeptNear WatchedPair::*kept, double Slack::*slack)

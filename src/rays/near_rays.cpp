@@ -32,9 +32,8 @@ void NearRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     launch<KernelId::find_margins>(device, pairs.size(), pairs, next, reach.more, reach.ahead, arrays.headers, margins_,
                                    horizons_, half_way_);
     const Array<kernels::DirectedPair>& placed = next.size() > 0 ? half_way_ : pairs;
-    search_.find(update, placed, horizons_, totals, sum(RayBatch::edge_block_sum));
-    search_.count_edges(update, placed, next, margins_, reach.least, reach.ahead.size() > 0, totals,
-                        sum(RayBatch::edge_ray_sum), room);
+    search_.find(update, placed, horizons_, reach.least, totals, sum(RayBatch::edge_block_sum));
+    search_.count_edges(update, placed, next, margins_, reach.ahead, totals, sum(RayBatch::edge_ray_sum), room);
     search_.write_rays(update, totals, sum(RayBatch::edge_ray_sum), 0, rays_);
     const Count count = results_of(totals, sum(RayBatch::edge_ray_sum), room);
     launch<KernelId::cast_edges>(device, count, vertices, placed, next, margins_, arrays.headers, arrays.memory, rays_,

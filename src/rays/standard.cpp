@@ -36,7 +36,7 @@ void StandardRays::begin(const Update& update, RayBatch& batch) {
 void StandardRays::cast(const Update& update, RayBatch& batch) {
     const Array<kernels::DirectedPair>& pairs = pairs_.placed();
     const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
-    search_.find(update, pairs, {}, batch.totals, RayBatch::block_sum);
+    search_.find(update, pairs, {}, {}, batch.totals, RayBatch::block_sum);
     search_.count_rays(update, pairs, use_grid, batch.totals, RayBatch::ray_sum, batch.rays.size());
     search_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
     batch.count = results_of(batch.totals, RayBatch::ray_sum, batch.rays.size());

@@ -35,6 +35,29 @@ double tube_radius(double size, const ShapeData& target) {
     return std::min(size / 128, target.grain);
 }
 
+// Where the hulls are apart, nothing touches: no ray need be looked at until they may meet. Nothing of speculative
+// contacts is asked here, so that rays are the same with and without.
+bool rays_are_apart(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack) {
+    constexpr double wanted = 0.005; // of the size
+    const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a));
+    const double gap = state.normal.gap(a, b, needed + wanted * smaller_size(a, b), false);
+    if (!(gap > needed)) return false;
+    slack.metres = edge_share * (gap - needed);
+    return true;
+}
+
+// The same of what is near, now and, if the pair hurries, on its way.
+bool is_nothing_near(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack, bool hurries) {
+    const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin);
+    const double gap = state.normal_of_near.gap(a, b, needed, hurries);
+    if (!(gap > needed)) return false;
+    slack.edges = slack.points = edge_share * (gap - needed);
+    state.edges.counts = state.points.counts = {};
+    slack.has_points = false;
+    slack.apart = slack.all = true;
+    return true;
+}
+
 } // namespace
 
 // Decides for one pair, in double, what is due.
@@ -111,7 +134,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         slack.points -= bound.nearer;
         if (!(slack.metres > 0) || slack.casts) return true;
         const double way = way_of(i, slack);
-        return (edges && (!slack.near || is_due(slack.edges, way))) || (speculative && is_due(slack.points, way));
+        return (edges && is_due(slack.edges, way)) || (speculative && is_due(slack.points, way));
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
@@ -119,22 +142,23 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double size = smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
         WatchedPair& state = table.state(i);
         Slack& slack = table.hot(i);
-        const bool edges_alone = slack.metres > 0 && !slack.casts;
+        const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
         const bool may_hurry = !update.settings.displacement_threshold;
-        if (!edges_alone && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
+        if (!slack.casts && (slack.metres > 0 || rays_are_apart(a, b, state, slack))) {
+            // Nothing can touch.
+        } else if (may_hurry && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
-        } else if (!edges_alone) {
+        } else {
             wake_pair(update, table, i, speed, slice);
         }
         if (!edges && !speculative) return;
-        if (speculative)
-            slack.margin = static_cast<float>(
-                1.000001 * speculative_margin(update.settings, update.bodies[pair.first], update.bodies[pair.second]));
+        if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
         const double way = way_of(i, slack);
-        DueNear due{i, size, speed, speculative && is_due(slack.points, way), false, way > 0, false};
-        due.edges = edges && is_due(slack.edges, slack.near ? way : 0);
-        if (due.points || due.edges || !slack.all || !slack.near) slice.near.add() = due;
+        const DueNear due{
+            i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0};
+        if ((due.points || due.edges) && !slack.casts && is_nothing_near(a, b, state, slack, way > 0)) return;
+        if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);

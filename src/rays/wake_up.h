@@ -3,6 +3,7 @@
 
 #include "pairs/displacement.h"
 #include "pairs/pair_table.h"
+#include "pairs/separating_normal.h"
 #include "pairs/update.h"
 
 #include <array>
@@ -36,7 +37,8 @@ struct KeptNear {
 struct WatchedPair {
     Watched directions[2];
     KeptNear edges, points;
-    double speed = 0; ///< metres a step, smoothed; decides how far a list reaches
+    SeparatingNormal normal, normal_of_near; ///< of rays; of near edges and vertices
+    double speed = 0;                        ///< metres a step, smoothed; decides how far a list reaches
     PairPlace reference;
     std::uint32_t as_standard = 0; ///< steps for which it is still left to `standard`
 };
@@ -50,8 +52,7 @@ struct Slack {
     bool open = false;       ///< it has lists
     bool casts = false;      ///< it has rays, to be decided in every step
     bool apart = false;      ///< as AskedPair's, while its near edges last
-    bool all = false;        ///< its near edges have short ones, too (docs/edges.md)
-    bool near = false;       ///< ... and those within the margin
+    bool all = false;        ///< its near edges have those that hide little, too (docs/edges.md)
     bool has_points = false; ///< it has near vertices
 };
 
@@ -75,7 +76,6 @@ struct DueNear {
     double size, speed; ///< of the smaller body's box; metres a step
     bool points, edges; ///< they are due; edges: else they are sought only if some are missing
     bool moves;         ///< it hurries
-    bool sought;        ///< its edges have been
 };
 
 using WatchedPairs = PairTable<WatchedPair, Slack>;

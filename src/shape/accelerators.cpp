@@ -9,7 +9,7 @@ namespace raycontact {
 
 std::uint64_t Accelerators::bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return sizeof *this + bytes(caps) + bytes(outside_cells) + bytes(clearances);
+    return sizeof *this + bytes(caps) + bytes(outside_cells) + bytes(clearances) + supports.bytes();
 }
 
 std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, Executor& executor,
@@ -23,6 +23,7 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     if (stop.stop_requested()) return nullptr;
     build_clearance_grid(shape, *made, executor, stop);
     build_caps(shape, *made, executor, stop);
+    made->supports = Supports(shape, executor, stop);
     if (stop.stop_requested()) return nullptr;
     made->header.outside_cells = host_place(made->outside_cells);
     made->header.clearances = host_place(made->clearances);

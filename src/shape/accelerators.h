@@ -3,6 +3,7 @@
 
 #include "executor/executor.h"
 #include "shape/shape_data.h"
+#include "shape/supports.h"
 
 #include <atomic>
 #include <memory>
@@ -19,6 +20,7 @@ struct Accelerators {
     std::vector<kernels::uint> caps;          ///< of the triangle blocks, TRIANGLE_LANES each; empty: none
     std::vector<kernels::uint> outside_cells; ///< a bit for each cell of the outside grid
     std::vector<kernels::uint> clearances;    ///< a ball for each cell of the clearance grid
+    Supports supports;
 
     std::uint64_t bytes() const;
 };

@@ -19,6 +19,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 struct Source {
     Point3f place;
     uint name;
+    float hides = UNBOUNDED;
 };
 using Sources = std::span<Source>;
 
@@ -69,9 +70,23 @@ void order_by_place(Sources all, Executor& executor) {
     for_each_part(executor, parts, order_below);
 }
 
+// Where few edges are asked, those that hide much, these lie in blocks of their own. Parts of the shape's diagonal.
+void order(Sources all, const ShapeData& shape, Executor& executor) {
+    for (const double share : {0.01, 0.0025}) {
+        const auto most = [](const Source& s) { return std::pair(-s.hides, s.name); };
+        auto count = static_cast<std::size_t>(
+            std::ranges::count_if(all, [&](const Source& s) { return double(s.hides) > share * shape.diagonal; }));
+        count = std::min(all.size(), (count + lanes - 1) / lanes * lanes);
+        std::ranges::nth_element(all, all.begin() + std::ptrdiff_t(count), {}, most);
+        order_by_place(all.first(count), executor);
+        all = all.subspan(count);
+    }
+    order_by_place(all, executor);
+}
+
 // Empty (NaN) until something is added.
 struct Bounds {
-    float low[3] = {nan, nan, nan}, high[3] = {nan, nan, nan};
+    float low[3] = {nan, nan, nan}, high[3] = {nan, nan, nan}, hides = 0;
     void add(std::size_t k, float from, float to) { // fmin and fmax prefer a number to NaN
         low[k] = std::fmin(low[k], from);
         high[k] = std::fmax(high[k], to);
@@ -111,7 +126,7 @@ std::vector<Source> edges_of(const ShapeData& shape) {
     for (uint edge = 0; edge < 3 * shape.mesh.triangles.size(); ++edge) {
         if (!is_first(shape, edge)) continue;
         const auto [from, to] = ends_of(shape, edge);
-        sources.push_back({rounded(0.5 * (from + to)), edge});
+        sources.push_back({rounded(0.5 * (from + to)), edge, shape.hides[edge / 3][edge % 3]});
     }
     return sources;
 }
@@ -128,7 +143,7 @@ std::size_t blocks_of(std::size_t sources) {
 // reach: how far a source reaches from its place, in lengths of its direction.
 void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sources,
            Lane (*lane_of)(const ShapeData&, uint), float reach, Executor& executor) {
-    order_by_place(sources, executor);
+    order(sources, shape, executor);
 
     tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
@@ -148,6 +163,7 @@ void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sour
                 block.direction[k][lane] = direction[k];
                 bounds.add(k, place[k] - around, place[k] + around);
             }
+            if (!empty) bounds.hides = std::max(bounds.hides, own.hides);
             block.exit[lane] = more.exit;
             block.vertex[lane] = own.name;
         }
@@ -166,6 +182,8 @@ void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sour
         for (std::size_t i = 0; i < below.size(); ++i) {
             const std::size_t lane = i % lanes;
             if (lane == 0) shape.clusters.emplace_back();
+            shape.clusters.back().hides[lane] = below[i].hides;
+            here[i / lanes].hides = std::max(here[i / lanes].hides, below[i].hides);
             for (std::size_t k = 0; k < 3; ++k) {
                 const float low = below[i].low[k], high = below[i].high[k], centre = 0.5f * low + 0.5f * high;
                 shape.clusters.back().centre[k][lane] = centre;

@@ -30,13 +30,18 @@ struct ShapeData : TriangleTree {
     /// Per triangle a bit for each of its edges (0-1, 1-2, 2-0) that is sharp, or a border, and of which it is the
     /// lowest triangle.
     std::vector<std::uint8_t> sharp_edges;
+    /// Per triangle and edge of which it is the lowest triangle: how deep an overlap can be that the edge alone
+    /// crosses, metres (docs/edges.md).
+    std::vector<std::array<float, 3>> hides;
     std::vector<Vec3> hair_moves;               ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
     std::vector<std::uint32_t> vertex_triangle; ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
+    bool rays_end = true;  ///< every vertex's inward ray ends in the mesh
     double diagonal = 0;   ///< of the box, metres
     double radius = 0;
     double longest_edge = 0; ///< metres
+    double hides_most = 0;   ///< of `hides`, the most
     double grain = 0; ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
     double reach = 0; ///< largest distance of a vertex from centre, metres
 

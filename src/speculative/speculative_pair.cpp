@@ -16,6 +16,9 @@ namespace {
 constexpr double sideways = 1e-6, arc = 0.1;
 // Edges that are more parallel have no one point where they are nearest: vertices have.
 constexpr double least_sine = 1e-3;
+// Of a pair that goes farther than this in a step, in diagonals of the smaller body, only edges that hide much are
+// asked.
+constexpr double far = 0.2;
 // Edges touch, by PairEdges, from where they pass each other though both bodies are moved inward by a hair and shaken.
 // Until they are so many hairs deep, they are near.
 constexpr double hairs_until_touching = 2.2;
@@ -176,12 +179,6 @@ SpeculativePair::SpeculativePair(const PlacedBody& first, const PlacedBody& seco
       next(place_pair(a.next, b.next, 0)),
       ways(displacement_bounds(now, next, a.shape->data().reach, b.shape->data().reach)) {}
 
-bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told) {
-    if (!asks_edges(a, b)) return false;
-    if (!has_short_edges_alone(a, b)) return true;
-    return !told && !(std::ranges::max(SpeculativePair(a, b, 0).ways) > short_length(a, b));
-}
-
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
                                const std::array<std::span<const std::uint32_t>, 2>& touching,
                                std::vector<FeatureContact>& found) {
@@ -210,8 +207,10 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                             std::vector<FeatureContact>& found) {
     const Side side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
-    const bool long_alone = told || std::ranges::max(pair.ways) > short_length(pair.a, pair.b);
-    const double hair = hair_of(pair), least_length = long_alone ? short_edge * smaller_size(pair.a, pair.b) : 0;
+    const double size = smaller_size(pair.a, pair.b), hair = hair_of(pair);
+    const bool few = told || std::ranges::max(pair.ways) > far * size;
+    if (few && !hides_more(pair.a, pair.b, least_hidden_beside)) return;
+    const double hidden = few ? least_hidden_beside * size : -1;
     const std::size_t touching = found.size();
     const auto touches = [&](std::uint32_t edge, std::uint32_t other) {
         return std::any_of(found.begin(), found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {
@@ -222,8 +221,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
     const auto turned = [&](const Vec3& n) { return rotated(side.now.rotation, n); };
     by_source(near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
         const auto [start, stop] = ends_of(a, number);
-        if (!is_sharp(a, number) || !(length(a.point(stop) - a.point(start)) > least_length) || !is_convex(a, number))
-            return;
+        if (!is_sharp(a, number) || !(hidden_by(a, number) > hidden) || !is_convex(a, number)) return;
         Edge edge{{transform_point(side.now, a.point(start)), transform_point(side.now, a.point(stop))}, {}};
         if (side.moves)
             edge.ways = {transform_point(side.next, a.point(start)) - edge.ends[0],
@@ -237,7 +235,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                 const std::uint32_t other = 3 * one.face + k;
                 if (!is_sharp(b, other)) continue; // nor if another face is lower
                 const Vec3 q = b.corner(one.face, k), beside = b.corner(one.face, (k + 1) % 3) - q;
-                if (!box.touches(box_of(q, q + beside, 0)) || !(length(beside) > least_length)) continue;
+                if (!box.touches(box_of(q, q + beside, 0)) || !(hidden_by(b, other) > hidden)) continue;
                 const auto gap_along = [&](const Vec3& n, const std::array<double, 2>& at) {
                     return dot(n, edge.ends[0] + at[0] * along - (q + at[1] * beside));
                 };

@@ -23,17 +23,15 @@ struct SpeculativePair {
         ways; ///< how far a vertex of a, of b, may go in the other's frame until the next step, metres
 };
 
-/// Whether edges are asked; told: a vertex of the pair has a contact, of whatever kind. Of short edges neither bodies
-/// that vertices tell of are asked, nor those that go farther than a short edge is long.
-bool asks_speculative_edges(const PlacedBody& a, const PlacedBody& b, bool told);
-
 /// Adds those of vertices in any order. near: vertices and the faces that they may come near, each vertex's together.
 /// touching: the vertices of a, of b, in contact, sorted; they have no other.
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
                                const std::array<std::span<const std::uint32_t>, 2>& touching,
                                std::vector<FeatureContact>& found);
 
-/// Adds those of two edges in any order, but for those that `found` has already. told: as above. near: as NearEdges.
+/// Adds those of two edges in any order, but for those that `found` has already. near: as NearEdges. told: a vertex of
+/// the pair has a contact, of whatever kind: then, as of a pair that goes far in a step, only edges that hide much are
+/// asked (docs/edges.md).
 void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
                             std::vector<FeatureContact>& found);
 

@@ -282,6 +282,48 @@ TEST(exact_cases, crossed_rods_are_as_deep_as_they_overlap) {
         }
 }
 
+// A roof along x, its ridge at z = 0, cut finely across; beside it a pillar that ends at this height.
+Mesh roof_and_pillar(double segment, double pillar) {
+    const auto sections = 2 * static_cast<std::uint32_t>(0.5 / segment) + 2;
+    Mesh mesh;
+    mesh.name = "roof";
+    for (std::uint32_t i = 0; i < sections; ++i) {
+        const double x = (i - 0.5 * (sections - 1)) * segment;
+        mesh.vertices.insert(mesh.vertices.end(), {{x, -0.2, -0.2}, {x, 0.2, -0.2}, {x, 0, 0}});
+        for (std::uint32_t k = 0; k < 3 && i + 1 < sections; ++k) {
+            const std::uint32_t p = 3 * i + k, q = 3 * i + (k + 1) % 3;
+            mesh.triangles.insert(mesh.triangles.end(), {{p, q, q + 3}, {p, q + 3, p + 3}});
+        }
+    }
+    const std::uint32_t last = 3 * (sections - 1);
+    mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 1}, {last, last + 1, last + 2}});
+    const Mesh box = box_mesh({0.03, 0.03, 0.1});
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& v : box.vertices) mesh.vertices.push_back(v + Vec3{0.3, 0.32, pillar - 0.1});
+    for (const auto& [p, q, r] : box.triangles) mesh.triangles.push_back({first + p, first + q, first + r});
+    return mesh;
+}
+
+// Where vertices are in contact elsewhere, too: two ridges cross with no vertex of either in the other.
+TEST(exact_cases, ridges_that_cross_are_told_though_a_pillar_touches) {
+    Pose turned; // upside down, the ridge along y
+    turned.rotation = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    for (const double pillar : {-0.1, 0.01}) {
+        const auto roof = Shape::make(roof_and_pillar(0.05, pillar));
+        for (const double overlap : {0.013, 0.02}) {
+            turned.translation = {0, 0, -overlap};
+            double ridges = 0;
+            std::size_t vertices = 0;
+            for (const Contact& c : collide(*roof, {}, *roof, turned)) {
+                vertices += c.feature == Feature::vertex;
+                if (c.feature == Feature::edges && length(c.point) < 0.05) ridges = double(c.depth);
+            }
+            EXPECT_NEAR(ridges, overlap, 1e-3) << "pillar to " << pillar;
+            EXPECT_EQ(vertices > 0, pillar > 0);
+        }
+    }
+}
+
 // Concave edges of the tray lie in the cube along its whole side: no face of the cube is a way out for all of them.
 TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
     const auto tray = Shape::make(tray_mesh()), cube = box(0.3, 0.3, 0.3);

@@ -153,7 +153,7 @@ private:
 class Edges {
 public:
     Edges(const View& view, double margin, bool told)
-        : view_(view), margin_(margin), least_(told ? 0.2 * view.size() : 0) {}
+        : view_(view), margin_(margin), least_(told ? 0.1 * view.size() : -1) {}
 
     Expectation expect(const std::set<Key>& touching) const {
         Expectation found;
@@ -162,7 +162,7 @@ public:
         for (const Edge& e : own)
             for (const Edge& g : other) {
                 const Key key{e.number, g.number};
-                if (touching.contains(key) || !asked(e, view_.source.solid) || !asked(g, view_.target.solid)) continue;
+                if (touching.contains(key) || !asked(e) || !asked(g)) continue;
                 bool sure = std::abs(way - margin_) > 1e-7;
                 const auto one = ask(e, g, way > margin_, sure);
                 if (one && sure) found.sure[key] = *one;
@@ -172,9 +172,7 @@ public:
     }
 
 private:
-    bool asked(const Edge& e, const Solid& solid) const {
-        return e.sharp && !e.concave && length(solid.vertices[e.to] - solid.vertices[e.from]) > least_;
-    }
+    bool asked(const Edge& e) const { return e.sharp && !e.concave && e.hides > least_; }
 
     /// Of an edge at part t of the step.
     struct Segment {

@@ -159,7 +159,7 @@ public:
 
     std::map<Key, Found> contacts() {
         find_loops();
-        if (!bodies_[0]->contact.empty() || !bodies_[1]->contact.empty()) leave_out_short();
+        if (!bodies_[0]->contact.empty() || !bodies_[1]->contact.empty()) leave_out();
         cut_pieces();
         find_regions();
         std::map<Key, Found> all;
@@ -243,14 +243,16 @@ private:
         loops_.push_back(loop);
     }
 
-    // Loops that short edges alone cross.
-    void leave_out_short() {
+    // Loops that no edge crosses which hides much; or, beside a vertex in contact, very much.
+    void leave_out() {
         std::vector<Crossing> kept;
         for (const Loop& loop : loops_) {
-            const auto is_long = [&](std::size_t i) {
-                return length(bodies_[crossings_[i].side]->along(*crossings_[i].edge)) > 2e6 * hair_;
+            const auto counts = [&](std::size_t i) {
+                const Edge& e = *crossings_[i].edge;
+                const auto& contact = bodies_[crossings_[i].side]->contact;
+                return e.hides > (contact.contains(e.from) || contact.contains(e.to) ? 1e6 : 1e5) * hair_;
             };
-            if (!std::any_of(loop.crossings.begin(), loop.crossings.end(), is_long)) continue;
+            if (!std::any_of(loop.crossings.begin(), loop.crossings.end(), counts)) continue;
             for (const std::size_t i : loop.crossings) kept.push_back(crossings_[i]);
         }
         std::sort(kept.begin(), kept.end(),

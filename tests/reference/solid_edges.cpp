@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -40,6 +41,14 @@ std::vector<Edge> edges_of(const Solid& solid) {
             const Vec3 opposite = solid.vertices[solid.triangles[t][(c + 2) % 3]];
             edge.concave = dot(solid.face_normals[edge.faces[0]], opposite - solid.vertices[from]) > 0;
         }
+    for (Edge& edge : edges) {
+        const double half = length(solid.vertices[edge.to] - solid.vertices[edge.from]) / 2;
+        edge.hides = half;
+        if (edge.faces[1] == none) continue;
+        const Vec3 &n = solid.face_normals[edge.faces[0]], &m = solid.face_normals[edge.faces[1]];
+        const double turned = std::atan2(length(cross(n, m)), dot(n, m));
+        edge.hides = edge.concave ? 0 : half * std::min(1.0, std::tan(turned / 2));
+    }
     return edges;
 }
 

@@ -17,6 +17,7 @@ struct Edge {
     std::uint32_t faces[2] = {0, none}; ///< its lowest triangle, the other one; none at a border
     bool sharp = true;
     bool concave = false;
+    double hides = 0; ///< how deep an overlap can be that it alone crosses
 };
 
 /// In the order of their numbers.

@@ -71,8 +71,8 @@ TEST(NearClusters, IsNoSaferThanItsVertices) {
             kernels::ClusterBlock alone = from.clusters[tree.cluster_first[0] + block / VERTEX_LANES];
             for (kernels::uint lane = 0; lane < VERTEX_LANES; ++lane)
                 if (lane != block % VERTEX_LANES) alone.centre[0][lane] = NAN; // an empty lane
-            kernels::prototype::Search search{0,    &pair,     &tree,    &to.header, &alone, to.clearances.data(),
-                                              0.0f, UNBOUNDED, UNBOUNDED};
+            kernels::prototype::Search search{0,    &pair, &tree,     &to.header, &alone, to.clearances.data(),
+                                              0.0f, 0.0f,  UNBOUNDED, UNBOUNDED};
             ++blocks;
             if (kernels::prototype::near_lanes(&search, &alone) != 0) continue;
             ++asleep;
