@@ -155,7 +155,7 @@ KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
             // Those that come into the bounds later may be as near as these.
             gap[k] = bounds_gap(b, x, y, z) - (1.0005f * edges.length[k] + edges.away[k]);
             found[k] = -(int)inside;
-            asked[k] = -(int)((uint)(block->vertex[first + k] != NONE) & (uint)(gap[k] < far));
+            asked[k] = -(int)((uint)(block->vertex[first + k] != NONE) & (uint)(gap[k] < far) & (uint)(far > 0.0f));
         }
         const uint asks_far = pack_vertices(asked);
         if ((pack_vertices(found) | asks_far) == 0u) continue;

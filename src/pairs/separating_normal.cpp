@@ -20,17 +20,11 @@ Vec3 least_way(const Supports& source, const Supports& target, const Pose& place
     return transform_point(place, nearest) - target.point(normal);
 }
 
-// Whether a ray of the source meets no target that is beyond its hull: the ray ends in the source, or the first face
-// that it meets is met from outside.
-bool tells_of_rays(const PlacedBody& source, const Accelerators& target) {
-    return target.header.outward != 0 || source.shape->data().rays_end;
-}
-
 } // namespace
 
 double SeparatingNormal::gap(const PlacedBody& a, const PlacedBody& b, double enough, bool on_way) {
     const Accelerators *more_a = a.shape->accelerators(), *more_b = b.shape->accelerators();
-    if (more_a == nullptr || more_b == nullptr || !tells_of_rays(a, *more_b) || !tells_of_rays(b, *more_a)) return 0;
+    if (more_a == nullptr || more_b == nullptr) return 0;
     const Supports &first = more_a->supports, &second = more_b->supports;
     const PairPlace now = place_pair(a.centred, b.centred, 0);
     const PairPlace next = on_way ? place_pair(a.next, b.next, 0) : now;
@@ -38,11 +32,11 @@ double SeparatingNormal::gap(const PlacedBody& a, const PlacedBody& b, double en
         const Vec3 here = least_way(first, second, now.pose, normal);
         if (!on_way) return here;
         const Vec3 then = least_way(first, second, next.pose, normal);
-        return dot(then, normal) < dot(here, normal) ? then : here;
+        return dot(then, normal) >= dot(here, normal) ? here : then;
     };
     // The frames of the two may differ, since rotations are rigid only nearly.
     const auto back = [&](const Vec3& normal) {
-        const Vec3 turned = -1.0 * rotated_back(now.pose.rotation, normal);
+        const Vec3 turned = unit(-1.0 * rotated_back(now.pose.rotation, normal));
         const double here = dot(least_way(second, first, now.pose_of_second(), turned), turned);
         return on_way ? std::min(here, dot(least_way(second, first, next.pose_of_second(), turned), turned)) : here;
     };

@@ -12,7 +12,8 @@ namespace raycontact {
 /// touch, and no contact is made of hulls.
 class SeparatingNormal {
 public:
-    /// Metres by which the hulls are apart along it, at least; 0 or less where that is not known. Looks for a better
+    /// Metres by which the hulls are apart along it, at least; 0 or less where that is not known, as until both shapes
+    /// have accelerators. Looks for a better
     /// direction where it is no more than `enough`. on_way: and stay so on their straight ways to the next step, each
     /// in the other's frame.
     double gap(const PlacedBody& a, const PlacedBody& b, double enough, bool on_way);

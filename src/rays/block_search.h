@@ -34,7 +34,8 @@ public:
                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Counts the edges, or points, of the blocks that come within margins[p] metres of the bounds and, for all that
     /// the grid knows, of a face. totals[at]: their number, of which `room` can be written. next: where the pairs will
-    /// be at the next step; if empty they stay. clears: clear() will be asked.
+    /// be at the next step; if empty they stay. ahead: of which pairs clear() will be asked, and up to how far; may be
+    /// empty.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
                      const Array<kernels::DirectedPair>& next, const Array<float>& margins, const Array<float>& ahead,
                      const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);

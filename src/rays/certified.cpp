@@ -4,9 +4,7 @@
 #include "device/launch.h"
 #include "give_back.h"
 #include "pairs/near_edges.h"
-#include "pairs/rounding.h"
 #include "shape/shape_data.h"
-#include "speculative/speculative_pair.h"
 
 #include <algorithm>
 #include <utility>

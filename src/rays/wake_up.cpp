@@ -35,10 +35,17 @@ double tube_radius(double size, const ShapeData& target) {
     return std::min(size / 128, target.grain);
 }
 
+// Whether a ray of the source meets no target beyond its hull: it ends in the source, or the first face that it meets
+// is met from outside.
+bool ends_before(const Update& update, const PlacedBody& source, const PlacedBody& target) {
+    return source.shape->data().rays_end || update.shapes.headers()[target.shape_index].outward != 0;
+}
+
 // Where the hulls are apart, nothing touches: no ray need be looked at until they may meet. Nothing of speculative
-// contacts is asked here, so that rays are the same with and without.
-bool rays_are_apart(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack) {
+// contacts is asked here, so that rays are the same with and without. False: they must be looked at.
+bool let_rays_sleep(const Update& update, const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack) {
     constexpr double wanted = 0.005; // of the size
+    if (!ends_before(update, a, b) || !ends_before(update, b, a)) return false;
     const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a));
     const double gap = state.normal.gap(a, b, needed + wanted * smaller_size(a, b), false);
     if (!(gap > needed)) return false;
@@ -47,7 +54,7 @@ bool rays_are_apart(const PlacedBody& a, const PlacedBody& b, WatchedPair& state
 }
 
 // The same of what is near, now and, if the pair hurries, on its way.
-bool is_nothing_near(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack, bool hurries) {
+bool let_near_sleep(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack, bool hurries) {
     const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin);
     const double gap = state.normal_of_near.gap(a, b, needed, hurries);
     if (!(gap > needed)) return false;
@@ -144,12 +151,11 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         Slack& slack = table.hot(i);
         const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
         const bool may_hurry = !update.settings.displacement_threshold;
-        if (!slack.casts && (slack.metres > 0 || rays_are_apart(a, b, state, slack))) {
-            // Nothing can touch.
-        } else if (may_hurry && (speed > fastest * size || state.as_standard > 0)) {
+        const bool rays_sleep = !slack.casts && (slack.metres > 0 || let_rays_sleep(update, a, b, state, slack));
+        if (!rays_sleep && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
-        } else {
+        } else if (!rays_sleep) {
             wake_pair(update, table, i, speed, slice);
         }
         if (!edges && !speculative) return;
@@ -157,7 +163,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double way = way_of(i, slack);
         const DueNear due{
             i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0};
-        if ((due.points || due.edges) && !slack.casts && is_nothing_near(a, b, state, slack, way > 0)) return;
+        if ((due.points || due.edges) && !slack.casts && let_near_sleep(a, b, state, slack, way > 0)) return;
         if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };
     table.sift(

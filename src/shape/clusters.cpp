@@ -29,8 +29,8 @@ struct Lane {
     float exit;
 };
 
-// Splits along the longest side at a multiple of the largest power of sixteen that fits, so that every level of the
-// tree groups neighbours. Returns how many come first. In place: a large mesh has few bytes to spare.
+// Splits along the longest side at a multiple of the largest power of sixteen that fits, so that levels of the tree
+// group neighbours. Returns how many come first. In place: a large mesh has few bytes to spare.
 std::size_t split_by_place(Sources own) {
     Point3f low = own[0].place, high = low;
     for (const Source& source : own) {

@@ -4,6 +4,7 @@
 #include "executor/executor.h"
 #include "shape/shape_data.h"
 
+#include <cstdint>
 #include <stop_token>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace raycontact {
 /// function; Rockafellar 1970), so between three directions of the grid what it is there, weighted, is a bound.
 class Supports {
 public:
-    /// Empty until build(): it knows nothing.
+    /// Empty: it knows nothing, and must not be asked.
     Supports() = default;
     /// Empty if it was asked to stop.
     Supports(const ShapeData& shape, Executor& executor, const std::stop_token& stop);

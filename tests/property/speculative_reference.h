@@ -153,7 +153,7 @@ private:
 class Edges {
 public:
     Edges(const View& view, double margin, bool told)
-        : view_(view), margin_(margin), least_(told ? 0.1 * view.size() : -1) {}
+        : view_(view), margin_(margin), least_(told || view.way() > 0.2 * view.size() ? 0.1 * view.size() : -1) {}
 
     Expectation expect(const std::set<Key>& touching) const {
         Expectation found;
