@@ -53,8 +53,16 @@ bool let_rays_sleep(const Update& update, const PlacedBody& a, const PlacedBody&
     return true;
 }
 
+// Whether nothing beyond its hull is inside a body: of a closed mesh that is inside out, say, all may be.
+bool is_inside_its_hull(const Update& update, const PlacedBody& body) {
+    const kernels::ShapeHeader& shape = update.shapes.headers()[body.shape_index];
+    return shape.closed == 0 || shape.outward != 0;
+}
+
 // The same of what is near, now and, if the pair hurries, on its way.
-bool let_near_sleep(const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack, bool hurries) {
+bool let_near_sleep(const Update& update, const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack,
+                    bool hurries) {
+    if (!is_inside_its_hull(update, a) || !is_inside_its_hull(update, b)) return false;
     const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin);
     const double gap = state.normal_of_near.gap(a, b, needed, hurries);
     if (!(gap > needed)) return false;
@@ -163,7 +171,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const double way = way_of(i, slack);
         const DueNear due{
             i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0};
-        if ((due.points || due.edges) && !slack.casts && let_near_sleep(a, b, state, slack, way > 0)) return;
+        if ((due.points || due.edges) && !slack.casts && let_near_sleep(update, a, b, state, slack, way > 0)) return;
         if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };
     table.sift(
