@@ -125,10 +125,10 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
     }
 }
 
-// The edges of each block that come into the bounds, but for those that the clearance grid knows to
-// be far from the surface: it does not enter the balls around their halves. vertices: 1: of vertices, as points. next:
-// where the pairs will be; null: they stay. Of pairs with `ahead` (null: none) it tells, too, how far the others stay
-// away, but of nothing that is farther than that.
+// The edges of each block that come into the bounds, but for those that the clearance grid knows to be far from the
+// surface: it does not enter the balls around their halves. vertices: 1: of vertices, as points. next: where the pairs
+// will be; null: they stay. Of pairs with `ahead` (null: none) it tells, too, how far the others stay away, but of
+// nothing that is farther than that.
 KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
                         READS(float) margins, READS(float) ahead, READS(ShapeHeader) shapes, READS(ulong) memory,
                         WRITES(PairBlock) found_blocks, WRITES(uint) counts) {

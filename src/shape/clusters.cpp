@@ -70,7 +70,8 @@ void order_by_place(Sources all, Executor& executor) {
     for_each_part(executor, parts, order_below);
 }
 
-// Where few edges are asked, those that hide much, these lie in blocks of their own. Parts of the shape's diagonal.
+// Where few edges are asked, those that hide much (near_edges.h, least_hidden), these lie in blocks of their own; the
+// second group is for pairs whose other body is four times smaller. Parts of the shape's diagonal.
 void order(Sources all, const ShapeData& shape, Executor& executor) {
     for (const double share : {0.01, 0.0025}) {
         const auto most = [](const Source& s) { return std::pair(-s.hides, s.name); };

@@ -203,9 +203,9 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
-           + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.hair_moves) + bytes(d.component_vertices)
-           + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks) + bytes(d.faces) + bytes(d.nodes)
-           + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
+           + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.hair_moves)
+           + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks)
+           + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
            + (is_prepared() ? accelerators()->bytes() : 0);
 }
 

@@ -19,10 +19,9 @@ public:
     Supports() = default;
     /// Empty if it was asked to stop.
     Supports(const ShapeData& shape, Executor& executor, const std::stop_token& stop);
-    bool empty() const { return reaches_.empty(); }
 
-    /// No vertex is farther along `direction` than `point` is; the point need not be of the shape. Frame of the shape's
-    /// centre, metres; the direction not zero.
+    /// Of a table that is not empty. No vertex is farther along `direction` than `point` is; the point need not be of
+    /// the shape. Frame of the shape's centre, metres; the direction not zero.
     Vec3 point(const Vec3& direction) const;
 
     std::uint64_t bytes() const { return reaches_.capacity() * sizeof(float); }
