@@ -51,14 +51,14 @@ Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last)
         rc::Settings settings;
         settings.features = rc::Features::vertices;
         settings.method = method;
-        settings.devices = "cpu/0";
+        settings.execution.devices = "cpu/0";
         rc::recording::Follower follower(reader, settings);
         std::vector<rc::Pose> poses;
         std::vector<rc::Pair> pairs;
         for (std::uint32_t i = 0; i < std::min(last, reader.steps()); ++i) {
             reader.read_step(i, poses, pairs);
             follower.place(i, poses);
-            const auto contacts = follower.scene().step(pairs);
+            const auto contacts = follower.scene().find_contacts(pairs);
             const rc::StepStats& stats = follower.scene().stats();
             if (i < first) continue;
             if (method == rc::Method::iterative) {
@@ -70,11 +70,9 @@ Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last)
             step.contacts.assign(contacts.begin(), contacts.end());
             std::size_t next = 0;
             for (const auto& [a, b] : follower.scene().pairs()) {
-                const rc::SlotPair pair(rc::slot_of(a), rc::slot_of(b));
+                const rc::SlotPair pair(a.slot, b.slot);
                 const std::size_t begin = next;
-                while (next < contacts.size() && contacts[next].body_a == pair.first
-                       && contacts[next].body_b == pair.second)
-                    ++next;
+                while (next < contacts.size() && contacts[next].body_a == a && contacts[next].body_b == b) ++next;
                 step.pairs.push_back(pair);
                 step.counts.push_back(static_cast<std::uint32_t>(next - begin));
             }
@@ -92,8 +90,8 @@ Step copied(const Step& step, std::uint32_t copies, rc::BodySlot slots) {
         for (const auto& [a, b] : step.pairs) all.pairs.emplace_back(a + shift, b + shift);
         all.counts.insert(all.counts.end(), step.counts.begin(), step.counts.end());
         for (rc::Contact contact : step.contacts) {
-            contact.body_a += shift;
-            contact.body_b += shift;
+            contact.body_a.slot += shift;
+            contact.body_b.slot += shift;
             all.contacts.push_back(contact);
         }
     }

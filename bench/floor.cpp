@@ -63,7 +63,7 @@ struct Times {
 void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide, Times& times) {
     btDefaultCollisionConfiguration configuration;
     rc::Settings settings;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     rc::bullet::CollisionDispatcher dispatcher(&configuration, settings, {},
                                                ground == Ground::bullets_box ? rc::bullet::ConvexShapes::bullet
                                                                              : rc::bullet::ConvexShapes::ours);

@@ -93,7 +93,7 @@ public:
         : executor_(executor), device_(rc::cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
           pairs_(pairs) {
         store_.add(shape);
-        settings_.skip_outside = false; // every ray of the rule
+        settings_.paper.skip_outside = false; // every ray of the rule
         standard_.begin(update(), batch_);
         for (;;) {
             batch_.totals.read(device_, batch_.sums);
@@ -123,7 +123,7 @@ public:
 
 private:
     double run(rc::Caster caster) {
-        settings_.caster = caster;
+        settings_.paper.caster = caster;
         device_.cast_ms = 0;
         return milliseconds([&] { standard_.cast(update(), batch_); });
     }

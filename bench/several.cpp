@@ -33,7 +33,7 @@ Times replay(const std::string& file, const rc::Settings& settings) {
     double pairs = 0;
     for (const rc::recording::ReplayStep& step : result.steps) {
         double busy = 0, ms = 0;
-        for (const rc::DeviceWork& work : step.work) {
+        for (const rc::DeviceWork& work : step.details.work) {
             busy = std::max(busy, work.busy_ms);
             ms = std::max(ms, work.ms);
         }
@@ -41,8 +41,8 @@ Times replay(const std::string& file, const rc::Settings& settings) {
         times.part += ms;
         times.narrow += step.narrow_ms;
         pairs += double(step.pairs);
-        times.moved += double(step.pairs_moved);
-        times.bytes += double(step.bytes_moved);
+        times.moved += double(step.details.pairs_moved);
+        times.bytes += double(step.details.bytes_moved);
     }
     times.moved = 1000 * times.moved / std::max(1.0, pairs);
     times.bytes /= 1000 * double(result.steps.size());
@@ -59,9 +59,9 @@ void compare(const std::string& file, const std::string& devices, rc::Method met
     rc::Settings alone, shared;
     alone.features = shared.features = rc::Features::vertices;
     alone.method = shared.method = method;
-    shared.schedule = schedule;
-    shared.devices = devices;
-    alone.devices = devices.substr(0, devices.find(','));
+    shared.execution.schedule = schedule;
+    shared.execution.devices = devices;
+    alone.execution.devices = devices.substr(0, devices.find(','));
     std::vector<double> device, part, narrow, one_ms, all_ms;
     Times all;
     for (int i = 0; i <= runs; ++i) { // the first is the warm-up

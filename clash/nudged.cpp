@@ -40,7 +40,7 @@ std::vector<std::vector<Contact>> contacts_when_nudged(Scene& scene, std::span<c
             pose.translation = pose.translation + nudge_of(pairs[i]) * way;
             list.emplace_back(pairs[i].body_a, scene.add(b.shape, pose)); // a later slot: normals still run from a to b
         }
-        scene.step(list);
+        scene.find_contacts(list);
         std::vector<std::size_t> deep;
         for (std::size_t k = 0; k < left.size(); ++k) {
             const ShallowPair& pair = pairs[left[k]];

@@ -18,7 +18,7 @@ constexpr double noise = 1e-6, shallow = 2e-3;
 struct ShallowPair {
     const Part* a = nullptr;
     const Part* b = nullptr;
-    BodyId body_a = 0;  ///< of a in the scene, in its place
+    BodyId body_a;      ///< of a in the scene, in its place
     double depth = 0.0; ///< as they are placed
 };
 

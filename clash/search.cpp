@@ -24,8 +24,8 @@ Clash clash_of(const PartPair& pair, std::span<const Contact> contacts) {
     for (const Contact& contact : contacts) {
         if (double(contact.depth) <= *clash.depth) continue;
         clash.depth = double(contact.depth);
-        clash.point = contact.point;
-        clash.normal = {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])};
+        clash.point = contact.point();
+        clash.normal = contact.normal;
     }
     return clash;
 }
@@ -110,8 +110,8 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
                                 const SearchOptions& options) {
     Settings settings;
     settings.method = Method::standard;
-    settings.devices = "cpu";
-    settings.threads = options.threads;
+    settings.execution.devices = "cpu";
+    settings.execution.threads = options.threads;
     Scene scene(settings);
     std::unordered_map<std::size_t, BodyId> bodies;
     std::vector<PartPair> asked;
@@ -132,7 +132,7 @@ std::vector<Clash> find_clashes(const std::vector<Part>& parts, const std::vecto
         std::vector<Pair> list;
         list.reserve(some.size());
         for (const auto& [a, b] : some) list.emplace_back(bodies.at(a), bodies.at(b));
-        scene.step(list);
+        scene.find_contacts(list);
         std::vector<Answer> answers(some.size());
         executor.run(static_cast<std::uint32_t>(some.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
             for (std::uint32_t i = begin; i < end && !options.stop(); ++i)

@@ -82,7 +82,7 @@ void bench_device(DeviceCommand command) {
     DeviceOptions& options = command.options;
     Settings settings;
     settings.method = Method::standard;
-    settings.devices = command.devices;
+    settings.execution.devices = command.devices;
     options.devices = chosen_devices(settings);
     if (!command.methods.empty()) options.methods.clear();
     for (const std::string& word : command.methods) options.methods.push_back(method_from(word));

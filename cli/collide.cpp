@@ -74,28 +74,28 @@ Json to_json(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-const char* name_of(Feature feature) {
+const char* name_of(FeatureKind kind) {
     constexpr const char* names[] = {"vertex", "edges", "inside"};
-    return names[static_cast<std::size_t>(feature)];
+    return names[static_cast<std::size_t>(kind)];
 }
 
 Json to_json(const Contact& contact) {
-    Json json{{"feature", name_of(contact.feature)},
-              {"point", to_json(contact.point)},
-              {"point_a", to_json(point_on_a(contact))},
-              {"point_b", to_json(point_on_b(contact))},
-              {"normal", contact.normal},
+    Json json{{"feature", name_of(contact.feature.kind)},
+              {"point", to_json(contact.point())},
+              {"point_a", to_json(contact.point_a)},
+              {"point_b", to_json(contact.point_b)},
+              {"normal", {contact.normal.x, contact.normal.y, contact.normal.z}},
               {"depth", contact.depth},
               {"ray_length", contact.ray_length},
               {"weight", contact.weight},
-              {"key", contact_key(contact)}};
-    if (contact.feature == Feature::edges) {
-        json["edge_a"] = contact.edge_a();
-        json["edge_b"] = contact.edge_b();
+              {"key", fmt::format("{:016x}", contact.key())}};
+    if (contact.feature.kind == FeatureKind::edges) {
+        json["edge_a"] = contact.feature.index_a;
+        json["edge_b"] = contact.feature.index_b;
     } else {
-        json["vertex_body"] = contact.vertex_body == VertexBody::a ? "a" : "b";
-        json["vertex"] = contact.vertex;
-        json["triangle"] = contact.triangle;
+        json["vertex_body"] = contact.feature.source == Side::a ? "a" : "b";
+        json["vertex"] = contact.feature.source_index();
+        json["triangle"] = contact.feature.other_index();
     }
     return json;
 }
@@ -130,9 +130,10 @@ void print_table(std::size_t index, const QueryPair& pair, bool intersecting, st
     for (const Contact& c : contacts) {
         std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12.6g} {:>12.6g}{}  {:>12.6g} {:>12.6g} {:>12.6g}  "
                                  "{:>9.6f} {:>9.6f} {:>9.6f}\n",
-                                 c.vertex_body == VertexBody::a ? "a" : "b", name_of(c.feature), c.vertex, c.triangle,
-                                 c.depth, c.ray_length, weight(fmt::format("{:.6g}", c.weight)), c.point.x, c.point.y,
-                                 c.point.z, c.normal[0], c.normal[1], c.normal[2]);
+                                 c.feature.source == Side::a ? "a" : "b", name_of(c.feature.kind),
+                                 c.feature.source_index(), c.feature.other_index(), c.depth, c.ray_length,
+                                 weight(fmt::format("{:.6g}", c.weight)), c.point().x, c.point().y, c.point().z,
+                                 c.normal.x, c.normal.y, c.normal.z);
     }
 }
 
@@ -148,11 +149,11 @@ StepStats collide_batch(const Settings& settings, std::span<const QueryPair> pai
         const BodyId b = scene.add(shapes.get(pair[1]), pair[1].pose);
         list.emplace_back(a, b);
     }
-    const std::span<const Contact> contacts = scene.step(list);
+    const std::span<const Contact> contacts = scene.find_contacts(list);
     std::size_t begin = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         std::size_t end = begin;
-        while (end < contacts.size() && contacts[end].body_a == slot_of(list[i].first)) ++end;
+        while (end < contacts.size() && contacts[end].body_a == list[i].first) ++end;
         const auto own = contacts.subspan(begin, end - begin);
         const auto [a, b] = list[i];
         // A contact shows that they intersect, unless neither has an inside.
@@ -206,7 +207,7 @@ std::vector<QueryPair> query_of(const CollideCommand& options) {
 void collide(const CollideCommand& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
-    ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.settings.threads);
+    ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.settings.execution.threads);
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }

@@ -64,24 +64,25 @@ void add_word(CLI::App& command, const std::string& option, const std::string& h
 
 /// One setting, judged at once as if it stood alone: a value that no other could mend names its own option.
 template <class Value, class Read>
-void add_setting(CLI::App& command, raycontact::Settings& settings, Value raycontact::Settings::*member,
+void add_setting(CLI::App& command, raycontact::PaperOptions& options, Value raycontact::PaperOptions::*member,
                  const std::string& option, const std::string& help, const std::string& shown,
                  const std::string& otherwise, Read read) {
-    add_word(command, option, help, shown, otherwise, [&settings, member, read](const std::string& word) {
+    add_word(command, option, help, shown, otherwise, [&options, member, read](const std::string& word) {
         raycontact::Settings alone;
-        alone.*member = read(word);
+        alone.paper.*member = read(word);
         check_common_options(alone);
-        settings.*member = alone.*member;
+        options.*member = alone.paper.*member;
     });
 }
 
-void add_length(CLI::App& command, raycontact::Settings& settings, std::optional<double> raycontact::Settings::*member,
-                const std::string& option, const std::string& help) {
+void add_length(CLI::App& command, raycontact::PaperOptions& options,
+                std::optional<double> raycontact::PaperOptions::*member, const std::string& option,
+                const std::string& help) {
     const auto read = [](const std::string& word) -> std::optional<double> {
         if (word == "auto") return std::nullopt;
         return read_real(word, "a length: give metres, such as 0.01, or auto");
     };
-    add_setting(command, settings, member, option, help, "METRES|auto", "auto", read);
+    add_setting(command, options, member, option, help, "METRES|auto", "auto", read);
 }
 
 } // namespace
@@ -96,8 +97,8 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
              "WORD", std::string(to_string(settings.method)),
              [&](const std::string& word) { settings.method = method_from(word); });
     add_word(command, "--caster", "how a ray meets a mesh: basic (every triangle) or bvh; same bits from both", "WORD",
-             std::string(to_string(settings.caster)),
-             [&](const std::string& word) { settings.caster = caster_from(word); });
+             std::string(to_string(settings.paper.caster)),
+             [&](const std::string& word) { settings.paper.caster = caster_from(word); });
     add_word(
         command, "--direction",
         "what normal and depth are made of: ray, weighted (as ray, and each contact has its vertex's area in m^2 as "
@@ -109,26 +110,26 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
              "meshes intersect unnoticed)",
              "WORD", std::string(to_string(settings.features)),
              [&](const std::string& word) { settings.features = features_from(word); });
-    add_length(command, settings, &Settings::displacement_threshold, "--displacement-threshold",
+    add_length(command, settings.paper, &PaperOptions::displacement_threshold, "--displacement-threshold",
                "metres a pair may move before it is looked at in full again; auto: chosen for each pair");
-    add_setting(command, settings, &Settings::confidence, "--confidence",
+    add_setting(command, settings.paper, &PaperOptions::confidence, "--confidence",
                 "predictive: how far ahead a vertex is followed, in displacement thresholds, at least 1", "C",
-                fmt::format("{:g}", settings.confidence), [](const std::string& word) {
+                fmt::format("{:g}", settings.paper.confidence), [](const std::string& word) {
                     return read_real(word, "a number: give displacement thresholds, such as 2");
                 });
-    add_length(command, settings, &Settings::culling_distance, "--culling-distance",
+    add_length(command, settings.paper, &PaperOptions::culling_distance, "--culling-distance",
                "predictive: the same in metres; auto: confidence x displacement threshold");
-    add_length(command, settings, &Settings::distance_extension, "--distance-extension",
+    add_length(command, settings.paper, &PaperOptions::distance_extension, "--distance-extension",
                "predictive: metres by which the bounds are widened whose vertices are looked at, at least the "
                "displacement threshold; auto: the culling distance");
-    add_setting(command, settings, &Settings::max_iterations, "--max-iterations",
+    add_setting(command, settings.paper, &PaperOptions::max_iterations, "--max-iterations",
                 "iterative, predictive: triangles a ray may visit when it is followed, 1 to 4096", "N",
-                std::to_string(settings.max_iterations), [](const std::string& word) {
+                std::to_string(settings.paper.max_iterations), [](const std::string& word) {
                     const std::optional<std::uint32_t> number = read_number<std::uint32_t>(word);
                     if (!number) throw InputError("\"" + word + "\" is not a number of triangles: give 1 to 4096");
                     return *number;
                 });
-    command.add_flag("--walk-casts,!--no-walk-casts", settings.cast_lost_walks,
+    command.add_flag("--walk-casts,!--no-walk-casts", settings.paper.cast_lost_walks,
                      "predictive: cast a ray in full (the default) or give it up where following it ends "
                      "nowhere");
     add_number(command, "--max-contacts-per-pair", settings.max_contacts_per_pair,
@@ -138,21 +139,21 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     add_word(command, "--devices",
              "auto, all (every GPU), or a list of devices as `raycontact devices` names them, which share the pairs; "
              "cpu/k and opencl:i/k are one core alone",
-             "LIST", settings.devices, [&](const std::string& word) {
+             "LIST", settings.execution.devices, [&](const std::string& word) {
                  Settings alone;
-                 alone.devices = word;
+                 alone.execution.devices = word;
                  chosen_devices(alone); // refuses a faulty list
-                 settings.devices = word;
+                 settings.execution.devices = word;
              });
     add_word(command, "--schedule",
              "with several devices: balanced (pairs move where one has too much to do), sticky (a pair stays where it "
              "came first), counted (balanced by counts alone, without a clock)",
-             "WORD", std::string(to_string(settings.schedule)),
-             [&](const std::string& word) { settings.schedule = schedule_from(word); });
-    command.add_flag("--inexact", settings.inexact,
+             "WORD", std::string(to_string(settings.execution.schedule)),
+             [&](const std::string& word) { settings.execution.schedule = schedule_from(word); });
+    command.add_flag("--inexact", settings.execution.inexact,
                      "also use a device that rounds otherwise, whose contacts may differ from all others'");
-    add_number(command, "--threads", settings.threads, "threads of the host, 0: one per core; changes no result", 0u,
-               1024u);
+    add_number(command, "--threads", settings.execution.threads,
+               "threads of the host, 0: one per core; changes no result", 0u, 1024u);
 }
 
 void add_speculative_option(CLI::App& command, raycontact::Settings& settings) {
@@ -184,20 +185,24 @@ raycontact::Settings recorded_unless_given(const CLI::App& command, const raycon
     const auto keep = [&](const char* option, auto member) {
         if (command.count(option) == 0) settings.*member = recorded.*member;
     };
+    const auto keep_paper = [&](const char* option, auto member) {
+        if (command.count(option) == 0) settings.paper.*member = recorded.paper.*member;
+    };
+    using raycontact::PaperOptions;
     using raycontact::Settings;
     keep("--method", &Settings::method);
-    keep("--caster", &Settings::caster);
+    keep_paper("--caster", &PaperOptions::caster);
     keep("--direction", &Settings::direction);
     keep("--features", &Settings::features);
-    keep("--displacement-threshold", &Settings::displacement_threshold);
-    keep("--confidence", &Settings::confidence);
-    keep("--culling-distance", &Settings::culling_distance);
-    keep("--distance-extension", &Settings::distance_extension);
-    keep("--max-iterations", &Settings::max_iterations);
-    keep("--walk-casts", &Settings::cast_lost_walks);
+    keep_paper("--displacement-threshold", &PaperOptions::displacement_threshold);
+    keep_paper("--confidence", &PaperOptions::confidence);
+    keep_paper("--culling-distance", &PaperOptions::culling_distance);
+    keep_paper("--distance-extension", &PaperOptions::distance_extension);
+    keep_paper("--max-iterations", &PaperOptions::max_iterations);
+    keep_paper("--walk-casts", &PaperOptions::cast_lost_walks);
     keep("--max-contacts-per-pair", &Settings::max_contacts_per_pair);
     keep("--max-contacts", &Settings::max_contacts);
-    settings.skip_outside = recorded.skip_outside; // no option changes it
+    settings.paper.skip_outside = recorded.paper.skip_outside; // no option changes it
     check_common_options(settings);
     return settings;
 }

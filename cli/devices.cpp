@@ -44,7 +44,7 @@ void print_table(const std::vector<raycontact::DeviceInfo>& devices) {
 
 std::string chosen(const char* devices, raycontact::Method method) {
     raycontact::Settings settings;
-    settings.devices = devices;
+    settings.execution.devices = devices;
     settings.method = method;
     return fmt::format("{}", fmt::join(raycontact::chosen_devices(settings), ","));
 }

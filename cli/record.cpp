@@ -39,7 +39,7 @@ void RunRecorder::give_up(const std::string& why) {
 void RunRecorder::step() {
     if (!state_) return;
     try {
-        state_->recorder.step();
+        state_->recorder.record();
     } catch (const std::runtime_error& error) {
         give_up(error.what());
         std::cerr << "the run goes on without its recording: " << error_ << '\n';

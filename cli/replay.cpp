@@ -57,11 +57,11 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"step_ms", median_and_p95(replay.steps, [](const recording::ReplayStep& r) { return r.step_ms; })},
                 {"narrow_ms", median_and_p95(replay.steps, [](const recording::ReplayStep& r) { return r.narrow_ms; })},
                 {"method", to_string(settings.method)},
-                {"caster", to_string(settings.caster)},
+                {"caster", to_string(settings.paper.caster)},
                 {"direction", to_string(settings.direction)},
                 {"features", to_string(settings.features)},
                 {"devices", chosen_devices(settings)},
-                {"schedule", to_string(settings.schedule)},
+                {"schedule", to_string(settings.execution.schedule)},
                 {"work", work_of_devices(replay.steps)},
                 {"hash", replay.hash},
                 {"recorded_hash", nullptr},
@@ -143,7 +143,7 @@ std::string steps_csv(const std::vector<recording::ReplayStep>& steps, bool comp
         if (compared)
             text += fmt::format("{},{},{},{},{},", w.rays_compared, w.contacts_compared, w.missed, w.invented,
                                 w.other_triangle);
-        text += fmt::format("{:.4f}{},{},{}\n", r.narrow_ms, work_cells(r), r.rays, r.contacts);
+        text += fmt::format("{:.4f}{},{},{}\n", r.narrow_ms, work_cells(r), r.details.rays, r.contacts);
     }
     return text;
 }

@@ -77,11 +77,11 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"narrow_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.narrow_ms; })},
         {"narrow_ms_last_second", quantile(last_second, 0.5, [](const StepRow& r) { return r.narrow_ms; })},
         {"method", to_string(options.settings.method)},
-        {"caster", to_string(options.settings.caster)},
+        {"caster", to_string(options.settings.paper.caster)},
         {"direction", to_string(options.settings.direction)},
         {"features", to_string(options.settings.features)},
         {"devices", chosen_devices(options.settings)},
-        {"schedule", to_string(options.settings.schedule)},
+        {"schedule", to_string(options.settings.execution.schedule)},
         {"work", work_of_devices(log.rows)},
         {"hash", scene.hash()},
         {"mesh_source", log.mesh_source},
@@ -133,8 +133,9 @@ std::string steps_csv(const std::vector<StepRow>& rows) {
     std::string text = "step,pairs,rays,contacts,step_ms,narrow_ms,ray_length_m,penetration_max_m,median_speed_m_s"
                        + work_columns() + "\n";
     for (const StepRow& r : rows)
-        text += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}{}\n", r.step, r.pairs, r.rays, r.contacts, r.step_ms,
-                            r.narrow_ms, r.ray_length, r.penetration_max, r.median_speed, work_cells(r));
+        text +=
+            fmt::format("{},{},{},{},{:.4f},{:.4f},{},{},{}{}\n", r.step, r.pairs, r.details.rays, r.contacts,
+                        r.step_ms, r.narrow_ms, r.details.ray_length, r.penetration_max, r.median_speed, work_cells(r));
     return text;
 }
 

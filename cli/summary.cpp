@@ -13,33 +13,40 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 struct Count {
+    constexpr Count(const char* as, std::uint64_t StepStats::*value) : name(as), stat(value) {}
+    constexpr Count(const char* as, std::uint64_t StepDetails::*value) : name(as), detail(value) {}
+
+    std::uint64_t of(const StepStats& step) const { return stat != nullptr ? step.*stat : step.details.*detail; }
+    std::uint64_t& of(StepStats& step) const { return stat != nullptr ? step.*stat : step.details.*detail; }
+
     const char* name;
-    std::uint64_t StepStats::*value;
+    std::uint64_t StepStats::*stat = nullptr;
+    std::uint64_t StepDetails::*detail = nullptr;
 };
 
 /// In the order of steps.csv.
 constexpr Count counts[] = {
-    {"rays_cast", &StepStats::rays_cast},
-    {"walks", &StepStats::walks},
-    {"walks_lost", &StepStats::walks_lost},
-    {"walk_casts", &StepStats::walk_casts},
-    {"predictions", &StepStats::predictions},
-    {"pairs_full", &StepStats::pairs_full},
-    {"pairs_asleep", &StepStats::pairs_asleep},
-    {"pairs_as_standard", &StepStats::pairs_as_standard},
+    {"rays_cast", &StepDetails::rays_cast},
+    {"walks", &StepDetails::walks},
+    {"walks_lost", &StepDetails::walks_lost},
+    {"walk_casts", &StepDetails::walk_casts},
+    {"predictions", &StepDetails::predictions},
+    {"pairs_full", &StepDetails::pairs_full},
+    {"pairs_asleep", &StepDetails::pairs_asleep},
+    {"pairs_as_standard", &StepDetails::pairs_as_standard},
     {"pair_bytes", &StepStats::pair_bytes},
     {"contacts_new", &StepStats::contacts_new},
     {"contacts_lost", &StepStats::contacts_lost},
     {"contacts_speculative", &StepStats::contacts_speculative},
     {"contacts_reduced", &StepStats::contacts_reduced},
-    {"contacts_merged", &StepStats::contacts_merged},
-    {"pairs_moved", &StepStats::pairs_moved},
-    {"bytes_moved", &StepStats::bytes_moved},
+    {"contacts_merged", &StepDetails::contacts_merged},
+    {"pairs_moved", &StepDetails::pairs_moved},
+    {"bytes_moved", &StepDetails::bytes_moved},
     {"devices_lost", &StepStats::devices_lost},
 };
 
 bool is_memory(const Count& count) {
-    return count.value == &StepStats::pair_bytes;
+    return count.stat == &StepStats::pair_bytes;
 }
 
 Json length(const std::optional<double>& metres) {
@@ -50,13 +57,13 @@ Json length(const std::optional<double>& metres) {
 
 void Work::add(const StepStats& step) {
     for (const Count& count : counts) {
-        std::uint64_t& sum = sum_.*count.value;
-        sum = is_memory(count) ? std::max(sum, step.*count.value) : sum + step.*count.value;
+        std::uint64_t& sum = count.of(sum_);
+        sum = is_memory(count) ? std::max(sum, count.of(step)) : sum + count.of(step);
     }
 }
 
 void Work::put(Json& object) const {
-    for (const Count& count : counts) object[is_memory(count) ? "pair_bytes_max" : count.name] = sum_.*count.value;
+    for (const Count& count : counts) object[is_memory(count) ? "pair_bytes_max" : count.name] = count.of(sum_);
 }
 
 // As the option --speculative takes it.
@@ -66,12 +73,12 @@ Json speculative_word(const Settings& settings) {
 }
 
 void put_settings(Json& object, const Settings& settings) {
-    object["displacement_threshold"] = length(settings.displacement_threshold);
-    object["confidence"] = settings.confidence;
-    object["culling_distance"] = length(settings.culling_distance);
-    object["distance_extension"] = length(settings.distance_extension);
-    object["max_iterations"] = settings.max_iterations;
-    object["cast_lost_walks"] = settings.cast_lost_walks;
+    object["displacement_threshold"] = length(settings.paper.displacement_threshold);
+    object["confidence"] = settings.paper.confidence;
+    object["culling_distance"] = length(settings.paper.culling_distance);
+    object["distance_extension"] = length(settings.paper.distance_extension);
+    object["max_iterations"] = settings.paper.max_iterations;
+    object["cast_lost_walks"] = settings.paper.cast_lost_walks;
     object["speculative"] = speculative_word(settings);
     object["max_contacts_per_pair"] = settings.max_contacts_per_pair;
     object["max_contacts"] = settings.max_contacts;
@@ -115,6 +122,6 @@ std::string work_columns() {
 
 std::string work_cells(const StepStats& step) {
     std::string text;
-    for (const Count& count : counts) text += fmt::format(",{}", step.*count.value);
+    for (const Count& count : counts) text += fmt::format(",{}", count.of(step));
     return text;
 }

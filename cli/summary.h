@@ -34,7 +34,7 @@ public:
     explicit Work(const std::vector<Row>& rows) {
         for (const raycontact::StepStats& row : rows) add(row);
     }
-    std::uint64_t rays_cast() const { return sum_.rays_cast; }
+    std::uint64_t rays_cast() const { return sum_.details.rays_cast; }
     void put(nlohmann::ordered_json& object) const;
 
 private:
@@ -46,10 +46,10 @@ private:
 template <class Row>
 nlohmann::ordered_json work_of_devices(const std::vector<Row>& rows) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (std::size_t d = 0; !rows.empty() && d < rows.front().work.size(); ++d) {
-        nlohmann::ordered_json entry{{"device", rows.front().work[d].device}};
+    for (std::size_t d = 0; !rows.empty() && d < rows.front().details.work.size(); ++d) {
+        nlohmann::ordered_json entry{{"device", rows.front().details.work[d].device}};
         const auto put = [&](const char* key, auto raycontact::DeviceWork::*value) {
-            const auto of = [&](const Row& row) { return static_cast<double>(row.work[d].*value); };
+            const auto of = [&](const Row& row) { return static_cast<double>(row.details.work[d].*value); };
             entry[key] = {{"median", quantile(rows, 0.5, of)}, {"max", quantile(rows, 1, of)}};
         };
         put("pairs", &raycontact::DeviceWork::pairs);

@@ -48,13 +48,13 @@ Settings read_settings(const Json& document) {
     Settings settings;
     try {
         settings.method = method_from(document.at("method").get<std::string>());
-        settings.caster = caster_from(document.at("caster").get<std::string>());
+        settings.paper.caster = caster_from(document.at("caster").get<std::string>());
         settings.direction = direction_from(document.at("direction").get<std::string>());
     } catch (const InputError& error) {
         throw UnknownSetting(error.what());
     }
-    settings.devices = document.at("device").get<std::string>();
-    settings.threads = document.at("threads").get<std::uint32_t>();
+    settings.execution.devices = document.at("device").get<std::string>();
+    settings.execution.threads = document.at("threads").get<std::uint32_t>();
     // Recordings from before edges could be in contact lack it.
     if (const auto at = document.find("features"); at != document.end()) {
         try {
@@ -66,13 +66,13 @@ Settings read_settings(const Json& document) {
         settings.features = Features::vertices;
     }
     // Recordings from before these settings existed lack them; none of theirs depends on one (method standard).
-    read_if_there(document, "displacement_threshold", settings.displacement_threshold);
-    read_if_there(document, "confidence", settings.confidence);
-    read_if_there(document, "culling_distance", settings.culling_distance);
-    read_if_there(document, "distance_extension", settings.distance_extension);
-    read_if_there(document, "max_iterations", settings.max_iterations);
-    read_if_there(document, "cast_lost_walks", settings.cast_lost_walks);
-    read_if_there(document, "skip_outside", settings.skip_outside);
+    read_if_there(document, "displacement_threshold", settings.paper.displacement_threshold);
+    read_if_there(document, "confidence", settings.paper.confidence);
+    read_if_there(document, "culling_distance", settings.paper.culling_distance);
+    read_if_there(document, "distance_extension", settings.paper.distance_extension);
+    read_if_there(document, "max_iterations", settings.paper.max_iterations);
+    read_if_there(document, "cast_lost_walks", settings.paper.cast_lost_walks);
+    read_if_there(document, "skip_outside", settings.paper.skip_outside);
     read_if_there(document, "speculative", settings.speculative);
     read_if_there(document, "speculative_margin", settings.speculative_margin);
     read_if_there(document, "max_contacts_per_pair", settings.max_contacts_per_pair);
@@ -99,7 +99,7 @@ void apply_events(std::span<const unsigned char> payload, std::size_t shapes, st
         const auto id = from.get<std::uint32_t>(), shape = from.get<std::uint32_t>();
         const bool in_order = events.empty() || events.back().step <= step;
         if (in_order && kind == BodyEvent::comes && id == bodies.size() && shape < shapes) {
-            bodies.push_back({shape, step, Body::never});
+            bodies.push_back({shape, step, Body::never, {}});
         } else if (in_order && kind == BodyEvent::goes && id < bodies.size() && bodies[id].end_step == Body::never) {
             bodies[id].end_step = step;
         } else {
@@ -110,7 +110,7 @@ void apply_events(std::span<const unsigned char> payload, std::size_t shapes, st
 }
 
 void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vector<Body>& bodies) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].id = i;
+    for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].id = {static_cast<std::uint32_t>(i), 0};
     if (version == 1) return;
     BodySlots slots;
     std::uint32_t step = 0;
@@ -119,7 +119,7 @@ void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vec
         step = event.step;
         BodyId& id = bodies[event.body].id;
         if (event.kind == BodyEvent::goes) {
-            slots.take_back(slot_of(id));
+            slots.take_back(id.slot);
         } else {
             slots.next();
             id = slots.give();
@@ -135,18 +135,18 @@ Bytes encode_info(const Info& info) {
                             {"bodies", info.bodies},
                             {"dt", info.dt},
                             {"method", to_string(info.settings.method)},
-                            {"caster", to_string(info.settings.caster)},
+                            {"caster", to_string(info.settings.paper.caster)},
                             {"direction", to_string(info.settings.direction)},
                             {"features", to_string(info.settings.features)},
-                            {"device", info.settings.devices},
-                            {"threads", info.settings.threads},
-                            {"displacement_threshold", length(info.settings.displacement_threshold)},
-                            {"confidence", info.settings.confidence},
-                            {"culling_distance", length(info.settings.culling_distance)},
-                            {"distance_extension", length(info.settings.distance_extension)},
-                            {"max_iterations", info.settings.max_iterations},
-                            {"cast_lost_walks", info.settings.cast_lost_walks},
-                            {"skip_outside", info.settings.skip_outside},
+                            {"device", info.settings.execution.devices},
+                            {"threads", info.settings.execution.threads},
+                            {"displacement_threshold", length(info.settings.paper.displacement_threshold)},
+                            {"confidence", info.settings.paper.confidence},
+                            {"culling_distance", length(info.settings.paper.culling_distance)},
+                            {"distance_extension", length(info.settings.paper.distance_extension)},
+                            {"max_iterations", info.settings.paper.max_iterations},
+                            {"cast_lost_walks", info.settings.paper.cast_lost_walks},
+                            {"skip_outside", info.settings.paper.skip_outside},
                             {"speculative", info.settings.is_speculative()},
                             {"speculative_margin", length(info.settings.speculative_margin)},
                             {"max_contacts_per_pair", info.settings.max_contacts_per_pair},

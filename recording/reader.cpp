@@ -220,7 +220,7 @@ void Reader::State::read_blocks() {
     if (at < committed) fail_damaged(at, "something follows the end block");
     give_ids(version, events, bodies);
     if (info.bodies == 0) info.bodies = static_cast<std::uint32_t>(bodies.size()); // it began with an empty scene
-    for (const Body& body : bodies) slots = std::max(slots, slot_of(body.id) + std::size_t{1});
+    for (const Body& body : bodies) slots = std::max(slots, body.id.slot + std::size_t{1});
 }
 
 void Reader::State::open_steps(std::size_t index) {
@@ -257,15 +257,15 @@ void Reader::State::read_step(std::uint32_t i, std::vector<Pose>& to_poses, std:
 // From numbers to slots and ids.
 void Reader::State::place(std::uint32_t i, std::vector<Pose>& to_poses, std::vector<Pair>& to_pairs) {
     to_poses.resize(slots);
-    for (const std::uint32_t body : live.at(i, events, bodies)) to_poses[slot_of(bodies[body].id)] = poses[body];
+    for (const std::uint32_t body : live.at(i, events, bodies)) to_poses[bodies[body].id.slot] = poses[body];
     to_pairs.clear();
     for (const auto& [first, second] : decoder.pairs()) {
         const Body &a = bodies[first], &b = bodies[second];
         if (!a.alive(i) || !b.alive(i)) throw Damage("pairs bodies that are not there");
-        const bool swapped = slot_of(a.id) > slot_of(b.id);
+        const bool swapped = a.id.slot > b.id.slot;
         to_pairs.emplace_back(swapped ? b.id : a.id, swapped ? a.id : b.id);
     }
-    const auto slots_of = [](const Pair& pair) { return std::pair(slot_of(pair.first), slot_of(pair.second)); };
+    const auto slots_of = [](const Pair& pair) { return std::pair(pair.first.slot, pair.second.slot); };
     std::sort(to_pairs.begin(), to_pairs.end(),
               [&](const Pair& p, const Pair& q) { return slots_of(p) < slots_of(q); });
 }

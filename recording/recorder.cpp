@@ -50,11 +50,11 @@ struct Recorder::State {
         const std::uint32_t shape = shape_number(scene.shape(body));
         for (int tries = 0;; ++tries) {
             if (tries > most_tries)
-                throw InputError("Recorder::step: the scene gave slot " + std::to_string(slot_of(body)) + " to "
-                                 + std::to_string(generation_of(body)) + " bodies before; begin recording earlier");
+                throw InputError("Recorder::record: the scene gave slot " + std::to_string(body.slot) + " to "
+                                 + std::to_string(body.generation) + " bodies before; begin recording earlier");
             const BodyId given = writer.add_body(shape);
             if (given == body) return;
-            if (slot_of(given) == slot_of(body))
+            if (given.slot == body.slot)
                 writer.remove_body(given);
             else
                 passing.push_back(given);
@@ -65,7 +65,7 @@ struct Recorder::State {
         const std::vector<BodyId> now = scene.bodies();
         std::vector<BodyId> gone, come, passing;
         const auto by_slot = [](BodyId a, BodyId b) {
-            return std::pair(slot_of(a), generation_of(a)) < std::pair(slot_of(b), generation_of(b));
+            return std::pair(a.slot, a.generation) < std::pair(b.slot, b.generation);
         };
         std::ranges::set_difference(bodies, now, std::back_inserter(gone), by_slot);
         std::ranges::set_difference(now, bodies, std::back_inserter(come), by_slot);
@@ -94,12 +94,12 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-void Recorder::step() {
+void Recorder::record() {
     State& s = *state_;
     if (!recording::find_alike(s.settings, s.scene.settings()))
-        throw InputError(
-            "Recorder::step: method, direction, features or thresholds of the scene have changed; a recording has one "
-            "set of them, so begin another");
+        throw InputError("Recorder::record: method, direction, features or thresholds of the scene have changed; a "
+                         "recording has one "
+                         "set of them, so begin another");
     s.follow_bodies();
     s.hash.add(s.writer.steps(), s.scene.contacts());
     s.writer.step(s.scene);

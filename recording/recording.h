@@ -26,7 +26,7 @@ struct Body {
     std::uint32_t shape = 0;        ///< index into the recording's shapes
     std::uint32_t first_step = 0;   ///< the first step it takes part in
     std::uint32_t end_step = never; ///< the first step it takes no part in any more
-    BodyId id = 0;                  ///< as Scene::add gave it; of recordings of version 1 its number
+    BodyId id;                      ///< as Scene::add gave it; of recordings of version 1 its number is the slot
 
     bool alive(std::uint32_t step) const { return first_step <= step && step < end_step; }
 };

@@ -12,13 +12,13 @@ namespace raycontact::recording {
 namespace {
 
 auto ray_of(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
+    return std::tuple(c.body_a, c.body_b, c.key());
 }
 
 } // namespace
 
 Follower::Follower(const Reader& reader, const Settings& settings) : reader_(reader), scene_(settings) {
-    for (const auto& shape : reader.shapes()) shape->prepare(settings.threads);
+    for (const auto& shape : reader.shapes()) shape->prepare(settings.execution.threads);
 }
 
 void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
@@ -27,7 +27,7 @@ void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
         happen(events[next_event_], poses);
     for (const std::uint32_t number : live_.at(i, events, reader_.bodies())) {
         const BodyId body = reader_.bodies()[number].id;
-        scene_.set_pose(body, poses[slot_of(body)]);
+        scene_.set_pose(body, poses[body.slot]);
     }
 }
 
@@ -35,7 +35,7 @@ void Follower::happen(const BodyEvent& event, std::span<const Pose> poses) {
     const Body& body = reader_.bodies()[event.body];
     if (event.kind == BodyEvent::comes) {
         // One that came and went between two steps has no pose, but it had its slot.
-        const Pose pose = body.alive(event.step) ? poses[slot_of(body.id)] : Pose{};
+        const Pose pose = body.alive(event.step) ? poses[body.id.slot] : Pose{};
         if (scene_.add(reader_.shapes()[body.shape], pose) != body.id)
             throw std::logic_error("a replay gave a body another slot than the recording; report this");
     } else if (reader_.version() > 1) {
@@ -54,7 +54,7 @@ void WrongRays::add(std::span<const Contact> found, std::span<const Contact> ref
             ++missed;
             ++j;
         } else {
-            if (found[i].triangle != reference[j].triangle) ++other_triangle;
+            if (found[i].feature != reference[j].feature) ++other_triangle;
             ++i;
             ++j;
         }
@@ -93,10 +93,13 @@ bool find_alike(const Settings& recorded, const Settings& used) {
             || used.speculative_margin != recorded.speculative_margin))
         return false;
     if (exact(used.method) && exact(recorded.method)) return true;
-    return used.method == recorded.method && used.displacement_threshold == recorded.displacement_threshold
-           && used.confidence == recorded.confidence && used.culling_distance == recorded.culling_distance
-           && used.distance_extension == recorded.distance_extension && used.max_iterations == recorded.max_iterations
-           && used.cast_lost_walks == recorded.cast_lost_walks && used.skip_outside == recorded.skip_outside;
+    return used.method == recorded.method && used.paper.displacement_threshold == recorded.paper.displacement_threshold
+           && used.paper.confidence == recorded.paper.confidence
+           && used.paper.culling_distance == recorded.paper.culling_distance
+           && used.paper.distance_extension == recorded.paper.distance_extension
+           && used.paper.max_iterations == recorded.paper.max_iterations
+           && used.paper.cast_lost_walks == recorded.paper.cast_lost_walks
+           && used.paper.skip_outside == recorded.paper.skip_outside;
 }
 
 bool must_agree(const Settings& recorded, const Settings& used) {
@@ -115,7 +118,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
                              "max_contacts_per_pair and max_contacts to 0");
         Settings standard = options.settings;
         standard.method = Method::standard;
-        standard.skip_outside = false; // the reference casts every ray
+        standard.paper.skip_outside = false; // the reference casts every ray
         reference.emplace(reader, standard);
         result.wrong_rays.emplace();
     }
@@ -127,23 +130,23 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
         reader.read_step(i, poses, pairs);
         const auto start = std::chrono::steady_clock::now();
         follower.place(i, poses);
-        const std::span<const Contact> contacts = follower.scene().step(pairs);
+        const std::span<const Contact> contacts = follower.scene().find_contacts(pairs);
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
 
         const StepStats& stats = follower.scene().stats();
         hash.add(i, contacts);
         result.pairs_max = std::max(result.pairs_max, stats.pairs);
-        result.rays += stats.rays;
+        result.rays += stats.details.rays;
         result.contacts += stats.contacts;
-        result.ray_length += stats.ray_length;
+        result.ray_length += stats.details.ray_length;
         result.penetration_max = std::max(result.penetration_max, stats.depth_max);
         ReplayStep step;
         static_cast<StepStats&>(step) = stats;
         step.step_ms = time.count();
         if (reference) {
             reference->place(i, poses);
-            step.wrong.add(contacts, reference->scene().step(pairs));
-            step.wrong.rays_compared = reference->scene().stats().rays;
+            step.wrong.add(contacts, reference->scene().find_contacts(pairs));
+            step.wrong.rays_compared = reference->scene().stats().details.rays;
             result.wrong_rays->add(step.wrong);
         }
         result.steps.push_back(step);

@@ -133,15 +133,15 @@ void Writer::State::flush() {
 // Throws InputError where no body has the id now.
 std::uint32_t Writer::State::number_of(BodyId body) const {
     if (!slots.is_there(body))
-        throw InputError("recording: body " + std::to_string(slot_of(body)) + " (generation "
-                         + std::to_string(generation_of(body)) + ") is not there; use the ids that add_body() gave");
-    return number_in[slot_of(body)];
+        throw InputError("recording: body " + std::to_string(body.slot) + " (generation "
+                         + std::to_string(body.generation) + ") is not there; use the ids that add_body() gave");
+    return number_in[body.slot];
 }
 
 void Writer::State::check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given) {
     poses.resize(bodies.size());
     for (const std::uint32_t number : live) {
-        const std::uint32_t slot = slot_of(bodies[number].id);
+        const std::uint32_t slot = bodies[number].id.slot;
         if (slot >= by_slot.size())
             throw InputError("recording: " + std::to_string(by_slot.size()) + " poses, and a body in slot "
                              + std::to_string(slot) + "; give one for each slot, those without a body too");
@@ -152,7 +152,7 @@ void Writer::State::check_and_keep(std::span<const Pose> by_slot, std::span<cons
     for (const auto& [first, second] : given) {
         const std::uint32_t a = number_of(first), b = number_of(second);
         if (a == b)
-            throw InputError("recording: body " + std::to_string(slot_of(first))
+            throw InputError("recording: body " + std::to_string(first.slot)
                              + " is paired with itself; pairs need two bodies");
         pairs.emplace_back(std::min(a, b), std::max(a, b));
     }
@@ -205,7 +205,7 @@ Bytes Writer::State::animated_part() const {
         times.push_back(static_cast<float>(i * info.dt));
         for (std::size_t k = 0; k < bodies.size(); ++k) {
             const Body& body = bodies[k];
-            if (body.alive(i)) last[k] = now[slot_of(body.id)];
+            if (body.alive(i)) last[k] = now[body.id.slot];
             if (moves[k]) tracks[k].add(last[k]);
             if (body.first_step > 0 || body.end_step < steps) tracks[k].sizes.push_back(body.alive(i) ? 1.f : 0.f);
         }
@@ -276,13 +276,13 @@ BodyId Writer::add_body(std::uint32_t shape) {
     if (shape >= s.meshes.size()) throw InputError("recording: shape " + std::to_string(shape) + " was not added");
     const auto number = static_cast<std::uint32_t>(s.bodies.size());
     const BodyId id = s.slots.next();
-    if (slot_of(id) >= s.number_in.size()) s.number_in.resize(slot_of(id) + std::size_t{1});
+    if (id.slot >= s.number_in.size()) s.number_in.resize(id.slot + std::size_t{1});
     s.bodies.push_back({shape, s.steps, Body::never, id});
     s.waiting_events.push_back({s.steps, BodyEvent::comes, number, shape});
     s.live.push_back(number);
     s.viewer_bodies.push_back({shape, {}});
     s.moves.push_back(0);
-    s.number_in[slot_of(id)] = number;
+    s.number_in[id.slot] = number;
     return s.slots.give();
 }
 
@@ -292,7 +292,7 @@ void Writer::remove_body(BodyId body) {
     s.waiting_events.push_back({s.steps, BodyEvent::goes, number, 0});
     s.live.erase(std::lower_bound(s.live.begin(), s.live.end(), number));
     s.bodies[number].end_step = s.steps;
-    s.slots.take_back(slot_of(body));
+    s.slots.take_back(body.slot);
 }
 
 void Writer::step(std::span<const Pose> poses, std::span<const Pair> pairs) {
@@ -304,7 +304,7 @@ void Writer::step(const Scene& scene) {
     poses.resize(state_->slots.end());
     for (const std::uint32_t number : state_->live) {
         const BodyId id = state_->bodies[number].id;
-        poses[slot_of(id)] = scene.pose(id);
+        poses[id.slot] = scene.pose(id);
     }
     state_->step(poses, scene.pairs());
 }

@@ -89,7 +89,7 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          "rays",
          "Rays of the rule, both ways round: vertices inside the other body's bounds, also those known to be outside "
          "its mesh. By certified only those that it knows no reason to leave alone.",
-         {line(log, "rays", [](const StepRow& r) { return r.rays; })}},
+         {line(log, "rays", [](const StepRow& r) { return r.details.rays; })}},
         {"Contacts",
          "contacts",
          "Rays that met the other mesh from inside before they left their own.",
@@ -106,28 +106,28 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
         {"Ray length",
          "m",
          "Lengths of all rays that are contacts, added up.",
-         {line(log, "ray length", [](const StepRow& r) { return r.ray_length; })}},
+         {line(log, "ray length", [](const StepRow& r) { return r.details.ray_length; })}},
         {"Mean ray length",
          "mm",
          "Ray length divided by contacts: how far a vertex in contact typically is from the face it meets.",
          {line(log, "mean ray length",
                [](const StepRow& r) {
-                   return r.contacts > 0 ? 1000 * r.ray_length / static_cast<double>(r.contacts) : std::nan("");
+                   return r.contacts > 0 ? 1000 * r.details.ray_length / static_cast<double>(r.contacts) : std::nan("");
                })}},
         {"Median speed",
          "m/s",
          "Half of the moving bodies are slower than this at the end of the step.",
          {line(log, "speed", [](const StepRow& r) { return r.median_speed; })}},
     };
-    const std::size_t devices = log.rows.empty() ? 0 : log.rows.front().work.size();
+    const std::size_t devices = log.rows.empty() ? 0 : log.rows.front().details.work.size();
     if (devices > 1) {
         Plot load{
             "Load of devices", "pairs at rest", "What each device had to do, counted: pairs, vertices and rays.", {}};
         Plot time{"Time of devices", "ms", "Wall clock of each device's part of a step; they work side by side.", {}};
         for (std::size_t d = 0; d < devices; ++d) {
-            const char* id = log.rows.front().work[d].device.c_str();
-            load.lines.push_back(line(log, id, [d](const StepRow& r) { return r.work[d].load; }));
-            time.lines.push_back(line(log, id, [d](const StepRow& r) { return r.work[d].ms; }));
+            const char* id = log.rows.front().details.work[d].device.c_str();
+            load.lines.push_back(line(log, id, [d](const StepRow& r) { return r.details.work[d].load; }));
+            time.lines.push_back(line(log, id, [d](const StepRow& r) { return r.details.work[d].ms; }));
         }
         plots.push_back(load);
         plots.push_back(time);

@@ -154,11 +154,12 @@ std::string thresholds(const Json& summary) {
     std::string text;
     if (differs("displacement_threshold", nullptr))
         text += option(summary, "displacement_threshold", "--displacement-threshold");
-    if (differs("confidence", usual.confidence)) text += option(summary, "confidence", "--confidence");
+    if (differs("confidence", usual.paper.confidence)) text += option(summary, "confidence", "--confidence");
     if (differs("culling_distance", nullptr)) text += option(summary, "culling_distance", "--culling-distance");
     if (differs("distance_extension", nullptr)) text += option(summary, "distance_extension", "--distance-extension");
-    if (differs("max_iterations", usual.max_iterations)) text += option(summary, "max_iterations", "--max-iterations");
-    if (differs("cast_lost_walks", usual.cast_lost_walks)) text += " --no-walk-casts";
+    if (differs("max_iterations", usual.paper.max_iterations))
+        text += option(summary, "max_iterations", "--max-iterations");
+    if (differs("cast_lost_walks", usual.paper.cast_lost_walks)) text += " --no-walk-casts";
     if (differs("speculative", "auto")) text += option(summary, "speculative", "--speculative");
     if (differs("max_contacts_per_pair", 0))
         text += option(summary, "max_contacts_per_pair", "--max-contacts-per-pair");
@@ -234,8 +235,7 @@ void describe(const scenes::RunLog& log, Page& page) {
                    + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
                    + option(summary, "method", "--method") + option(summary, "caster", "--caster")
                    + option(summary, "direction", "--direction") + option(summary, "features", "--features")
-                   + thresholds(summary)
-                   + option(summary, "devices", "--devices") + " --out DIR";
+                   + thresholds(summary) + option(summary, "devices", "--devices") + " --out DIR";
     page.footer = "The same command gives the same contacts and hash; times differ from machine to machine.";
 }
 

@@ -41,7 +41,7 @@ Json measure(const Workshop& shop, const SimulationOptions& options, bool keep, 
     PairLengths pairs;
     side_by_side({{file, by_default(Method::standard)}}, [&](std::uint32_t, std::span<Scene* const> scenes) {
         pairs.add(scenes[0]->contacts());
-        result["length"].push_back(scenes[0]->stats().ray_length);
+        result["length"].push_back(scenes[0]->stats().details.ray_length);
         result["contacts"].push_back(scenes[0]->stats().contacts);
         tick(cost / options.size.steps);
     });

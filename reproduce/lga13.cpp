@@ -16,14 +16,14 @@ constexpr const char* scene = "avalanche";
 /// The first two cast every ray of a full look, as the paper's do; the others are spared some by the library's grids.
 std::vector<Settings> contestants(const Plan& plan, Caster caster) {
     std::vector<Settings> all{as_in_the_paper(Method::iterative, plan.constants), by_default(Method::standard)};
-    all[1].skip_outside = false;
+    all[1].paper.skip_outside = false;
     if (caster == Caster::bvh) {
         for (std::size_t k = 0; k < 2; ++k) {
             all.push_back(all[k]);
-            all.back().skip_outside = true;
+            all.back().paper.skip_outside = true;
         }
     }
-    for (Settings& settings : all) settings.caster = caster;
+    for (Settings& settings : all) settings.paper.caster = caster;
     return all;
 }
 

@@ -4,9 +4,9 @@
 #include <raycontact/contact.h>
 
 #include <algorithm>
-#include <cstdint>
+#include <map>
 #include <span>
-#include <unordered_map>
+#include <utility>
 
 namespace raycontact::reproduce {
 
@@ -16,8 +16,8 @@ class PairLengths {
 public:
     void add(std::span<const Contact> contacts) {
         for (const Contact& contact : contacts) {
-            if (is_speculative(contact)) continue;
-            Sums& sums = pairs_[std::uint64_t{contact.body_a} << 32 | contact.body_b];
+            if (contact.is_speculative()) continue;
+            Sums& sums = pairs_[{contact.body_a, contact.body_b}];
             sums.ray += static_cast<double>(contact.ray_length);
             sums.depth += static_cast<double>(contact.depth);
         }
@@ -37,7 +37,7 @@ private:
         return most;
     }
 
-    std::unordered_map<std::uint64_t, Sums> pairs_;
+    std::map<std::pair<BodyId, BodyId>, Sums> pairs_;
 };
 
 } // namespace raycontact::reproduce

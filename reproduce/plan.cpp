@@ -50,12 +50,12 @@ Settings as_in_the_paper(Method method, const Constants& constants) {
     Settings settings;
     settings.features = Features::vertices; // the paper's rule
     settings.method = method;
-    settings.displacement_threshold = constants.displacement_threshold;
-    settings.confidence = constants.confidence;
-    settings.distance_extension = constants.distance_extension;
-    settings.max_iterations = constants.max_iterations;
-    settings.cast_lost_walks = false;
-    settings.skip_outside = false; // grids are not the paper's
+    settings.paper.displacement_threshold = constants.displacement_threshold;
+    settings.paper.confidence = constants.confidence;
+    settings.paper.distance_extension = constants.distance_extension;
+    settings.paper.max_iterations = constants.max_iterations;
+    settings.paper.cast_lost_walks = false;
+    settings.paper.skip_outside = false; // grids are not the paper's
     return settings;
 }
 

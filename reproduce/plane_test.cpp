@@ -80,9 +80,9 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
             scene.set_pose(bodies[k], poses[k]);
         }
         std::vector<Vec3> force(test.orientations); // on the plane
-        for (const Contact& contact : scene.step(pairs)) {
+        for (const Contact& contact : scene.find_contacts(pairs)) {
             const Vec3 push = scenes::penalty_force(springs, contact);
-            Vec3& of = force[contact.body_a];
+            Vec3& of = force[contact.body_a.slot];
             of = {of.x + push.x, of.y + push.y, of.z + push.z};
         }
         for (const Vec3& of : force) {

@@ -102,10 +102,10 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
         if (record) record->step();
         double depth = 0;
         for (const Contact& contact : scene.contacts())
-            if (!is_speculative(contact)) depth += static_cast<double>(contact.depth);
+            if (!contact.is_speculative()) depth += static_cast<double>(contact.depth);
         result["pairs"].push_back(scene.stats().pairs);
         result["contacts"].push_back(scene.stats().contacts);
-        result["ray_length"].push_back(scene.stats().ray_length);
+        result["ray_length"].push_back(scene.stats().details.ray_length);
         result["depth_length"].push_back(depth);
         tick(Workshop::cost(options) / options.size.steps);
     }

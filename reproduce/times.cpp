@@ -23,7 +23,7 @@ Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool
     std::vector<Follow> follow;
     for (const Method method : both) {
         Settings settings = as_in_the_paper(method, shop.plan().constants);
-        settings.caster = caster;
+        settings.paper.caster = caster;
         const SimulationOptions options = own ? driven_by(shop, method, scene) : shop.base(scene);
         follow.push_back({shop.recording(options, [](double) {}), settings});
     }
@@ -33,8 +33,8 @@ Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool
             Json& of = result[std::string(to_string(both[k]))];
             const StepStats& stats = scenes[k]->stats();
             of["ms"].push_back(stats.narrow_ms);
-            of["cast"].push_back(stats.rays_cast);
-            of["full"].push_back(stats.pairs_full);
+            of["cast"].push_back(stats.details.rays_cast);
+            of["full"].push_back(stats.details.pairs_full);
             of["ordered_pairs"].push_back(2 * stats.pairs);
         }
         tick(cost / shop.plan().size(scene).steps);

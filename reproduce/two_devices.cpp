@@ -35,10 +35,10 @@ Choice devices() {
 
 Settings on(const Plan& plan, const Choice& choice, std::size_t count) {
     Settings settings = as_in_the_paper(Method::iterative, plan.constants);
-    settings.schedule = Schedule::sticky; // section 4
-    settings.devices = choice.ids[0];
-    if (count > 1) settings.devices += "," + choice.ids[1];
-    if (!choice.gpus) settings.threads = static_cast<std::uint32_t>(count);
+    settings.execution.schedule = Schedule::sticky; // section 4
+    settings.execution.devices = choice.ids[0];
+    if (count > 1) settings.execution.devices += "," + choice.ids[1];
+    if (!choice.gpus) settings.execution.threads = static_cast<std::uint32_t>(count);
     return settings;
 }
 

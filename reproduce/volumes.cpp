@@ -62,16 +62,16 @@ Json measure(const Workshop& shop, const SimulationOptions& options, double cost
         if ((step + 1) % shop.plan().volume_every != 0) return;
         const Scene& placed = *scenes[0];
         std::map<std::string, Sums> found;
-        const auto add = [](Sums& sums, const Scene& of, const Contact& contact, double value) {
-            sums[{of.body_in(contact.body_a), of.body_in(contact.body_b)}] += value;
+        const auto add = [](Sums& sums, const Contact& contact, double value) {
+            sums[{contact.body_a, contact.body_b}] += value;
         };
         for (const Contact& contact : placed.contacts()) {
             const double length = static_cast<double>(contact.ray_length);
-            add(found["ray"], placed, contact, length);
-            add(found["weighted"], placed, contact, length * static_cast<double>(contact.weight));
+            add(found["ray"], contact, length);
+            add(found["weighted"], contact, length * static_cast<double>(contact.weight));
         }
         for (const Contact& contact : scenes[1]->contacts())
-            add(found["reprojected"], *scenes[1], contact, static_cast<double>(contact.depth));
+            add(found["reprojected"], contact, static_cast<double>(contact.depth));
         Series totals(std::size(measures));
         double volume_of_all = 0;
         for (const Pair& pair : placed.pairs()) {

@@ -98,19 +98,19 @@ double Workshop::cost(const SimulationOptions& options) {
 Json to_json(const Settings& s) {
     const auto length = [](const std::optional<double>& metres) { return metres ? Json(*metres) : Json("auto"); };
     return {{"method", to_string(s.method)},
-            {"caster", to_string(s.caster)},
+            {"caster", to_string(s.paper.caster)},
             {"direction", to_string(s.direction)},
             {"features", to_string(s.features)},
-            {"displacement_threshold", length(s.displacement_threshold)},
-            {"confidence", s.confidence},
-            {"culling_distance", length(s.culling_distance)},
-            {"distance_extension", length(s.distance_extension)},
-            {"max_iterations", s.max_iterations},
-            {"cast_lost_walks", s.cast_lost_walks},
-            {"skip_outside", s.skip_outside},
-            {"devices", s.devices},
-            {"schedule", to_string(s.schedule)},
-            {"threads", s.threads}};
+            {"displacement_threshold", length(s.paper.displacement_threshold)},
+            {"confidence", s.paper.confidence},
+            {"culling_distance", length(s.paper.culling_distance)},
+            {"distance_extension", length(s.paper.distance_extension)},
+            {"max_iterations", s.paper.max_iterations},
+            {"cast_lost_walks", s.paper.cast_lost_walks},
+            {"skip_outside", s.paper.skip_outside},
+            {"devices", s.execution.devices},
+            {"schedule", to_string(s.execution.schedule)},
+            {"threads", s.execution.threads}};
 }
 
 void side_by_side(const std::vector<Follow>& follow,
@@ -134,7 +134,7 @@ void side_by_side(const std::vector<Follow>& follow,
         for (const auto& one : all) {
             one->reader.read_step(i, poses, pairs);
             one->follower.place(i, poses);
-            one->follower.scene().step(pairs);
+            one->follower.scene().find_contacts(pairs);
         }
         look(i, scenes);
     }

@@ -29,7 +29,7 @@ std::vector<Contestant> contestants(const Plan& plan) {
 
 Json compare(const Workshop& shop, const std::string& scene, double cost, const Tick& tick) {
     Settings standard = by_default(Method::standard);
-    standard.skip_outside = false; // the reference casts every ray
+    standard.paper.skip_outside = false; // the reference casts every ray
     const SimulationOptions base = shop.base(scene);
     const auto file = shop.recording(base, [](double) {});
     std::vector<Follow> follow{{file, standard}};
@@ -38,7 +38,7 @@ Json compare(const Workshop& shop, const std::string& scene, double cost, const 
     Json result{{"rays", Json::array()}};
     std::vector<recording::WrongRays> sums(all.size());
     side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
-        result["rays"].push_back(scenes[0]->stats().rays);
+        result["rays"].push_back(scenes[0]->stats().details.rays);
         for (std::size_t k = 0; k < all.size(); ++k) {
             recording::WrongRays wrong;
             wrong.add(scenes[k + 1]->contacts(), scenes[0]->contacts());

@@ -10,9 +10,7 @@ void DepthWatch::add(std::uint32_t step, std::span<const Contact> contacts) {
     std::vector<Run> now;
     for (const Contact& c : contacts) {
         if (static_cast<double>(c.depth) <= limit_) continue;
-        now.push_back({{c.body_a, c.body_b, static_cast<std::uint32_t>(c.feature),
-                        static_cast<std::uint32_t>(c.vertex_body), c.vertex, c.other()},
-                       1});
+        now.push_back({{c.body_a, c.body_b, c.key()}, 1});
     }
     contacts_ += now.size();
     std::sort(now.begin(), now.end(), [](const Run& a, const Run& b) { return a.key < b.key; });

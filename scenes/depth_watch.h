@@ -3,9 +3,9 @@
 
 #include <raycontact/contact.h>
 
-#include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace raycontact::scenes {
@@ -24,7 +24,7 @@ public:
     std::uint32_t longest_since(std::uint32_t step) const; ///< the same, of runs that end in `step` or later
 
 private:
-    using Key = std::array<std::uint32_t, 6>; ///< body_a, body_b, feature, vertex_body, vertex, other
+    using Key = std::tuple<BodyId, BodyId, std::uint64_t>; ///< body_a, body_b, Contact::key()
     struct Run {
         Key key;
         std::uint32_t steps;

@@ -120,7 +120,7 @@ void Simulation::State::configure() {
     world.getSimulationIslandManager()->setSplitIslands(false);
 
     for (const SceneShape& shape : description.shapes) {
-        shape.shape->prepare(description.settings.threads); // a run repeats, its counts of work, too
+        shape.shape->prepare(description.settings.execution.threads); // a run repeats, its counts of work, too
         shapes.push_back(std::make_unique<bullet::MeshShape>(shape.shape, shape.bounds));
     }
     inertias.resize(shapes.size());

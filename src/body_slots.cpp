@@ -20,7 +20,7 @@ BodyId BodySlots::next() {
         free_.push_back(static_cast<BodySlot>(slots_.size() - 1));
     }
     const Slot& slot = slots_[free_.front()];
-    return body_id(free_.front(), slot.use == Use::never ? first_generation_ : slot.generation + 1);
+    return {free_.front(), slot.use == Use::never ? first_generation_ : slot.generation + 1};
 }
 
 BodyId BodySlots::give() noexcept {

@@ -28,16 +28,16 @@ public:
     void step_done() noexcept;
 
     bool is_there(BodyId body) const {
-        const BodySlot slot = slot_of(body);
-        return slot < slots_.size() && slots_[slot].use == Use::taken && slots_[slot].generation == generation_of(body);
+        const BodySlot slot = body.slot;
+        return slot < slots_.size() && slots_[slot].use == Use::taken && slots_[slot].generation == body.generation;
     }
     bool was_given(BodyId body) const {
-        const BodySlot slot = slot_of(body);
-        return slot < slots_.size() && slots_[slot].use != Use::never && generation_of(body) <= slots_[slot].generation;
+        const BodySlot slot = body.slot;
+        return slot < slots_.size() && slots_[slot].use != Use::never && body.generation <= slots_[slot].generation;
     }
     bool is_taken(BodySlot slot) const { return slot < slots_.size() && slots_[slot].use == Use::taken; }
     /// Of the body that has the slot, or had it last.
-    BodyId id_in(BodySlot slot) const { return body_id(slot, slots_[slot].generation); }
+    BodyId id_in(BodySlot slot) const { return BodyId{slot, slots_[slot].generation}; }
     std::uint32_t count() const { return count_; } ///< of bodies
     /// Slots from here on have no body and no step has to see that: arrays by slot may end here.
     BodySlot end() const { return end_; }

@@ -26,8 +26,8 @@ namespace {
 
 // Names the generation only if it is not 0: before a slot is reused, users need not know of generations.
 std::string name_of(BodyId body) {
-    const std::string name = "body " + std::to_string(slot_of(body));
-    return generation_of(body) == 0 ? name : name + " (generation " + std::to_string(generation_of(body)) + ")";
+    const std::string name = "body " + std::to_string(body.slot);
+    return body.generation == 0 ? name : name + " (generation " + std::to_string(body.generation) + ")";
 }
 
 void refuse_faulty(const Pose& pose, BodyId body) {
@@ -50,24 +50,25 @@ bool may_meet(const BodyNotes& a, const BodyNotes& b) {
 }
 
 bool by_slots(const Pair& p, const Pair& q) {
-    return SlotPair(slot_of(p.first), slot_of(p.second)) < SlotPair(slot_of(q.first), slot_of(q.second));
+    return SlotPair(p.first.slot, p.second.slot) < SlotPair(q.first.slot, q.second.slot);
 }
 
 } // namespace
 
 struct Scene::State {
-    explicit State(const Settings& settings) : narrow(settings), preparer(settings.threads) {}
+    explicit State(const Settings& settings) : narrow(settings), preparer(settings.execution.threads) {}
 
     /// where: the function that was called, for the message.
     PlacedBody& existing(BodyId body, const char* where) {
         if (!slots.is_there(body)) refuse_missing(body, where);
-        return bodies[slot_of(body)];
+        return bodies[body.slot];
     }
 
     [[noreturn]] void refuse_missing(BodyId body, const char* where) const {
-        const BodySlot slot = slot_of(body);
+        const BodySlot slot = body.slot;
+        if (!body.valid()) throw InputError(std::string(where) + ": this id is empty; add() gives those of bodies");
         std::string text = std::string(where) + ": body " + std::to_string(slot) + " (generation "
-                           + std::to_string(generation_of(body)) + ") ";
+                           + std::to_string(body.generation) + ") ";
         if (!slots.was_given(body)) throw InputError(text + "is not in the scene; add() gives the ids that are");
         text += "was removed";
         if (slots.is_taken(slot)) text += ", and its slot has " + name_of(slots.id_in(slot)) + " now";
@@ -103,7 +104,7 @@ struct Scene::State {
 
     void prepare_shapes() {
         for (const PlacedBody& body : bodies)
-            if (body.shape != nullptr) body.shape->prepare(narrow.settings().threads);
+            if (body.shape != nullptr) body.shape->prepare(narrow.settings().execution.threads);
     }
 
     // Once a shape meets others in a second step, more steps are likely to come. Without memory for it, they come
@@ -156,9 +157,10 @@ struct Scene::State {
 
     void check_pair(const Pair& pair, std::size_t i) const {
         for (const BodyId body : {pair.first, pair.second})
-            if (!slots.is_there(body)) refuse_missing(body, ("Scene::step, pair " + std::to_string(i)).c_str());
+            if (!slots.is_there(body))
+                refuse_missing(body, ("Scene::find_contacts, pair " + std::to_string(i)).c_str());
         if (pair.first == pair.second)
-            throw InputError("Scene::step, pair " + std::to_string(i) + ": " + name_of(pair.first)
+            throw InputError("Scene::find_contacts, pair " + std::to_string(i) + ": " + name_of(pair.first)
                              + " is paired with itself; pairs need two bodies");
     }
 
@@ -170,11 +172,11 @@ struct Scene::State {
         pairs_stand = false;
         if (!same) pairs.assign(given.begin(), given.end()); // given may be this very list
         for (Pair& pair : pairs)
-            if (slot_of(pair.first) > slot_of(pair.second)) std::swap(pair.first, pair.second);
+            if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
         if (!std::is_sorted(pairs.begin(), pairs.end(), by_slots)) std::sort(pairs.begin(), pairs.end(), by_slots);
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
         slot_pairs.clear();
-        for (const auto& [a, b] : pairs) slot_pairs.emplace_back(slot_of(a), slot_of(b));
+        for (const auto& [a, b] : pairs) slot_pairs.emplace_back(a.slot, b.slot);
         pairs_stand = true;
     }
 
@@ -244,7 +246,7 @@ Scene::~Scene() = default;
 BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     State& s = *state_;
     const BodyId id = s.slots.next();
-    const BodySlot slot = slot_of(id);
+    const BodySlot slot = id.slot;
     if (!shape) throw InputError(name_of(id) + ": the shape is null");
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
@@ -255,7 +257,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.notes[slot] = {};
-    s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), generation_of(id), pose, pose, pose};
+    s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), id.generation, pose, pose, pose};
     return s.slots.give();
 }
 
@@ -266,7 +268,7 @@ void Scene::remove(BodyId body) {
     s.met_shapes.erase(gone.shape); // its address may be another's soon
     gone.shape = nullptr;
     s.pairs_stand = false;
-    s.slots.take_back(slot_of(body));
+    s.slots.take_back(body.slot);
     s.cut_to_slots();
     try {
         s.pack_shapes();
@@ -281,13 +283,27 @@ void Scene::set_pose(BodyId body, const Pose& pose) {
     moved.pose = pose;
 }
 
+void Scene::set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses) {
+    if (bodies.size() != poses.size())
+        throw InputError("Scene::set_poses: " + std::to_string(poses.size()) + " poses for "
+                         + std::to_string(bodies.size()) + " bodies; give one for each");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const char* fault = nullptr;
+        if (state_->slots.is_there(bodies[i]) && (fault = pose_fault(poses[i])) == nullptr) continue;
+        const std::string place = "Scene::set_poses, place " + std::to_string(i);
+        state_->existing(bodies[i], place.c_str());
+        throw InputError(place + ": " + name_of(bodies[i]) + ": " + fault);
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) state_->bodies[bodies[i].slot].pose = poses[i];
+}
+
 const Pose& Scene::pose(BodyId body) const {
     return state_->existing(body, "Scene::pose").pose;
 }
 void Scene::set_next_pose(BodyId body, const Pose& pose) {
     const PlacedBody& moving = state_->existing(body, "Scene::set_next_pose");
     refuse_faulty(pose, body);
-    if (state_->narrow.settings().is_speculative()) state_->next_poses.set(slot_of(body), moving.generation, pose);
+    if (state_->narrow.settings().is_speculative()) state_->next_poses.set(body.slot, moving.generation, pose);
 }
 void Scene::set_speculative_margin(BodyId body, std::optional<double> margin) {
     PlacedBody& own = state_->existing(body, "Scene::set_speculative_margin");
@@ -304,8 +320,7 @@ void Scene::set_speculative_margin(BodyId body, std::optional<double> margin) {
 }
 void Scene::set_settings(const Settings& settings) {
     check_settings(settings);
-    const Settings& old = state_->narrow.settings();
-    if (settings.devices != old.devices || settings.schedule != old.schedule || settings.threads != old.threads)
+    if (settings.execution != state_->narrow.settings().execution)
         throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
     if (!settings.is_speculative()) state_->next_poses.forget();
@@ -319,23 +334,20 @@ const Shape& Scene::shape(BodyId body) const {
 
 void Scene::set_user_data(BodyId body, std::uint64_t data) {
     state_->existing(body, "Scene::set_user_data");
-    state_->notes[slot_of(body)].user_data = data;
+    state_->notes[body.slot].user_data = data;
 }
 std::uint64_t Scene::user_data(BodyId body) const {
     state_->existing(body, "Scene::user_data");
-    return state_->notes[slot_of(body)].user_data;
+    return state_->notes[body.slot].user_data;
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    state_->notes[slot_of(body)].groups = groups;
-    state_->notes[slot_of(body)].mask = mask;
+    state_->notes[body.slot].groups = groups;
+    state_->notes[body.slot].mask = mask;
 }
 
-BodyId Scene::body_in(std::uint32_t slot) const {
-    if (!state_->slots.is_taken(slot))
-        throw InputError("Scene::body_in: slot " + std::to_string(slot)
-                         + " has no body; ask for slots of contacts before their bodies are removed");
-    return state_->slots.id_in(slot);
+bool Scene::has(BodyId body) const {
+    return state_->slots.is_there(body);
 }
 
 std::uint32_t Scene::body_count() const {
@@ -355,7 +367,7 @@ void Scene::prepare() {
     state_->narrow.parts().accelerate_shapes();
 }
 
-std::span<const Contact> Scene::step() {
+std::span<const Contact> Scene::find_contacts() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
     state_->all_or_nothing([&] {
@@ -368,7 +380,7 @@ std::span<const Contact> Scene::step() {
     return state_->contacts;
 }
 
-std::span<const Contact> Scene::step(std::span<const Pair> pairs) {
+std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
     state_->call_threads(pairs.size());
     state_->set_pairs(pairs);
@@ -385,7 +397,7 @@ std::span<const Contact> Scene::contacts() const {
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
-    const SlotPair wanted = std::minmax({slot_of(a), slot_of(b)});
+    const SlotPair wanted = std::minmax({a.slot, b.slot});
     const auto first = std::ranges::lower_bound(state_->contacts, wanted, {}, pair_of);
     return {first, std::ranges::upper_bound(state_->contacts, wanted, {}, pair_of)};
 }

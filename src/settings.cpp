@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <raycontact/library_mode.h>
 #include <raycontact/settings.h>
 
 #include <raycontact/error.h>
@@ -70,24 +71,25 @@ void need_length(const char* name, const std::optional<double>& metres, bool zer
 
 void check_settings(const Settings& settings) {
     need_known(methods, settings.method, "method");
-    need_known(casters, settings.caster, "caster");
+    need_known(casters, settings.paper.caster, "caster");
     need_known(directions, settings.direction, "direction");
     need_known(features, settings.features, "features");
-    need_known(schedules, settings.schedule, "schedule");
-    need_length("displacement_threshold", settings.displacement_threshold, true);
-    need_length("culling_distance", settings.culling_distance, true);
-    need_length("distance_extension", settings.distance_extension, true);
+    need_known(schedules, settings.execution.schedule, "schedule");
+    need_length("displacement_threshold", settings.paper.displacement_threshold, true);
+    need_length("culling_distance", settings.paper.culling_distance, true);
+    need_length("distance_extension", settings.paper.distance_extension, true);
     need_length("speculative_margin", settings.speculative_margin, true);
-    if (!(std::isfinite(settings.confidence) && settings.confidence >= 1))
-        throw InputError("confidence must be at least 1 (paper equation 1), not " + text_of(settings.confidence));
-    if (settings.max_iterations == 0)
+    if (!(std::isfinite(settings.paper.confidence) && settings.paper.confidence >= 1))
+        throw InputError("confidence must be at least 1 (paper equation 1), not " + text_of(settings.paper.confidence));
+    if (settings.paper.max_iterations == 0)
         throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
-    if (settings.max_iterations > most_iterations)
+    if (settings.paper.max_iterations > most_iterations)
         throw InputError("max_iterations must be at most " + std::to_string(most_iterations) + ": longer walks circle");
-    if (settings.displacement_threshold && settings.distance_extension
-        && *settings.distance_extension < *settings.displacement_threshold)
-        throw InputError("distance_extension (" + text_of(*settings.distance_extension)
-                         + " m) must not be below displacement_threshold (" + text_of(*settings.displacement_threshold)
+    if (settings.paper.displacement_threshold && settings.paper.distance_extension
+        && *settings.paper.distance_extension < *settings.paper.displacement_threshold)
+        throw InputError("distance_extension (" + text_of(*settings.paper.distance_extension)
+                         + " m) must not be below displacement_threshold ("
+                         + text_of(*settings.paper.displacement_threshold)
                          + " m), or vertices could arrive unseen (paper section 3.1)");
 }
 

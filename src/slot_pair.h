@@ -8,13 +8,13 @@
 
 namespace raycontact {
 
-/// The place of a body in its scene; reused once the body is removed (BodyId also tells which body had it when).
+/// BodyId::slot
 using BodySlot = std::uint32_t;
 
 /// An unordered pair of bodies by their slots, first < second.
 using SlotPair = std::pair<BodySlot, BodySlot>;
 inline SlotPair pair_of(const Contact& contact) {
-    return {contact.body_a, contact.body_b};
+    return {contact.body_a.slot, contact.body_b.slot};
 }
 
 } // namespace raycontact

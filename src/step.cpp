@@ -31,7 +31,7 @@ std::vector<double> costs_of(Parts& parts) {
 NarrowPhase::NarrowPhase(const Settings& settings) : NarrowPhase(settings, open_devices(settings)) {}
 
 NarrowPhase::NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened)
-    : settings_(settings), parts_(std::move(opened)), balance_(settings.schedule, costs_of(parts_)),
+    : settings_(settings), parts_(std::move(opened)), balance_(settings.execution.schedule, costs_of(parts_)),
       assignment_(parts_.size()), found_(parts_.size()) {}
 
 void NarrowPhase::set_settings(const Settings& settings) {
@@ -42,9 +42,9 @@ void NarrowPhase::set_settings(const Settings& settings) {
 void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                        std::vector<Contact>& contacts, StepStats& stats) {
     const auto start = Clock::now();
-    std::vector<DeviceWork> work = std::move(stats.work); // to reuse its memory
+    std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
     stats = {};
-    stats.work = std::move(work);
+    stats.details.work = std::move(work);
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
@@ -68,14 +68,14 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
 
     count(pairs.size(), stats);
     stats.contacts_reduced = reducer_.left_out().size();
-    stats.contacts_merged = reducer_.merged();
+    stats.details.contacts_merged = reducer_.merged();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();
     for (const Contact& contact : contacts) {
-        if (is_speculative(contact))
+        if (contact.is_speculative())
             ++stats.contacts_speculative;
         else
-            stats.ray_length += double(contact.ray_length);
+            stats.details.ray_length += double(contact.ray_length);
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     }
     stats.contacts = contacts.size() - stats.contacts_speculative;
@@ -135,8 +135,8 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].put_in(bodies, state); });
     if (failed.empty()) {
         assignment_.move(moving.pairs, move.to);
-        stats.pairs_moved += moving.pairs.size();
-        stats.bytes_moved += state.size();
+        stats.details.pairs_moved += moving.pairs.size();
+        stats.details.bytes_moved += state.size();
         balance_.record_move({move.from, move.to, moving.share}, milliseconds_since(start));
     } else {
         give_away(failed, stats);
@@ -171,9 +171,9 @@ void NarrowPhase::merge(std::vector<Contact>& contacts) {
 }
 
 void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
-    stats.work.resize(parts_.size());
+    stats.details.work.resize(parts_.size());
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        DeviceWork& work = stats.work[i];
+        DeviceWork& work = stats.details.work[i];
         if (!parts_.has(i)) {
             work = {.device = parts_.device(i)};
             continue;

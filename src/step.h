@@ -12,7 +12,7 @@ namespace raycontact {
 class NarrowPhase {
 public:
     explicit NarrowPhase(const Settings& settings);
-    /// opened: what settings.devices names, or what stands for it in a test.
+    /// opened: what settings.execution.devices names, or what stands for it in a test.
     NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened);
 
     Parts& parts() { return parts_; }

@@ -33,10 +33,9 @@ std::uint16_t octahedral(const Triple& v) {
     return static_cast<std::uint16_t>(byte(x) | byte(y) << 8);
 }
 
-std::uint32_t device_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
-    const auto slots = [](const Pair& pair) { return std::pair(slot_of(pair.first), slot_of(pair.second)); };
+std::uint32_t device_of(const Scene& scene, BodyId a, BodyId b) {
     const auto pairs = scene.pairs();
-    const auto at = std::ranges::lower_bound(pairs, std::pair(a, b), {}, slots);
+    const auto at = std::ranges::lower_bound(pairs, Pair(a, b));
     return scene.device_of_pair(static_cast<std::size_t>(at - pairs.begin()));
 }
 
@@ -51,11 +50,11 @@ std::uint32_t LayerReader::vertex_of(const Shape& shape, std::uint32_t file_vert
 
 LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
     LayerStep layer{step, {}, {}};
-    const auto start = [&](const auto& found) {
-        const BodyId body = scene.body_in(found.vertex_body == VertexBody::a ? found.body_a : found.body_b);
+    const auto start = [&](const auto& found, const Vec3& point) {
+        const BodyId body = found.feature.source == Side::a ? found.body_a : found.body_b;
         Segment segment;
         segment.device = device_of(scene, found.body_a, found.body_b);
-        segment.point = triple(found.point);
+        segment.point = triple(point);
         return std::pair(segment, body);
     };
     const auto outward = [&](BodyId body, std::uint32_t vertex) {
@@ -64,20 +63,20 @@ LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
         return triple(transform_point({scene.pose(body).rotation, {}}, normal));
     };
     for (const Contact& contact : scene.contacts()) {
-        auto [segment, body] = start(contact);
-        for (std::size_t i = 0; i < 3; ++i) segment.normal[i] = double(contact.normal[i]);
+        auto [segment, body] = start(contact, contact.point());
+        segment.normal = triple(contact.normal);
         // A vertex's ray goes inward; the others' goes along the normal, the way out.
-        const bool inward = contact.feature == Feature::vertex;
-        segment.direction = inward ? outward(body, contact.vertex) : segment.normal;
-        if (inward || contact.vertex_body == VertexBody::a)
+        const bool inward = contact.feature.kind == FeatureKind::vertex;
+        segment.direction = inward ? outward(body, contact.feature.source_index()) : segment.normal;
+        if (inward || contact.feature.source == Side::a)
             for (double& part : segment.direction) part = -part;
         segment.length = double(contact.ray_length);
         segment.depth = double(contact.depth);
         layer.contacts.push_back(segment);
     }
     for (const Prediction& prediction : scene.predictions()) {
-        auto [segment, body] = start(prediction);
-        segment.direction = outward(body, prediction.vertex);
+        auto [segment, body] = start(prediction, prediction.point);
+        segment.direction = outward(body, prediction.feature.source_index());
         const Triple ahead = triple(prediction.ahead);
         for (std::size_t i = 0; i < 3; ++i) segment.length += (ahead[i] - segment.point[i]) * segment.direction[i];
         segment.length = std::max(segment.length, 0.0); // a little behind, where a walk passed an edge

@@ -72,7 +72,7 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
         reader.read_step(i, poses, pairs);
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             if (!bodies[b].alive(i)) continue;
-            const Pose& pose = poses[slot_of(bodies[b].id)];
+            const Pose& pose = poses[bodies[b].id.slot];
             if (bodies[b].first_step == i) first[b] = pose;
             if (!same(pose, first[b])) motion.moves[b] = true;
             if (i % stride != 0 && bodies[b].first_step != i) continue;

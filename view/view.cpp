@@ -97,13 +97,13 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         reader.read_step(i, poses, pairs);
         follower.place(i, poses);
         Scene& scene = follower.scene();
-        scene.step(pairs);
+        scene.find_contacts(pairs);
         found.pairs.push_back(scene.stats().pairs);
         found.contacts.push_back(scene.stats().contacts);
         found.depths.push_back(scene.stats().depth_max);
         if (i % options.layer_every == 0) found.layers.push_back(layer_reader.read(scene, i));
         if (i == 0)
-            for (const DeviceWork& work : scene.stats().work) found.devices.push_back(work.device);
+            for (const DeviceWork& work : scene.stats().details.work) found.devices.push_back(work.device);
         if (options.progress) options.progress(reader.steps() + i + 1);
     }
     return found;

@@ -27,8 +27,8 @@ Settings settings_of(const Way& way, const DeviceOptions& options) {
     Settings settings;
     settings.features = Features::vertices;
     settings.method = way.method;
-    settings.caster = way.caster;
-    settings.threads = options.threads;
+    settings.paper.caster = way.caster;
+    settings.execution.threads = options.threads;
     return settings;
 }
 
@@ -59,10 +59,10 @@ class Medians {
 public:
     void add(const Replayer& replayer) {
         const StepStats& stats = replayer.stats();
-        const DeviceWork& work = stats.work.front();
+        const DeviceWork& work = stats.details.work.front();
         const double values[] = {static_cast<double>(stats.pairs),
-                                 static_cast<double>(stats.rays_cast),
-                                 static_cast<double>(stats.walks),
+                                 static_cast<double>(stats.details.rays_cast),
+                                 static_cast<double>(stats.details.walks),
                                  static_cast<double>(stats.contacts),
                                  replayer.step_us(),
                                  1e3 * stats.narrow_ms,
@@ -128,7 +128,7 @@ void measure_all(const Work& work, const DeviceOptions& options, const std::func
     std::vector<Way> ways = ways_of(work, options);
     {
         Settings settings;
-        settings.threads = options.threads;
+        settings.execution.threads = options.threads;
         Replayer cpu(work, options.copies, settings, open_device("cpu", options.threads));
         for (Way& way : ways) {
             tell("cpu: hash of " + std::string(to_string(way.method)) + " " + std::string(to_string(way.caster)));
@@ -142,7 +142,7 @@ void measure_all(const Work& work, const DeviceOptions& options, const std::func
         const auto timings = std::make_shared<Timings>();
         opened.device = std::make_unique<TimingDevice>(std::move(opened.device), timings);
         Settings settings;
-        settings.threads = options.threads;
+        settings.execution.threads = options.threads;
         Replayer replayer(work, options.copies, settings, std::move(opened));
         for (const Way& way : ways) {
             tell(id + ": " + std::string(to_string(way.method)) + " " + std::string(to_string(way.caster)));

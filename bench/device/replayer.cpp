@@ -21,7 +21,7 @@ std::vector<OpenDevice> alone(OpenDevice opened) {
 Replayer::Replayer(const Work& work, std::uint32_t copies, const Settings& settings, OpenDevice opened)
     : work_(work), copies_(copies), narrow_(settings, alone(std::move(opened))) {
     // What is measured is a scene that has run for some time.
-    for (const auto& shape : work.shapes) shape->prepare(settings.threads);
+    for (const auto& shape : work.shapes) shape->prepare(settings.execution.threads);
     bodies_.resize(copies * work.body_shape.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const auto& shape = work.shapes[work.body_shape[i % work.body_shape.size()]];
@@ -43,8 +43,7 @@ void Replayer::step(std::size_t k) {
     const auto count = static_cast<BodySlot>(now.poses.size());
     pairs_.clear();
     for (std::uint32_t copy = 0; copy < copies_; ++copy)
-        for (const auto& [a, b] : now.pairs)
-            pairs_.emplace_back(copy * count + static_cast<BodySlot>(a), copy * count + static_cast<BodySlot>(b));
+        for (const auto& [a, b] : now.pairs) pairs_.emplace_back(copy * count + a.slot, copy * count + b.slot);
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
     narrow_.parts().wake();

@@ -143,8 +143,8 @@ std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions&
         Settings settings;
         settings.features = Features::vertices;
         settings.method = method;
-        settings.caster = options.caster;
-        settings.threads = 1;
+        settings.paper.caster = options.caster;
+        settings.execution.threads = 1;
         const auto counts = std::make_shared<Counts>();
         OpenDevice opened = open_device("cpu", 1);
         opened.device = std::make_unique<RayCounter>(std::move(opened.device), counts);

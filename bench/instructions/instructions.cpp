@@ -79,7 +79,7 @@ rc::Settings settings(rc::Method method, rc::Caster caster = rc::Caster::bvh) {
     rc::Settings settings;
     settings.features = rc::Features::vertices;
     settings.method = method;
-    settings.caster = caster;
+    settings.paper.caster = caster;
     return settings;
 }
 

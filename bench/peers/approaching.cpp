@@ -16,9 +16,9 @@ std::vector<double> find_touch(const Work& work, const std::vector<Encounter>& m
     const std::vector<Pair> pairs = encounter_pairs(meeting.size());
     const auto touching = [&](const std::vector<double>& distances) {
         place_encounters(*scene, meeting.size(),
-                         [&](BodyId i, bool second) { return meeting[i].pose(second, distances[i], 0, 1); });
+                         [&](std::size_t i, bool second) { return meeting[i].pose(second, distances[i], 0, 1); });
         std::vector<bool> touches(meeting.size());
-        for (const Contact& contact : scene->step(pairs)) touches[contact.body_a / 2] = true;
+        for (const Contact& contact : scene->find_contacts(pairs)) touches[contact.body_a.slot / 2] = true;
         return touches;
     };
     const double far = 2 * work.shapes[0]->radius(), stride = 0.02;

@@ -46,10 +46,10 @@ std::string csv(const Machine& machine, std::span<const WorkNote> works, std::sp
                         r.memory_bytes, r.memory_is_own_count ? "own" : "heap", r.hash, r.method_ratios[0],
                         r.method_ratios[1], r.method_ratios[2], pace.median, pace.most);
         if (r.wrong)
-            text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{}\n", r.sums.rays_cast, r.sums.walks,
-                                r.sums.walks_lost, r.sums.pairs_full, r.sums.pair_bytes, r.wrong->missed,
-                                r.wrong->invented, r.wrong->other_triangle, r.wrong->total(), r.wrong->rays_compared,
-                                r.wrong->contacts_compared);
+            text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{}\n", r.sums.details.rays_cast, r.sums.details.walks,
+                                r.sums.details.walks_lost, r.sums.details.pairs_full, r.sums.pair_bytes,
+                                r.wrong->missed, r.wrong->invented, r.wrong->other_triangle, r.wrong->total(),
+                                r.wrong->rays_compared, r.wrong->contacts_compared);
         else
             text += ",,,,,,,,,,,\n";
     }
@@ -101,8 +101,8 @@ std::string table(const Machine& machine, std::span<const WorkNote> works, std::
             if (r.work != work.name || !r.wrong) continue;
             text += fmt::format(
                 "  {:<16}{:>10.3f}{:>10.3f}{:>10.4f}{:>10.2f}{:>10.2f} | {:>8}{:>9}{:>8}{:>8}{:>14}{:>12}\n", r.peer,
-                per(r.sums.rays_cast, r.pair_steps), per(r.sums.walks, r.pair_steps),
-                per(r.sums.walks_lost, r.pair_steps), 50 * per(r.sums.pairs_full, r.pair_steps),
+                per(r.sums.details.rays_cast, r.pair_steps), per(r.sums.details.walks, r.pair_steps),
+                per(r.sums.details.walks_lost, r.pair_steps), 50 * per(r.sums.details.pairs_full, r.pair_steps),
                 static_cast<double>(r.sums.pair_bytes) / 1e6, r.wrong->missed, r.wrong->invented,
                 r.wrong->other_triangle, r.wrong->total(), r.wrong->rays_compared, r.wrong->contacts_compared);
         }

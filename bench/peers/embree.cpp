@@ -31,13 +31,13 @@ public:
 
     Found detect(const WorkStep& step) override {
         centred_.clear();
-        for (BodyId body = 0; body < step.poses.size(); ++body)
+        for (std::uint32_t body = 0; body < step.poses.size(); ++body)
             centred_.push_back(centred_pose(work_.shape(body), step.poses[body]));
         contacts_.clear();
         Found found;
         for (const Pair& pair : step.pairs) {
-            cast(slot_of(pair.first), slot_of(pair.second), found);
-            cast(slot_of(pair.second), slot_of(pair.first), found);
+            cast(pair.first.slot, pair.second.slot, found);
+            cast(pair.second.slot, pair.first.slot, found);
         }
         for (const Contact& contact : contacts_) found.depth_sum += static_cast<double>(contact.depth);
         found.contacts = contacts_.size();
@@ -85,19 +85,20 @@ private:
         const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         const auto& r = centred_[target].rotation;
         Contact contact;
-        contact.body_a = std::min(source, target);
-        contact.body_b = std::max(source, target);
-        contact.vertex_body = source < target ? VertexBody::a : VertexBody::b;
-        contact.triangle = hit.hit.primID;
-        contact.point = transform_point(
+        const bool from_a = source < target;
+        contact.body_a = {std::min(source, target), 0};
+        contact.body_b = {std::max(source, target), 0};
+        contact.feature.source = from_a ? Side::a : Side::b;
+        (from_a ? contact.feature.index_b : contact.feature.index_a) = hit.hit.primID;
+        (from_a ? contact.point_a : contact.point_b) = transform_point(
             centred_[target], {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
-        const double sign = source < target ? -1 : 1;
-        for (std::size_t i = 0; i < 3; ++i)
-            contact.normal[i] =
-                static_cast<float>(sign
-                                   * (r[3 * i] * static_cast<double>(n[0]) + r[3 * i + 1] * static_cast<double>(n[1])
-                                      + r[3 * i + 2] * static_cast<double>(n[2]))
-                                   / static_cast<double>(length));
+        const double sign = from_a ? -1 : 1;
+        const auto turned = [&](std::size_t row) {
+            const double sum = r[row] * static_cast<double>(n[0]) + r[row + 1] * static_cast<double>(n[1])
+                               + r[row + 2] * static_cast<double>(n[2]);
+            return static_cast<float>(sign * sum / static_cast<double>(length));
+        };
+        contact.normal = {turned(0), turned(3), turned(6)};
         contact.ray_length = hit.ray.tfar;
         contact.depth = hit.ray.tfar * (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
         contacts_.push_back(contact);

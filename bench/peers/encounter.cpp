@@ -42,7 +42,7 @@ Work encounter_work(std::string name, const std::shared_ptr<const Shape>& shape,
 
 std::vector<Pair> encounter_pairs(std::size_t count) {
     std::vector<Pair> pairs;
-    for (BodyId i = 0; i < count; ++i) pairs.emplace_back(2 * i, 2 * i + 1);
+    for (std::uint32_t i = 0; i < count; ++i) pairs.emplace_back(BodyId{2 * i, 0}, BodyId{2 * i + 1, 0});
     return pairs;
 }
 

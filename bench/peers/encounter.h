@@ -35,9 +35,9 @@ std::vector<Pair> encounter_pairs(std::size_t count);
 /// Sets both poses of each pair; `place` is called with (pair, whether the second body).
 template <typename Place>
 void place_encounters(Scene& scene, std::size_t count, Place&& place) {
-    for (BodyId i = 0; i < count; ++i) {
-        scene.set_pose(2 * i, place(i, false));
-        scene.set_pose(2 * i + 1, place(i, true));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        scene.set_pose({2 * i, 0}, place(i, false));
+        scene.set_pose({2 * i + 1, 0}, place(i, true));
     }
 }
 

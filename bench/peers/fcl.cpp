@@ -44,7 +44,7 @@ public:
         Found found;
         for (const Pair& pair : step.pairs) {
             result_.clear();
-            ::fcl::collide(objects_[pair.first].get(), objects_[pair.second].get(), request_, result_);
+            ::fcl::collide(objects_[pair.first.slot].get(), objects_[pair.second.slot].get(), request_, result_);
             for (std::size_t i = 0; i < result_.numContacts(); ++i)
                 found.depth_sum += result_.getContact(i).penetration_depth;
             found.contacts += result_.numContacts();

@@ -74,8 +74,8 @@ public:
         }
         Found found;
         for (const Pair& pair : step.pairs) {
-            const btCollisionObject* a = objects_[pair.first].get();
-            const btCollisionObject* b = objects_[pair.second].get();
+            const btCollisionObject* a = objects_[pair.first.slot].get();
+            const btCollisionObject* b = objects_[pair.second.slot].get();
             const btCollisionObjectWrapper wrap_a(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1, -1);
             const btCollisionObjectWrapper wrap_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
             btCollisionAlgorithm*& algorithm = algorithms_[pair];

@@ -43,7 +43,7 @@ struct Trial {
         rest(*scene, work.steps.front());
         for (std::size_t k = 0; k < work.steps.size(); ++k) {
             place(*scene, work.steps[k]);
-            scene->step(work.steps[k].pairs);
+            scene->find_contacts(work.steps[k].pairs);
             if (k == 0) continue;
             const StepStats& stats = scene->stats();
             // The same work each time: what exceeds the least is other programs'.
@@ -52,10 +52,10 @@ struct Trial {
                 continue;
             }
             pairs.push_back(static_cast<double>(stats.pairs));
-            rays.push_back(static_cast<double>(stats.rays));
+            rays.push_back(static_cast<double>(stats.details.rays));
             contacts.push_back(static_cast<double>(stats.contacts));
-            rays_cast.push_back(static_cast<double>(stats.rays_cast));
-            walks.push_back(static_cast<double>(stats.walks));
+            rays_cast.push_back(static_cast<double>(stats.details.rays_cast));
+            walks.push_back(static_cast<double>(stats.details.walks));
             narrow_ms.push_back(stats.narrow_ms);
         }
     }
@@ -68,7 +68,7 @@ void measure(const Work& work, const std::string& part, double size, int runs, c
         Settings settings;
         settings.features = Features::vertices;
         settings.method = method;
-        settings.threads = options.threads;
+        settings.execution.threads = options.threads;
         trials.push_back({method, make_scene(work, settings), {}, {}, {}, {}, {}, {}});
     }
     for (int run = 0; run < runs; ++run)

@@ -26,14 +26,14 @@ nlohmann::ordered_json works_json(std::span<const WorkNote> works) {
 }
 
 void put_counts(nlohmann::ordered_json& object, const StepStats& s, const recording::WrongRays& w) {
-    object["rays"] = s.rays;
-    object["rays_cast"] = s.rays_cast;
-    object["walks"] = s.walks;
-    object["walks_lost"] = s.walks_lost;
-    object["walk_casts"] = s.walk_casts;
-    object["predictions"] = s.predictions;
-    object["pairs_full"] = s.pairs_full;
-    object["pairs_asleep"] = s.pairs_asleep;
+    object["rays"] = s.details.rays;
+    object["rays_cast"] = s.details.rays_cast;
+    object["walks"] = s.details.walks;
+    object["walks_lost"] = s.details.walks_lost;
+    object["walk_casts"] = s.details.walk_casts;
+    object["predictions"] = s.details.predictions;
+    object["pairs_full"] = s.details.pairs_full;
+    object["pairs_asleep"] = s.details.pairs_asleep;
     object["pair_bytes"] = s.pair_bytes;
     object["contacts"] = s.contacts;
     object["wrong_rays"] = {

@@ -70,8 +70,8 @@ public:
         }
         Found found;
         for (const Pair& pair : step.pairs) {
-            const int count = dCollide(geoms_[pair.first], geoms_[pair.second], most_contacts, contacts_.data(),
-                                       static_cast<int>(sizeof(dContactGeom)));
+            const int count = dCollide(geoms_[pair.first.slot], geoms_[pair.second.slot], most_contacts,
+                                       contacts_.data(), static_cast<int>(sizeof(dContactGeom)));
             for (int i = 0; i < count; ++i) found.depth_sum += contacts_[static_cast<std::size_t>(i)].depth;
             found.contacts += static_cast<std::uint64_t>(count);
         }

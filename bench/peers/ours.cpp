@@ -18,8 +18,9 @@ public:
     Found detect(const WorkStep& step) override {
         place(*scene_, step);
         Found found;
-        for (const Contact& contact : scene_->step(step.pairs)) found.depth_sum += static_cast<double>(contact.depth);
-        found.rays = scene_->stats().rays;
+        for (const Contact& contact : scene_->find_contacts(step.pairs))
+            found.depth_sum += static_cast<double>(contact.depth);
+        found.rays = scene_->stats().details.rays;
         found.contacts = scene_->contacts().size();
         return found;
     }

@@ -20,7 +20,7 @@ public:
             shape->prepare(); // for the rays that the grids leave
             shapes_.add(shape);
         }
-        for (BodyId body = 0; body < work.body_shape.size(); ++body) {
+        for (std::uint32_t body = 0; body < work.body_shape.size(); ++body) {
             PlacedBody& placed = bodies_.emplace_back();
             placed.shape = &work.shape(body);
             placed.shape_index = shapes_.index_of(placed.shape);
@@ -35,7 +35,7 @@ public:
             placed.centred = centred_pose(*placed.shape, placed.pose);
         }
         pairs_.clear();
-        for (const auto& [a, b] : step.pairs) pairs_.emplace_back(slot_of(a), slot_of(b));
+        for (const auto& [a, b] : step.pairs) pairs_.emplace_back(a.slot, b.slot);
         find(false);
     }
 
@@ -44,7 +44,7 @@ protected:
 
     // grid: those alone that the grids of the shapes leave. They are cast, too.
     void find(bool grid) {
-        settings_.skip_outside = grid;
+        settings_.paper.skip_outside = grid;
         standard_.begin(update(), batch_);
         for (;;) {
             batch_.totals.read(*opened_.device, batch_.sums);

@@ -22,9 +22,8 @@ public:
 
 private:
     struct Name {
-        std::uint32_t body_a, body_b, vertex, triangle;
-        VertexBody vertex_body;
-        Feature feature;
+        BodyId body_a, body_b;
+        ContactFeature feature;
     };
     std::vector<std::vector<Name>> names_; ///< of each step
     std::vector<std::uint64_t> rays_;

@@ -27,9 +27,9 @@ void find_distances(Scene& scene, std::span<const Pair> pairs, const std::vector
     for (int halving = 0; halving < 14; ++halving) {
         for (std::size_t i = 0; i < rolls.size(); ++i) distances[i] = (near[i] + far[i]) / 2;
         place_encounters(scene, rolls.size(),
-                         [&](BodyId i, bool second) { return rolled(rolls[i], second, distances[i], turns); });
+                         [&](std::size_t i, bool second) { return rolled(rolls[i], second, distances[i], turns); });
         counts.assign(rolls.size(), 0);
-        for (const Contact& contact : scene.step(pairs)) ++counts[contact.body_a / 2];
+        for (const Contact& contact : scene.find_contacts(pairs)) ++counts[contact.body_a.slot / 2];
         for (std::size_t i = 0; i < rolls.size(); ++i) (counts[i] >= contacts ? near : far)[i] = distances[i];
     }
     distances = near;

@@ -32,10 +32,10 @@ std::vector<Watcher> watchers(std::uint64_t seed) {
         Settings settings;
         settings.features = Features::vertices;
         settings.method = method;
-        settings.cast_lost_walks = cast_lost_walks;
+        settings.paper.cast_lost_walks = cast_lost_walks;
         if (fixed) {
-            settings.displacement_threshold = fixed_displacement * avalanche_body;
-            settings.confidence = fixed_confidence;
+            settings.paper.displacement_threshold = fixed_displacement * avalanche_body;
+            settings.paper.confidence = fixed_confidence;
         }
         one.scene = std::make_unique<Scene>(settings);
     };
@@ -60,7 +60,7 @@ void sweep(const SeedOptions& options, const std::function<void(const std::strin
         Settings standard;
         standard.features = Features::vertices;
         standard.method = Method::standard;
-        standard.skip_outside = false;
+        standard.paper.skip_outside = false;
         Scene reference(standard);
         std::vector<Watcher> all = watchers(how.seed);
         for (const std::uint32_t shape : log.body_shape) {
@@ -74,13 +74,13 @@ void sweep(const SeedOptions& options, const std::function<void(const std::strin
             simulation.step();
             const Scene& watched = simulation.scene();
             const auto follow = [&](Scene& scene) {
-                for (BodyId body = 0; body < log.body_shape.size(); ++body) scene.set_pose(body, watched.pose(body));
-                return scene.step(watched.pairs());
+                for (const BodyId body : watched.bodies()) scene.set_pose(body, watched.pose(body));
+                return scene.find_contacts(watched.pairs());
             };
             const std::span<const Contact> right = follow(reference);
             for (Watcher& one : all) {
                 one.row.wrong.add(follow(*one.scene), right);
-                one.row.wrong.rays_compared += reference.stats().rays;
+                one.row.wrong.rays_compared += reference.stats().details.rays;
                 add(one.row.sums, one.scene->stats());
                 ++one.row.steps;
             }

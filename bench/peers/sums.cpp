@@ -7,15 +7,15 @@ namespace raycontact::bench {
 
 void add(StepStats& sums, const StepStats& step) {
     sums.pairs += step.pairs;
-    sums.vertices += step.vertices;
-    sums.rays += step.rays;
-    sums.rays_cast += step.rays_cast;
-    sums.pairs_full += step.pairs_full;
-    sums.pairs_asleep += step.pairs_asleep;
-    sums.walks += step.walks;
-    sums.walks_lost += step.walks_lost;
-    sums.walk_casts += step.walk_casts;
-    sums.predictions += step.predictions;
+    sums.details.vertices += step.details.vertices;
+    sums.details.rays += step.details.rays;
+    sums.details.rays_cast += step.details.rays_cast;
+    sums.details.pairs_full += step.details.pairs_full;
+    sums.details.pairs_asleep += step.details.pairs_asleep;
+    sums.details.walks += step.details.walks;
+    sums.details.walks_lost += step.details.walks_lost;
+    sums.details.walk_casts += step.details.walk_casts;
+    sums.details.predictions += step.details.predictions;
     sums.contacts += step.contacts;
     sums.pair_bytes = std::max(sums.pair_bytes, step.pair_bytes);
 }

@@ -24,9 +24,10 @@ constexpr const char* work_columns = "rays,rays_cast,walks,walks_lost,walk_casts
                                      "pair_bytes,contacts,missed,invented,other_triangle,wrong,rays_compared,"
                                      "contacts_compared";
 std::string work_fields(const StepStats& s, const WrongRays& w) {
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", s.rays, s.rays_cast, s.walks, s.walks_lost,
-                       s.walk_casts, s.predictions, s.pairs_full, s.pairs_asleep, s.pair_bytes, s.contacts, w.missed,
-                       w.invented, w.other_triangle, w.total(), w.rays_compared, w.contacts_compared);
+    return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", s.details.rays, s.details.rays_cast,
+                       s.details.walks, s.details.walks_lost, s.details.walk_casts, s.details.predictions,
+                       s.details.pairs_full, s.details.pairs_asleep, s.pair_bytes, s.contacts, w.missed, w.invented,
+                       w.other_triangle, w.total(), w.rays_compared, w.contacts_compared);
 }
 
 std::string fraction_of(const ThresholdRow& row) {
@@ -98,9 +99,9 @@ std::string table(const Machine& machine, std::span<const WorkNote> works, std::
         for (const ThresholdRow& r : rows) {
             if (r.work != work.name) continue;
             text += fmt::format("  {:<12}{:>10}{:>12.1f}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n",
-                                to_string(r.method), fraction_of(r), r.us, r.sums.pairs_full, r.sums.rays_cast,
-                                r.sums.walks, r.sums.walks_lost, r.wrong.missed, r.wrong.invented,
-                                r.wrong.other_triangle, r.wrong.total());
+                                to_string(r.method), fraction_of(r), r.us, r.sums.details.pairs_full,
+                                r.sums.details.rays_cast, r.sums.details.walks, r.sums.details.walks_lost,
+                                r.wrong.missed, r.wrong.invented, r.wrong.other_triangle, r.wrong.total());
         }
         for (const ThresholdRow& r : rows)
             if (r.work == work.name && r.method == Method::standard)

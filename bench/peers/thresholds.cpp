@@ -23,7 +23,7 @@ struct Contender {
         rest(*scene, work.steps.front());
         for (std::size_t k = 0; k < work.steps.size(); ++k) {
             place(*scene, work.steps[k]);
-            reference.compare(k, scene->step(work.steps[k].pairs), row.wrong);
+            reference.compare(k, scene->find_contacts(work.steps[k].pairs), row.wrong);
             add(row.sums, scene->stats());
         }
     }
@@ -33,7 +33,7 @@ struct Contender {
         const Times start = now();
         for (const WorkStep& step : work.steps) {
             place(*scene, step);
-            scene->step(step.pairs);
+            scene->find_contacts(step.pairs);
         }
         const Times end = now();
         const auto steps = static_cast<double>(work.steps.size());
@@ -52,7 +52,7 @@ Contender contender(const Work& work, Method method, std::optional<double> fract
     one.row.pair_steps = work.pair_steps();
     Settings settings = one_thread(method);
     if (fraction) {
-        settings.displacement_threshold = *fraction * size;
+        settings.paper.displacement_threshold = *fraction * size;
     }
     one.scene = make_scene(work, settings);
     return one;

@@ -41,8 +41,8 @@ Settings one_thread(Method method, Caster caster, Features features) {
     Settings settings;
     settings.features = features;
     settings.method = method;
-    settings.caster = caster;
-    settings.threads = 1;
+    settings.paper.caster = caster;
+    settings.execution.threads = 1;
     return settings;
 }
 
@@ -54,12 +54,12 @@ std::unique_ptr<Scene> make_scene(const Work& work, const Settings& settings) {
 }
 
 void place(Scene& scene, const WorkStep& step) {
-    for (BodyId body = 0; body < step.poses.size(); ++body) scene.set_pose(body, step.poses[body]);
+    for (std::uint32_t body = 0; body < step.poses.size(); ++body) scene.set_pose({body, 0}, step.poses[body]);
 }
 
 void rest(Scene& scene, const WorkStep& first) {
     place(scene, first);
-    scene.step(first.pairs);
+    scene.find_contacts(first.pairs);
     scene.set_settings(Settings(scene.settings())); // forgets
 }
 
@@ -67,7 +67,7 @@ void find_pairs(Work& work) {
     const auto scene = make_scene(work, one_thread(Method::standard));
     for (WorkStep& step : work.steps) {
         place(*scene, step);
-        scene->step();
+        scene->find_contacts();
         step.pairs.assign(scene->pairs().begin(), scene->pairs().end());
     }
 }
@@ -78,10 +78,11 @@ Pace pace(const Work& work) {
         const WorkStep &before = work.steps[k - 1], &now = work.steps[k];
         for (const Pair& pair : now.pairs) {
             if (!std::binary_search(before.pairs.begin(), before.pairs.end(), pair)) continue;
-            const Shape &a = work.shape(pair.first), &b = work.shape(pair.second);
+            const Shape &a = work.shape(pair.first.slot), &b = work.shape(pair.second.slot);
             const bool a_is_smaller = size_of(a) <= size_of(b);
             const Shape& small = a_is_smaller ? a : b;
-            const BodyId own = a_is_smaller ? pair.first : pair.second, other = a_is_smaller ? pair.second : pair.first;
+            const auto [own, other] = a_is_smaller ? std::pair(pair.first.slot, pair.second.slot)
+                                                   : std::pair(pair.second.slot, pair.first.slot);
             moved.push_back(displacement_bound(relative_pose(before.poses[other], before.poses[own]),
                                                relative_pose(now.poses[other], now.poses[own]), small.radius(), 0)
                             / size_of(small));
@@ -93,7 +94,7 @@ Pace pace(const Work& work) {
 
 double body_size(const Work& work) {
     double size = std::numeric_limits<double>::infinity();
-    for (BodyId body = 0; body < work.body_shape.size(); ++body) {
+    for (std::uint32_t body = 0; body < work.body_shape.size(); ++body) {
         const bool moves = std::any_of(work.steps.begin(), work.steps.end(), [&](const WorkStep& step) {
             return step.poses[body] != work.steps.front().poses[body];
         });
@@ -175,11 +176,11 @@ Work recorded_work(const std::filesystem::path& file, const AvalancheWorkOptions
         reader.read_step(k, poses, pairs);
         // Here every body keeps the place it has in the recording; one that is not there has no pair.
         step.poses.resize(reader.bodies().size());
-        for (BodyId body = 0; body < step.poses.size(); ++body) {
+        for (std::uint32_t body = 0; body < step.poses.size(); ++body) {
             const recording::Body& recorded = reader.bodies()[body];
             if (!recorded.alive(k)) continue;
-            step.poses[body] = poses[slot_of(recorded.id)];
-            body_of[recorded.id] = body;
+            step.poses[body] = poses[recorded.id.slot];
+            body_of[recorded.id] = {body, 0};
         }
         for (const auto& [a, b] : pairs) {
             const auto [first, second] = std::minmax(body_of.at(a), body_of.at(b));

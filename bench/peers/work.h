@@ -26,7 +26,7 @@ struct Work {
     std::vector<WorkStep> steps;           ///< one after the other, as a simulation goes
     std::uint32_t stride = 1; ///< of these, every how many are given to those who keep nothing and are slow
 
-    const Shape& shape(BodyId body) const { return *shapes[body_shape[body]]; }
+    const Shape& shape(std::uint32_t body) const { return *shapes[body_shape[body]]; }
     std::uint64_t pair_steps() const;
 };
 

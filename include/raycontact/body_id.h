@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
 #include <cstdint>
+#include <functional>
+#include <limits>
 
 namespace raycontact {
 
-/// Names one body of one scene and is never reused. The low 32 bits are the body's slot, the high 32 its generation:
-/// how many bodies had that slot before. As long as nothing has been removed, ids are 0, 1, 2, ..., like slots.
-/// Contacts hold slots: compare those with slot_of(id), never with the id itself.
-using BodyId = std::uint64_t;
+/// Names one body of one scene and is never given again. Scene::add() makes them; one of your own making is not valid.
+struct BodyId {
+    static constexpr std::uint32_t no_slot = std::numeric_limits<std::uint32_t>::max();
 
-constexpr std::uint32_t slot_of(BodyId body) {
-    return static_cast<std::uint32_t>(body);
-}
-constexpr std::uint32_t generation_of(BodyId body) {
-    return static_cast<std::uint32_t>(body >> 32);
-}
-constexpr BodyId body_id(std::uint32_t slot, std::uint32_t generation) {
-    return BodyId{generation} << 32 | slot;
-}
+    /// The body's place in the scene, as small as can be: use it as an index into arrays of your own. It passes to
+    /// another body once this one is removed.
+    std::uint32_t slot = no_slot;
+    std::uint32_t generation = 0; ///< how many bodies had the slot before
+
+    /// It was given by a scene, where its body may have been removed since (Scene::has()).
+    constexpr bool valid() const { return slot != no_slot; }
+    friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default; ///< by slot, then generation
+};
 
 } // namespace raycontact
+
+template <>
+struct std::hash<raycontact::BodyId> {
+    std::size_t operator()(const raycontact::BodyId& id) const noexcept {
+        return std::hash<std::uint64_t>()(std::uint64_t{id.generation} << 32 | id.slot);
+    }
+};

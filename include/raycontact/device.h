@@ -11,7 +11,7 @@ namespace raycontact {
 
 /// A device as `raycontact devices` lists it.
 struct DeviceInfo {
-    std::string id;   ///< as Settings::devices takes it
+    std::string id;   ///< as Execution::devices takes it
     std::string kind; ///< its back end: the id up to a colon
     std::string type; ///< "cpu", "gpu" or "other"
     std::string bus;  ///< address of the card, as "0000:65:00.0"; empty where none is known
@@ -41,8 +41,8 @@ struct DeviceWork {
 
 struct Settings;
 
-/// The ids that Settings::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is malformed
-/// or names a device twice or beside its own part; does not open any.
+/// The ids that Execution::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is
+/// malformed or names a device twice or beside its own part; does not open any.
 std::vector<std::string> chosen_devices(const Settings& settings);
 
 /// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/library_mode.h>
+#include <raycontact/vector.h>
 
 #include <array>
 #include <span>
 
 namespace raycontact {
-
-/// A point or direction in double precision; metres or unitless, the frame is said where it is used.
-struct Vec3 {
-    double x = 0, y = 0, z = 0;
-    friend bool operator==(const Vec3&, const Vec3&) = default;
-};
 
 /// Rigid placement of a body: x_world = rotation * x_body + translation. Right-handed, metres.
 struct Pose {

@@ -36,16 +36,16 @@ public:
     Recorder(Recorder&&) noexcept;
     Recorder& operator=(Recorder&&) noexcept;
 
-    /// After each Scene::step(). Throws InputError when method, direction, features or thresholds were changed since
-    /// the start, and std::runtime_error naming the file when it cannot be written (a full disk, more than the 4 GiB of
-    /// a .glb).
-    void step();
+    /// After each Scene::find_contacts(): adds its step. Throws InputError when method, direction, features or
+    /// thresholds were changed since the start, and std::runtime_error naming the file when it cannot be written (a
+    /// full disk, more than the 4 GiB of a .glb).
+    void record();
     /// Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards.
     void finish();
 
     std::uint32_t steps() const;   ///< recorded so far
     std::uint64_t bytes() const;   ///< of the file
-    double seconds() const;        ///< spent in step()
+    double seconds() const;        ///< spent in record()
     double finish_seconds() const; ///< spent in finish()
     std::string hash() const;      ///< of the contacts so far, as ContactHash gives it
 

@@ -3,11 +3,11 @@
 
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
-#include <raycontact/device.h>
 #include <raycontact/error.h>
 #include <raycontact/prediction.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
+#include <raycontact/step_stats.h>
 
 #include <cstdint>
 #include <memory>
@@ -22,47 +22,8 @@ namespace raycontact {
 /// An unordered pair of bodies; the first has the lower slot.
 using Pair = std::pair<BodyId, BodyId>;
 
-/// What the last step did.
-struct StepStats {
-    std::uint64_t pairs = 0;    ///< unordered pairs in the narrow phase
-    std::uint64_t vertices = 0; ///< vertices tested against bounds, after whole clusters were ruled out
-    /// `standard`: rays of the rule, the vertices inside the other body's bounds. `certified`: the vertices that it
-    /// cannot prove safe; for pairs too fast for it, the vertices in the bounds whose block it cannot prove safe.
-    /// `iterative` and `predictive`: the vertices in the bounds (`predictive` widens them) that a full look tested, and
-    /// the rays followed.
-    std::uint64_t rays = 0;
-    std::uint64_t rays_cast =
-        0; ///< traced through the mesh, along the ray or ahead of it; the rest were followed or known already
-    std::uint64_t side_tests =
-        0; ///< directions cast to tell inside from outside where the closest hits lay within rounding
-    std::uint64_t pairs_full = 0;        ///< ordered pairs looked at in full: those new, fast, or moved far
-    std::uint64_t pairs_asleep = 0;      ///< ordered pairs without rays, of which no vertex was tested
-    std::uint64_t pairs_as_standard = 0; ///< ordered pairs that `certified` left to `standard`, which costs less there
-    std::uint64_t walks = 0;             ///< rays followed from last step's triangle (iterative, predictive)
-    std::uint64_t walks_lost = 0;        ///< of these, how many ended nowhere
-    std::uint64_t walk_casts = 0;        ///< of those, how many were cast in full instead
-    std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
-    std::uint64_t pair_bytes = 0;        ///< memory kept for the open pairs
-    std::uint64_t contacts = 0;          ///< that touch
-    std::uint64_t contacts_new = 0;      ///< of these, those that did not touch in the last step
-    std::uint64_t contacts_lost = 0;     ///< that touched in the last step, and do not in this one
-    /// Beside them in Scene::contacts(): those that do not touch yet.
-    std::uint64_t contacts_speculative = 0;
-    /// Found, but left out by Settings::max_contacts_per_pair or max_contacts.
-    std::uint64_t contacts_reduced = 0;
-    std::uint64_t contacts_merged = 0; ///< of those, how many say what one that was chosen says
-    double ray_length = 0;             ///< sum over the contacts that touch, metres (paper section 5.2)
-    double depth_max = 0;              ///< of all contacts, those left out as well, metres
-    double broad_ms = 0;               ///< our broad phase; 0 when pairs were given
-    double narrow_ms = 0;              ///< everything after the broad phase
-    std::uint64_t pairs_moved = 0;     ///< from one device to another
-    std::uint64_t bytes_moved = 0;     ///< of what was kept for them
-    std::uint64_t devices_lost = 0;    ///< that failed in this step; others cast their pairs in full
-    std::vector<DeviceWork> work;      ///< one entry a device, those lost included
-    std::vector<std::string> warnings; ///< in plain words, as of a device that failed; the contacts are complete
-};
-
-/// Bodies with shapes and poses; each step finds every contact between them. Not thread-safe; use one scene per thread.
+/// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
+/// call of find_contacts(). Not thread-safe; use one scene per thread.
 class Scene {
 public:
     /// Throws InputError when settings name a device this machine or this version cannot use.
@@ -80,6 +41,9 @@ public:
     void remove(BodyId body);
     /// Throws InputError naming the body when the pose is not finite and rigid; the old pose then stays.
     void set_pose(BodyId body, const Pose& pose);
+    /// The same in bulk: poses[i] of bodies[i]. Throws InputError if there are not as many poses as bodies, and as
+    /// set_pose(), naming the place in the list; then no pose changes.
+    void set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses);
     const Pose& pose(BodyId body) const;
     /// Where the body is expected after the next step, for the speculative contacts of that step. Without it, the body
     /// is expected to go on as it did since the last step. Nothing without Settings::speculative. Throws InputError as
@@ -93,16 +57,16 @@ public:
     /// A number of your own for each body, such as the address of your object; 0 at first.
     void set_user_data(BodyId body, std::uint64_t data);
     std::uint64_t user_data(BodyId body) const;
-    /// step() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At first a
-    /// body is in group 1, and its mask has all bits. step(pairs) tests every pair that it is given.
+    /// find_contacts() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At
+    /// first a body is in group 1, and its mask has all bits. find_contacts(pairs) tests every pair that it is given.
     void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
-    /// The body that a contact names by its slot. Throws InputError if the slot has none, as after remove().
-    BodyId body_in(std::uint32_t slot) const;
+    /// It was added here and not removed.
+    bool has(BodyId body) const;
     std::uint32_t body_count() const;
     /// Of all bodies, by slot.
     std::vector<BodyId> bodies() const;
     /// Changes method, caster, direction or thresholds between two steps; forgets what the last method kept. Throws
-    /// InputError for settings that make no sense, and for other devices, another schedule or number of threads.
+    /// InputError for settings that make no sense, and for another Execution than the scene was made with.
     void set_settings(const Settings& settings);
     const Settings& settings() const;
 
@@ -111,12 +75,12 @@ public:
     void prepare();
 
     /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts.
-    std::span<const Contact> step();
+    std::span<const Contact> find_contacts();
     /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws
     /// InputError for a pair of a body with itself or a body that does not exist.
-    std::span<const Contact> step(std::span<const Pair> pairs);
+    std::span<const Contact> find_contacts(std::span<const Pair> pairs);
 
-    /// Of the last step; sorted by (body_a, body_b, feature, vertex_body, vertex, triangle). Valid until the next step.
+    /// Of the last step; sorted by the slots of both bodies, then by key(). Valid until the next step.
     std::span<const Contact> contacts() const;
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
@@ -125,7 +89,7 @@ public:
     const StepStats& stats() const;
     /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;
-    /// Which entry of stats().work found the contacts of pairs()[i]. Throws InputError for another i.
+    /// Which entry of StepDetails::work found the contacts of pairs()[i]. Throws InputError for another i.
     std::uint32_t device_of_pair(std::size_t i) const;
     /// What the last step of method `predictive` expects to touch next; sorted as contacts; none of other methods. Read
     /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go.

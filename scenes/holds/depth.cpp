@@ -18,7 +18,7 @@ bool is_in_box(const Shape& shape, const Vec3& p) {
 
 Settings plain() {
     Settings settings;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     settings.speculative = false;
     settings.method = Method::standard;
     return settings;
@@ -49,12 +49,12 @@ double DepthProbe::deepest_vertex(const Body& in, const Pose& pose_in, const Bod
 
 double DepthProbe::deepest(const std::vector<Pose>& poses) {
     for (std::size_t i = 0; i < poses.size(); ++i) scene_.set_pose(bodies_[i].id, poses[i]);
-    scene_.step();
+    scene_.find_contacts();
     double deepest = 0;
     for (const Contact& contact : scene_.contacts())
-        if (contact.feature == Feature::edges) deepest = std::max(deepest, static_cast<double>(contact.depth));
+        if (contact.feature.kind == FeatureKind::edges) deepest = std::max(deepest, static_cast<double>(contact.depth));
     for (const auto& [a, b] : scene_.pairs()) {
-        const Body &first = bodies_[slot_of(a)], &second = bodies_[slot_of(b)];
+        const Body &first = bodies_[a.slot], &second = bodies_[b.slot];
         if (first.fixed && second.fixed) continue;
         deepest = std::max(deepest, deepest_vertex(first, scene_.pose(a), second, scene_.pose(b)));
         deepest = std::max(deepest, deepest_vertex(second, scene_.pose(b), first, scene_.pose(a)));

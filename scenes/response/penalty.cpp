@@ -8,9 +8,8 @@
 namespace raycontact::scenes {
 
 Vec3 penalty_force(const Penalty& penalty, const Contact& contact, const Vec3& velocity) {
-    if (is_speculative(contact)) return {};
-    const Vec3 normal{static_cast<double>(contact.normal[0]), static_cast<double>(contact.normal[1]),
-                      static_cast<double>(contact.normal[2])};
+    if (contact.is_speculative()) return {};
+    const Vec3 normal = contact.normal;
     const double parting = dot(velocity, normal);
     const double pressed = static_cast<double>(contact.weight)
                            * (penalty.stiffness * static_cast<double>(contact.depth) - penalty.damping * parting);

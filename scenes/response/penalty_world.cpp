@@ -35,12 +35,12 @@ std::uint32_t PenaltyWorld::add(std::shared_ptr<const Shape> shape, double densi
     }
     body.id = scene_.add(std::move(shape), pose);
     bodies_.push_back(body);
-    return slot_of(body.id);
+    return body.id.slot;
 }
 
 void PenaltyWorld::press(const Contact& contact) {
-    Body &a = bodies_[contact.body_a], &b = bodies_[contact.body_b];
-    const Vec3 p = point_on_a(contact), q = point_on_b(contact);
+    Body &a = bodies_[contact.body_a.slot], &b = bodies_[contact.body_b.slot];
+    const Vec3 p = contact.point_a, q = contact.point_b;
     const Vec3 middle = 0.5 * (p + q); // one point for both: no torque out of nothing
     const Vec3 arm_a = middle - a.pose.translation, arm_b = middle - b.pose.translation;
     const Vec3 force =
@@ -72,7 +72,7 @@ void PenaltyWorld::step(double dt) {
         body.force = body.mass * gravity_;
         body.torque = {};
     }
-    for (const Contact& contact : scene_.step()) press(contact);
+    for (const Contact& contact : scene_.find_contacts()) press(contact);
     for (Body& body : bodies_) {
         if (body.mass == 0) continue;
         move(body, dt);
@@ -86,7 +86,7 @@ double PenaltyWorld::energy() const {
         sum += body.mass * (dot(body.velocity, body.velocity) / 2 - dot(gravity_, body.pose.translation))
                + dot(body.spin, times(body.pose, body.inertia, body.spin)) / 2;
     for (const Contact& contact : scene_.contacts()) {
-        if (is_speculative(contact)) continue;
+        if (contact.is_speculative()) continue;
         const double depth = static_cast<double>(contact.depth);
         sum += static_cast<double>(contact.weight) * penalty_.stiffness * depth * depth / 2;
     }

@@ -39,7 +39,7 @@ std::unique_ptr<btCollisionDispatcher> make_dispatcher(Finder finder, bool specu
     if (finder == Finder::edges || finder == Finder::vertices) {
         Settings settings;
         settings.features = finder == Finder::edges ? Features::edges : Features::vertices;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         settings.speculative = speculative;
         return std::make_unique<bullet::CollisionDispatcher>(&configuration, settings);
     }

@@ -7,34 +7,35 @@ namespace raycontact {
 
 namespace {
 
-LostContact key_of(const Contact& c) {
-    return {c.body_a, c.body_b, c.vertex_body, c.feature, c.vertex, c.other()};
+// All of a feature that its key tells.
+ContactFeature feature_of(std::uint64_t key) {
+    constexpr std::uint64_t edge = (1u << 31) - 1;
+    const std::uint64_t tag = key >> 62;
+    if (tag == 2)
+        return {FeatureKind::edges, Side::a, static_cast<std::uint32_t>(key >> 31 & edge),
+                static_cast<std::uint32_t>(key & edge)};
+    const bool inside = tag == 3;
+    const bool of_a = inside ? (key >> 32 & 1) == 0 : tag == 0;
+    const auto vertex = static_cast<std::uint32_t>(key);
+    constexpr std::uint32_t none = ContactFeature::no_index;
+    return {inside ? FeatureKind::inside : FeatureKind::vertex, of_a ? Side::a : Side::b, of_a ? vertex : none,
+            of_a ? none : vertex};
 }
 
 } // namespace
-
-ContactOrder order_of(const LostContact& key) {
-    const std::uint64_t source =
-        static_cast<std::uint64_t>(key.feature) << 8 | static_cast<std::uint8_t>(key.vertex_body);
-    return {std::uint64_t{key.body_a} << 32 | key.body_b, source << 32 | key.vertex, key.other};
-}
-
-ContactOrder order_of(const Contact& contact) {
-    return order_of(key_of(contact));
-}
 
 void Changes::mark(std::span<Contact> contacts) {
     lost_.clear();
     new_count_ = 0;
     std::size_t old = 0;
     const auto lose = [this](std::size_t i) {
-        if (touched_[i] != 0) lost_.push_back(previous_[i]);
+        if (touched_[i] != 0) lost_.push_back({previous_[i].body_a, previous_[i].body_b, feature_of(previous_[i].key)});
     };
     for (Contact& contact : contacts) {
         const ContactOrder order = order_of(contact);
-        const bool touches = !is_speculative(contact);
-        for (; old < previous_.size() && order_of(previous_[old]) < order; ++old) lose(old);
-        const bool known = old < previous_.size() && order_of(previous_[old]) == order;
+        const bool touches = !contact.is_speculative();
+        for (; old < previous_.size() && previous_[old].order() < order; ++old) lose(old);
+        const bool known = old < previous_.size() && previous_[old].order() == order;
         contact.is_new = !known || (touches && touched_[old] == 0);
         if (known && !touches) lose(old);
         if (known) ++old;
@@ -47,8 +48,8 @@ void Changes::mark(std::span<Contact> contacts) {
     touched_.resize(contacts.size());
     give_back(previous_, touched_, lost_);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        previous_[i] = key_of(contacts[i]);
-        touched_[i] = is_speculative(contacts[i]) ? 0 : 1;
+        previous_[i] = {contacts[i].body_a, contacts[i].body_b, contacts[i].key()};
+        touched_[i] = contacts[i].is_speculative() ? 0 : 1;
     }
 }
 

@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "slot_pair.h"
+
 #include <raycontact/contact.h>
 
 #include <cstdint>
 #include <span>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
 
-/// What contacts are sorted by, in three words.
-using ContactOrder = std::tuple<std::uint64_t, std::uint64_t, std::uint32_t>;
-ContactOrder order_of(const LostContact& key);
-ContactOrder order_of(const Contact& contact);
+/// What contacts are sorted by: the pair, then the key.
+using ContactOrder = std::pair<SlotPair, std::uint64_t>;
+inline ContactOrder order_of(const Contact& contact) {
+    return {pair_of(contact), contact.key()};
+}
 
 /// Finds the contacts of a step that the last step did not have, and those that are gone. What touches is new where it
 /// did not touch before.
 class Changes {
 public:
-    /// Of the last step, sorted.
-    std::span<const LostContact> previous() const { return previous_; }
+    /// A contact of the last step.
+    struct Known {
+        BodyId body_a, body_b;
+        std::uint64_t key;
+        ContactOrder order() const { return {{body_a.slot, body_b.slot}, key}; }
+    };
+    /// Sorted.
+    std::span<const Known> previous() const { return previous_; }
     /// contacts: sorted; sets is_new.
     void mark(std::span<Contact> contacts);
     std::span<const LostContact> lost() const { return lost_; }
@@ -28,7 +37,8 @@ public:
     std::size_t new_count() const { return new_count_; }
 
 private:
-    std::vector<LostContact> previous_, lost_;
+    std::vector<Known> previous_;
+    std::vector<LostContact> lost_;
     std::vector<std::uint8_t> touched_; ///< by place in previous_
     std::size_t new_count_ = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace raycontact {
 
-/// Turns contacts in the targets' frames into world contacts, sorted by (body_a, body_b, vertex_body, vertex).
+/// Turns contacts in the targets' frames into world contacts, sorted by pair and key.
 /// All are contacts of vertices; the edges' stage sorts its own in. Points are in double.
 class Placer {
 public:

@@ -2,17 +2,17 @@
 #include "contacts/predictions.h"
 
 #include "contacts/changes.h"
+#include "contacts/write_contact.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace raycontact {
 
 namespace {
 
-auto key_of(const Prediction& p) {
-    return std::tuple(p.body_a, p.body_b, p.vertex_body, p.vertex);
+ContactOrder order_of(const Prediction& p) {
+    return {{p.body_a.slot, p.body_b.slot}, p.feature.key()};
 }
 
 // Where the vertex's outward normal meets the plane of the triangle; the vertex itself where they are parallel.
@@ -36,22 +36,20 @@ std::vector<Prediction> find_predictions(std::span<const KeptRay> rays, std::spa
         const auto [a, b] = ray.pair;
         const PlacedBody &source = bodies[ray.from_a ? a : b], &target = bodies[ray.from_a ? b : a];
         Prediction prediction;
-        prediction.body_a = a;
-        prediction.body_b = b;
-        prediction.vertex_body = ray.from_a ? VertexBody::a : VertexBody::b;
-        prediction.vertex = source.shape->vertex_index()[ray.vertex];
-        const ContactOrder own =
-            order_of(LostContact{a, b, prediction.vertex_body, Feature::vertex, prediction.vertex, 0});
+        prediction.body_a = id_in(bodies, a);
+        prediction.body_b = id_in(bodies, b);
+        prediction.feature = vertex_feature(ray.from_a, source.shape->vertex_index()[ray.vertex],
+                                            target.shape->triangle_index()[ray.triangle]);
+        const ContactOrder own = order_of(prediction);
         const auto has_it = [&](std::span<const Contact> list) {
-            return std::ranges::binary_search(list, own, {}, [](const Contact& c) { return order_of(c); });
+            return std::ranges::binary_search(list, own, {}, [](const Contact& c) { return raycontact::order_of(c); });
         };
         if (std::ranges::any_of(contacts, has_it)) continue;
-        prediction.triangle = target.shape->triangle_index()[ray.triangle];
         prediction.point = transform_point(source.pose, source.shape->vertices()[ray.vertex]);
         prediction.ahead = meeting_point(source, target, ray, prediction.point);
         found.push_back(prediction);
     }
-    std::ranges::sort(found, {}, key_of);
+    std::ranges::sort(found, {}, [](const Prediction& p) { return order_of(p); });
     return found;
 }
 

@@ -16,11 +16,8 @@ constexpr double one_place = 0.01; // of the smaller body's size
 constexpr std::uint32_t not_chosen = std::numeric_limits<std::uint32_t>::max(), merged_away = not_chosen - 1;
 
 ManifoldPoint point_of(const Contact& contact, double place) {
-    return {0.5 * (point_on_a(contact) + point_on_b(contact)),
-            {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])},
-            double(contact.depth),
-            std::numeric_limits<double>::infinity(),
-            place};
+    return {0.5 * (contact.point_a + contact.point_b), contact.normal, double(contact.depth),
+            std::numeric_limits<double>::infinity(), place};
 }
 
 } // namespace
@@ -32,12 +29,11 @@ void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const 
     const double place = one_place * smaller_size(bodies[a], bodies[b]);
     work.points.clear();
     const auto previous = changes.previous();
-    auto old = std::ranges::lower_bound(previous, order_of(contacts.front()), {},
-                                        [](const LostContact& key) { return order_of(key); });
+    auto old = std::ranges::lower_bound(previous, order_of(contacts.front()), {}, &Changes::Known::order);
     for (const Contact& contact : contacts) {
         ManifoldPoint& point = work.points.emplace_back(point_of(contact, place));
-        while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
-        point.present = old != previous.end() && order_of(*old) == order_of(contact);
+        while (old != previous.end() && old->order() < order_of(contact)) ++old;
+        point.present = old != previous.end() && old->order() == order_of(contact);
     }
     work.patches.clear();
     join_patches(work.points, patch_cosine, work.patches);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/refine.h"
 
+#include "contacts/write_contact.h"
+
 #include "shape/mesh_rays.h"
 
 namespace raycontact {
@@ -24,11 +26,9 @@ void Refiner::refine(Contact& contact, const kernels::LocalContact& local) const
     if (!(static_cast<float>(depth) > 0)) return; // on the surface, by rounding
     const bool has_way = nearest.edges != 0 && depth > hair_;
     const Vec3 way = rotated(turned_.rotation, has_way ? (1 / depth) * off : unit(area_normal(target_, face)));
-    const double sign = contact.vertex_body == VertexBody::a ? -1 : 1;
-    contact.triangle = target_.mesh.triangle_index[face];
-    contact.normal = {static_cast<float>(sign * way.x), static_cast<float>(sign * way.y),
-                      static_cast<float>(sign * way.z)};
-    contact.depth = static_cast<float>(depth);
+    (contact.feature.source == Side::a ? contact.feature.index_b : contact.feature.index_a) =
+        target_.mesh.triangle_index[face];
+    write_direction(contact, way, static_cast<float>(depth));
 }
 
 } // namespace raycontact

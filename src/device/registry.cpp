@@ -110,8 +110,8 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
 }
 
 std::vector<std::string> chosen_devices(const Settings& settings) {
-    const bool all = settings.devices == "all";
-    if (!all && settings.devices != "auto") return read_list(settings.devices);
+    const bool all = settings.execution.devices == "all";
+    if (!all && settings.execution.devices != "auto") return read_list(settings.execution.devices);
     // On the CPU `certified` leaves alone most of what a GPU would have to cast in each step.
     if (!all && settings.method == Method::certified) return {"cpu"};
     std::vector<std::string> gpus = every_gpu();
@@ -123,7 +123,7 @@ std::vector<std::string> chosen_devices(const Settings& settings) {
 std::vector<OpenDevice> open_devices(const Settings& settings) {
     std::vector<OpenDevice> opened;
     for (const std::string& id : chosen_devices(settings))
-        opened.push_back(open_device(id, settings.threads, settings.inexact));
+        opened.push_back(open_device(id, settings.execution.threads, settings.execution.inexact));
     return opened;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/edge_stage.h"
 
+#include "contacts/write_contact.h"
 #include "give_back.h"
 #include "speculative/speculative_pair.h"
 
@@ -15,10 +16,6 @@ namespace {
 
 constexpr std::size_t pairs_in_block = 32, most_work = 64;
 
-auto order_of(const Contact& c) {
-    return std::tuple(c.feature, c.vertex_body, c.vertex, c.triangle);
-}
-
 // Of an edge, the area of its faces.
 double area_at(const ShapeData& shape, std::uint32_t edge) {
     const auto [own, across] = faces_of(shape, edge);
@@ -26,7 +23,7 @@ double area_at(const ShapeData& shape, std::uint32_t edge) {
 }
 
 float weight_of(const ShapeData& source, const ShapeData& target, const FeatureContact& found) {
-    if (found.feature != Feature::edges) return source.vertex_areas[found.index];
+    if (found.kind != FeatureKind::edges) return source.vertex_areas[found.index];
     return static_cast<float>((area_at(source, found.index) + area_at(target, found.other)) / 12);
 }
 
@@ -64,7 +61,7 @@ bool has_part_inside(const SourceMesh& placed) {
 }
 
 // The contact of a source of which a component lies wholly inside the target: its deepest vertex, the nearest face.
-std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, VertexBody source) {
+std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Side source) {
     std::optional<FeatureContact> deepest;
     const ShapeData& target = placed.target;
     for (std::uint32_t v = 0; v < placed.source.points.size(); ++v) {
@@ -80,7 +77,7 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
         const double depth = length(out);
         const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : unit(area_normal(target, nearest.face));
         if (!(depth > 0)) continue;
-        deepest = {source, Feature::inside, v, nearest.face, p, normal, depth};
+        deepest = {source, FeatureKind::inside, v, nearest.face, p, normal, depth};
     }
     return deepest;
 }
@@ -88,8 +85,8 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Vertex
 // Whether either body has a part inside the other. Of bodies whose surfaces do not cross.
 bool find_inside(const PlacedBody& a, const PlacedBody& b, std::vector<FeatureContact>& found) {
     bool any = false;
-    for (const VertexBody side : {VertexBody::a, VertexBody::b}) {
-        const SourceMesh placed = side == VertexBody::a ? SourceMesh(a, b) : SourceMesh(b, a);
+    for (const Side side : {Side::a, Side::b}) {
+        const SourceMesh placed = side == Side::a ? SourceMesh(a, b) : SourceMesh(b, a);
         if (placed.target.header.closed == 0 || !has_part_inside(placed)) continue;
         any = true;
         if (const auto inside = contact_of_inside(placed, side)) found.push_back(*inside);
@@ -102,18 +99,18 @@ void sort(std::span<NearEdge> near) {
     if (!std::ranges::is_sorted(near, {}, key)) std::ranges::sort(near, {}, key);
 }
 
-Contact place(const FeatureContact& found, const SlotPair& pair, const PlacedBody& source, const PlacedBody& target,
-              Direction direction) {
+void place(Contact& contact, const FeatureContact& found, BodyId a, BodyId b, const PlacedBody& source,
+           const PlacedBody& target, Direction direction) {
     const ShapeData &shape = source.shape->data(), &other = target.shape->data();
-    const bool edges = found.feature == Feature::edges;
-    Contact contact = contact_at(pair, found.source, target, found.point, found.normal);
-    contact.feature = found.feature;
-    contact.vertex = edges ? file_edge(shape, found.index) : shape.mesh.vertex_index[found.index];
-    contact.triangle = edges ? file_edge(other, found.other) : other.mesh.triangle_index[found.other];
-    contact.depth = static_cast<float>(found.depth);
-    contact.ray_length = std::fabs(contact.depth);
-    if (direction == Direction::weighted) contact.weight = weight_of(shape, other, found);
-    return contact;
+    const bool edges = found.kind == FeatureKind::edges;
+    const ContactFeature feature =
+        edges ? ContactFeature{found.kind, Side::a, file_edge(shape, found.index), file_edge(other, found.other)}
+              : vertex_feature(found.source == Side::a, shape.mesh.vertex_index[found.index],
+                               other.mesh.triangle_index[found.other], found.kind);
+    const auto depth = static_cast<float>(found.depth);
+    write_contact(contact, a, b, feature, transform_point(target.centred, found.point),
+                  transform_point({target.centred.rotation, {}}, found.normal), depth, std::fabs(depth),
+                  direction == Direction::weighted ? weight_of(shape, other, found) : 1);
 }
 
 } // namespace
@@ -168,11 +165,12 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     work.found.insert(work.found.end(), coming.begin(), coming.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
-        const bool from_a = found.source == VertexBody::a;
-        block.contacts.push_back(
-            place(found, pair, from_a ? a : b, from_a ? b : a, question.update.settings.direction));
+        const bool from_a = found.source == Side::a;
+        place(block.contacts.emplace_back(), found, id_in(question.update.bodies, pair.first),
+              id_in(question.update.bodies, pair.second), from_a ? a : b, from_a ? b : a,
+              question.update.settings.direction);
     }
-    std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), {}, order_of);
+    std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), {}, &Contact::key);
 }
 
 std::uint64_t EdgeStage::bytes() const {
@@ -209,7 +207,7 @@ void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) 
         const auto own = contacts.begin() + question.local.first(2 * pair);
         const auto own_end = contacts.begin() + question.local.first(2 * pair + 2);
         merged_.insert(merged_.end(), done, own);
-        std::ranges::merge(own, own_end, more, more_end, std::back_inserter(merged_), {}, order_of, order_of);
+        std::ranges::merge(own, own_end, more, more_end, std::back_inserter(merged_), {}, &Contact::key, &Contact::key);
         done = own_end;
     }
     merged_.insert(merged_.end(), done, contacts.end());

@@ -401,7 +401,7 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
     if (!(depth > noise * pair.hair()) || depth < least) return;
     if (is_thinner(region, depth / (region.is_flush() ? most_flush : most_deep) - 5 * pair.hair())) return;
-    passing_.push_back({number, {VertexBody::a, Feature::edges, x.edge, y.edge, point, n, depth}});
+    passing_.push_back({number, {Side::a, FeatureKind::edges, x.edge, y.edge, point, n, depth}});
 }
 
 // Two edges that pass each other more than once have the shallowest contact.
@@ -439,7 +439,7 @@ void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3&
     if (!(depth > noise * pair.hair())) return;
     const bool of_a = piece.side == 0;
     const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
-    deep_.push_back({VertexBody::a, Feature::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
+    deep_.push_back({Side::a, FeatureKind::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
                      of_a ? point : point - depth * way, way, depth});
 }
 

@@ -70,8 +70,8 @@ private:
 
 /// A contact that was found on the host, in the target's centred frame. Of edges the source is a.
 struct FeatureContact {
-    VertexBody source;
-    Feature feature;
+    Side source;
+    FeatureKind kind;
     std::uint32_t index; ///< edges: the edge of a, 3 x its lowest triangle + its first corner; else the vertex
     std::uint32_t other; ///< edges: the edge of b; else the face of the target
     Vec3 point;          ///< on the source
@@ -108,19 +108,6 @@ inline bool is_convex(const ShapeData& shape, std::uint32_t edge) {
     for (const std::uint32_t v : shape.mesh.triangles[across])
         if (v != start && v != stop && dot(shape.point(v) - from, n) > 0) return false;
     return true;
-}
-
-/// A contact at a point, whose normal points out of the target along `out`; both are of the target's centred frame.
-inline Contact contact_at(const SlotPair& pair, VertexBody source, const PlacedBody& target, const Vec3& point,
-                          const Vec3& out) {
-    Contact contact;
-    contact.body_a = pair.first;
-    contact.body_b = pair.second;
-    contact.vertex_body = source;
-    contact.point = transform_point(target.centred, point);
-    const Vec3 n = (source == VertexBody::a ? -1.0 : 1.0) * transform_point({target.centred.rotation, {}}, out);
-    contact.normal = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
-    return contact;
 }
 
 /// The edge of a face from its k-th corner to the next.

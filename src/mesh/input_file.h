@@ -19,7 +19,8 @@
 namespace raycontact {
 
 /// The limits on one mesh: three corners of every triangle are counted in 32 bits.
-constexpr std::size_t most_vertices = 0xfffffffeu, most_triangles = 0xffffffffu / 3 - 1;
+constexpr std::size_t most_vertices = 0xfffffffeu;
+constexpr std::size_t most_triangles = 0x7fffffffu / 3 - 1; // an edge has a number of 31 bits: ContactFeature::key()
 
 /// A whole file in memory. Its readers report errors in one line that names the file.
 struct InputFile {

@@ -193,8 +193,8 @@ void Pipeline::list_kept_rays(const Update& last, std::vector<KeptRay>& rays) {
 
 void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.pairs += last.pairs.size();
-    stats.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
-    stats.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
+    stats.details.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
+    stats.details.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     stats.pair_bytes += asked_.size() * sizeof(AskedPair);
     if (casts_edges_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
     if (casts_points_) stats.pair_bytes += points_.bytes() + near_points_.all().size_bytes();

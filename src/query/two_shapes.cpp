@@ -228,11 +228,11 @@ std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b,
     settings.method = Method::standard; // nothing to keep for a next step
     settings.direction = options.direction;
     settings.features = options.features;
-    settings.threads = options.threads;
-    settings.devices = "cpu";
+    settings.execution.threads = options.threads;
+    settings.execution.devices = "cpu";
     Scene scene(settings);
     const Pair pair{scene.add(a.shared_from_this(), pose_a), scene.add(b.shared_from_this(), pose_b)};
-    const auto contacts = scene.step({&pair, 1});
+    const auto contacts = scene.find_contacts({&pair, 1});
     return {contacts.begin(), contacts.end()};
 }
 

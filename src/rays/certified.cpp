@@ -23,7 +23,7 @@ std::size_t segments_of(std::uint32_t watches) {
 }
 
 bool casts_all(const Update& update) {
-    return update.settings.caster == Caster::basic;
+    return update.settings.paper.caster == Caster::basic;
 }
 
 // A pair most of whose watched vertices have rays, many of them, and that moves too far for tubes, is left to
@@ -308,11 +308,11 @@ void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     std::uint64_t blocks = standard_.blocks().size();
     for (const WakeUp::Slice& slice : wake_up_.slices()) blocks += slice.blocks;
     const std::uint64_t watched = batch.count.value - standard_sums_.results;
-    stats.vertices += VERTEX_LANES * blocks;
-    stats.rays += watched + standard_sums_.sums[1];
-    stats.pairs_full += stale_.size() + standard_count_;
-    stats.pairs_as_standard += standard_count_;
-    stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
+    stats.details.vertices += VERTEX_LANES * blocks;
+    stats.details.rays += watched + standard_sums_.sums[1];
+    stats.details.pairs_full += stale_.size() + standard_count_;
+    stats.details.pairs_as_standard += standard_count_;
+    stats.details.pairs_asleep += 2 * open_pairs_ - directed_.size();
     stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
                         + 2 * held_.size() * sizeof(kernels::Held) + batch.count.value * RayBatch::bytes_of_ray
                         + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))

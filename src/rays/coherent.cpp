@@ -75,7 +75,7 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     auto& [left, kept] = table_.hot(i);
     const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
     const bool predictive = settings.method == Method::predictive;
-    if (predictive && !settings.displacement_threshold && is_too_fast_to_predict(a, b, motion.pair_speed(pair))) {
+    if (predictive && !settings.paper.displacement_threshold && is_too_fast_to_predict(a, b, motion.pair_speed(pair))) {
         turns_[i] = Turn::look;
         state = {};
         state.culling = -1;
@@ -98,14 +98,14 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
     state.looked = step_;
     state.threshold = left =
-        settings.displacement_threshold
-            ? *settings.displacement_threshold
+        settings.paper.displacement_threshold
+            ? *settings.paper.displacement_threshold
             : next_threshold(a, b, motion.pair_speed(pair), state.threshold, state.look_cost, follows, predictive);
     state.safe = state.culling = 0;
     if (predictive)
-        state.culling =
-            std::min(settings.culling_distance ? *settings.culling_distance : settings.confidence * state.threshold,
-                     farthest_ahead);
+        state.culling = std::min(settings.paper.culling_distance ? *settings.paper.culling_distance
+                                                                 : settings.paper.confidence * state.threshold,
+                                 farthest_ahead);
 }
 
 void CoherentRays::wake_up(const Update& update) {
@@ -142,14 +142,14 @@ void CoherentRays::wake_up(const Update& update) {
         cullings_[i] = static_cast<float>(table_.state(directed_[i] / 2).culling);
         if (i >= full_count_) return;
         const float ahead = std::max(cullings_[i], 0.0F);
-        const bool extended = predictive && settings.distance_extension && cullings_[i] >= 0;
+        const bool extended = predictive && settings.paper.distance_extension && cullings_[i] >= 0;
         wide_pairs_[i] = host_pairs_[i];
-        const double extension = std::min(settings.distance_extension.value_or(0), farthest_ahead);
+        const double extension = std::min(settings.paper.distance_extension.value_or(0), farthest_ahead);
         widen(wide_pairs_[i], extended ? static_cast<float>(extension) : ahead);
         margins_[i] = static_cast<float>(rounding_margin(source, target));
         reaches_[i] = ahead + margins_[i];
         // As in the paper: no vertex inside the bounds is known to be outside the mesh or far from it.
-        if (!settings.skip_outside) reaches_[i] = margins_[i] = std::numeric_limits<float>::max();
+        if (!settings.paper.skip_outside) reaches_[i] = margins_[i] = std::numeric_limits<float>::max();
     });
 }
 
@@ -175,7 +175,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     device_wide_.write(device, wide_pairs_);
     device_reaches_.write(device, reaches_);
     device_margins_.write(device, margins_);
-    const bool skip_outside = update.settings.skip_outside;
+    const bool skip_outside = update.settings.paper.skip_outside;
     const Array<float> no_horizons;
     near_.find_now(update, device_wide_, full_count_, skip_outside ? device_reaches_ : no_horizons, batch.totals,
                    RayBatch::block_sum);
@@ -222,13 +222,13 @@ void CoherentRays::follow(const Update& update, RayBatch& batch) {
     const Settings& settings = update.settings;
     resize(update.device, batch.rays.size(), nexts_, hows_);
     const kernels::uint predictive = settings.method == Method::predictive ? 1 : 0;
-    const kernels::uint cast_lost = predictive != 0 && settings.cast_lost_walks ? 1 : 0;
+    const kernels::uint cast_lost = predictive != 0 && settings.paper.cast_lost_walks ? 1 : 0;
     const auto run = [&]<KernelId kernel>() {
-        launch<kernel>(update.device, batch.count, settings.max_iterations, predictive, cast_lost,
+        launch<kernel>(update.device, batch.count, settings.paper.max_iterations, predictive, cast_lost,
                        batch.outcomes.stride(), device_pairs_, device_cullings_, arrays.headers, arrays.memory,
                        batch.rays, starts_, batch.hits, batch.outcomes.values(), nexts_, hows_);
     };
-    if (settings.caster == Caster::basic)
+    if (settings.paper.caster == Caster::basic)
         run.operator()<KernelId::follow_rays_basic>();
     else
         run.operator()<KernelId::follow_rays_bvh>();
@@ -349,14 +349,14 @@ void CoherentRays::put_in(Device& device, std::span<const std::byte> bytes) {
 }
 
 void CoherentRays::count(StepStats& stats) const {
-    stats.vertices += sums_.vertices;
-    stats.rays += sums_.rays;
-    stats.pairs_full += full_count_;
-    stats.pairs_asleep += 2 * open_pairs_ - directed_.size();
-    stats.walks += sums_.walks;
-    stats.walks_lost += sums_.walks_lost;
-    stats.walk_casts += sums_.walk_casts;
-    stats.predictions += sums_.predictions;
+    stats.details.vertices += sums_.vertices;
+    stats.details.rays += sums_.rays;
+    stats.details.pairs_full += full_count_;
+    stats.details.pairs_asleep += 2 * open_pairs_ - directed_.size();
+    stats.details.walks += sums_.walks;
+    stats.details.walks_lost += sums_.walks_lost;
+    stats.details.walk_casts += sums_.walk_casts;
+    stats.details.predictions += sums_.predictions;
     stats.pair_bytes += table_.bytes() + turns_.size() + candidates_kept_ * sizeof(kernels::Candidate)
                         + (2 * directed_.size() + 2 * full_count_) * sizeof(kernels::DirectedPair)
                         + directed_.size() * (2 * sizeof(float) + 2 * sizeof(kernels::Followed))

@@ -86,7 +86,7 @@ private:
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;
-    StepStats sums_;
+    StepDetails sums_;
     std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
     std::uint64_t step_ = 0;
 

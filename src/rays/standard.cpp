@@ -19,7 +19,7 @@ void cast_in_full(const Update& update, RayBatch& batch) {
         launch<kernel>(update.device, batch.count, batch.outcomes.stride(), *batch.pairs, arrays.headers, arrays.memory,
                        batch.rays, batch.hits, batch.outcomes.values());
     };
-    if (update.settings.caster == Caster::basic)
+    if (update.settings.paper.caster == Caster::basic)
         run.operator()<KernelId::cast_rays_basic>();
     else
         run.operator()<KernelId::cast_rays_bvh>();
@@ -35,7 +35,7 @@ void StandardRays::begin(const Update& update, RayBatch& batch) {
 
 void StandardRays::cast(const Update& update, RayBatch& batch) {
     const Array<kernels::DirectedPair>& pairs = pairs_.placed();
-    const bool use_grid = update.settings.skip_outside && update.settings.caster != Caster::basic;
+    const bool use_grid = update.settings.paper.skip_outside && update.settings.paper.caster != Caster::basic;
     search_.find(update, pairs, {}, {}, batch.totals, RayBatch::block_sum);
     search_.count_rays(update, pairs, use_grid, batch.totals, RayBatch::ray_sum, batch.rays.size());
     search_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
@@ -52,9 +52,9 @@ bool StandardRays::had_room(Device& device, RayBatch& batch) {
 
 void StandardRays::count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const {
     const std::uint64_t found = batch.sums[RayBatch::block_sum].sums[0];
-    stats.vertices += VERTEX_LANES * found;
-    stats.rays += batch.sums[RayBatch::ray_sum].sums[1];
-    stats.pairs_full += 2 * pairs;
+    stats.details.vertices += VERTEX_LANES * found;
+    stats.details.rays += batch.sums[RayBatch::ray_sum].sums[1];
+    stats.details.pairs_full += 2 * pairs;
     stats.pair_bytes += pairs_.bytes() + found * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
                         + std::uint64_t{batch.sums[RayBatch::ray_sum].sums[0]} * RayBatch::bytes_of_ray;
 }

@@ -77,7 +77,7 @@ bool let_near_sleep(const Update& update, const PlacedBody& a, const PlacedBody&
 
 // Decides for one pair, in double, what is due.
 void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice) {
-    const std::optional<double>& threshold = update.settings.displacement_threshold;
+    const std::optional<double>& threshold = update.settings.paper.displacement_threshold;
     const SlotPair& pair = update.pairs[i];
     WatchedPair& state = table.state(i);
     Slack& slack = table.hot(i);
@@ -158,7 +158,7 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         WatchedPair& state = table.state(i);
         Slack& slack = table.hot(i);
         const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
-        const bool may_hurry = !update.settings.displacement_threshold;
+        const bool may_hurry = !update.settings.paper.displacement_threshold;
         const bool rays_sleep = !slack.casts && (slack.metres > 0 || let_rays_sleep(update, a, b, state, slack));
         if (!rays_sleep && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;

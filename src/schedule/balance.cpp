@@ -16,8 +16,8 @@ constexpr double smoothing = 1.0 / 8; // weight of the last step in what is meas
 
 // Rough: what each costs beside a pair at rest. What a unit costs is measured on each device.
 double load_of(const StepStats& stats) {
-    return static_cast<double>(stats.pairs) + 0.05 * static_cast<double>(stats.vertices)
-           + 2 * static_cast<double>(stats.rays_cast + stats.walks);
+    return static_cast<double>(stats.pairs) + 0.05 * static_cast<double>(stats.details.vertices)
+           + 2 * static_cast<double>(stats.details.rays_cast + stats.details.walks);
 }
 
 Balance::Balance(Schedule schedule, std::span<const double> costs) : schedule_(schedule) {

@@ -156,16 +156,16 @@ struct Edge {
 };
 
 /// One body as the other sees it, in the other's centred frame.
-struct Side {
+struct OneWay {
     const ShapeData &source, &target;
     Pose now, next;
     bool moves; ///< a point may go farther than the margin until the next step
 };
 
-std::array<Side, 2> sides_of(const SpeculativePair& pair) {
+std::array<OneWay, 2> sides_of(const SpeculativePair& pair) {
     const ShapeData &a = pair.a.shape->data(), &b = pair.b.shape->data();
-    return {Side{a, b, pair.now.pose, pair.next.pose, pair.ways[0] > pair.margin},
-            Side{b, a, pair.now.pose_of_second(), pair.next.pose_of_second(), pair.ways[1] > pair.margin}};
+    return {OneWay{a, b, pair.now.pose, pair.next.pose, pair.ways[0] > pair.margin},
+            OneWay{b, a, pair.now.pose_of_second(), pair.next.pose_of_second(), pair.ways[1] > pair.margin}};
 }
 
 double hair_of(const SpeculativePair& pair) {
@@ -184,9 +184,9 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
                                std::vector<FeatureContact>& found) {
     const double hair = hair_of(pair);
     const auto sides = sides_of(pair);
-    for (const VertexBody body : {VertexBody::a, VertexBody::b}) {
+    for (const Side body : {Side::a, Side::b}) {
         const auto own = static_cast<std::size_t>(body);
-        const Side& side = sides[own];
+        const OneWay& side = sides[own];
         by_source(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
             if (std::ranges::binary_search(touching[own], v)) return;
             const Vec3 point = side.source.point(v), p = transform_point(side.now, point);
@@ -197,7 +197,7 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
                 const Vec3 outward = rotated(side.now.rotation, side.source.vertex_normals[v]);
                 if (!approach || !(dot(outward, approach->normal) < -sideways)) return;
             }
-            found.push_back({body, Feature::vertex, v, approach->face, p, approach->normal, -approach->gap});
+            found.push_back({body, FeatureKind::vertex, v, approach->face, p, approach->normal, -approach->gap});
         });
     }
 }
@@ -205,7 +205,7 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
 // Of a's edges against b's. An edge is asked with the lowest of its faces.
 void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
                             std::vector<FeatureContact>& found) {
-    const Side side = sides_of(pair)[0];
+    const OneWay side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
     const double size = smaller_size(pair.a, pair.b), hair = hair_of(pair);
     const bool few = told || std::ranges::max(pair.ways) > far * size;
@@ -214,7 +214,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
     const std::size_t touching = found.size();
     const auto touches = [&](std::uint32_t edge, std::uint32_t other) {
         return std::any_of(found.begin(), found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {
-            return c.feature == Feature::edges && c.index == edge && c.other == other;
+            return c.kind == FeatureKind::edges && c.index == edge && c.other == other;
         });
     };
     const auto stays = [](const Vec3& n) { return n; };
@@ -245,7 +245,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                 };
                 const auto tell = [&](const Vec3& n, const std::array<double, 2>& at) {
                     if (touches(number, other)) return;
-                    found.push_back({VertexBody::a, Feature::edges, number, other, edge.ends[0] + at[0] * along, n,
+                    found.push_back({Side::a, FeatureKind::edges, number, other, edge.ends[0] + at[0] * along, n,
                                      -std::max(0.0, gap_along(n, at))});
                 };
                 const auto will_meet = [&] {

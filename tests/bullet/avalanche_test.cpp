@@ -28,15 +28,15 @@ std::string hash_of(const AvalancheOptions& o, std::uint32_t steps, std::uint64_
 TEST(Avalanche, SameSeedSameHash) {
     AvalancheOptions o = small();
     std::uint64_t contacts = 0;
-    o.settings.threads = 1;
+    o.settings.execution.threads = 1;
     const std::string hash = hash_of(o, 60, &contacts);
     EXPECT_GT(contacts, 400u);
     EXPECT_EQ(hash_of(o, 60), hash);
-    o.settings.threads = 2;
+    o.settings.execution.threads = 2;
     EXPECT_EQ(hash_of(o, 60), hash);
-    o.settings.threads = 5;
+    o.settings.execution.threads = 5;
     EXPECT_EQ(hash_of(o, 60), hash);
-    o.settings.caster = Caster::basic;
+    o.settings.paper.caster = Caster::basic;
     EXPECT_EQ(hash_of(o, 60), hash);
     o.seed = 2;
     EXPECT_NE(hash_of(o, 60), hash);
@@ -54,8 +54,8 @@ TEST(Avalanche, OneBodyComesToRest) {
     EXPECT_EQ(h.deep_steps_last_second, 0u);
     EXPECT_FALSE(scene.contacts().empty());
     for (const Contact& c : scene.contacts()) {
-        EXPECT_EQ(c.body_a, 0u);
-        EXPECT_EQ(c.body_b, 1u); // the ground is the last
+        EXPECT_EQ(c.body_a, BodyId{0});
+        EXPECT_EQ(c.body_b, BodyId{1}); // the ground is the last
     }
 }
 

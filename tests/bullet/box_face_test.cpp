@@ -52,10 +52,10 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
             const std::array pair{
                 Pair{scene.add(shape, bullet::to_pose(mesh_pose)), scene.add(slab, bullet::to_pose(box_pose))}};
             Depths theirs;
-            for (const Contact& c : scene.step(pair)) {
-                EXPECT_EQ(c.feature, Feature::vertex) << i;
-                EXPECT_EQ(c.vertex_body, VertexBody::a) << i;
-                theirs[c.vertex] = double(c.depth);
+            for (const Contact& c : scene.find_contacts(pair)) {
+                EXPECT_EQ(c.feature.kind, FeatureKind::vertex) << i;
+                EXPECT_EQ(c.feature.source, Side::a) << i;
+                theirs[c.feature.source_index()] = double(c.depth);
             }
             for (const auto& [vertex, depth] : ours) {
                 const std::uint32_t file_vertex = shape->vertex_index()[vertex];

@@ -8,9 +8,9 @@ namespace {
 
 Contact contact(std::uint32_t a, std::uint32_t vertex, float depth) {
     Contact c;
-    c.body_a = a;
-    c.body_b = 9;
-    c.vertex = vertex;
+    c.body_a = {a};
+    c.body_b = {9};
+    c.feature.index_a = vertex;
     c.depth = depth;
     return c;
 }

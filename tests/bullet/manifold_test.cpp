@@ -16,7 +16,7 @@
 namespace raycontact::test {
 namespace {
 
-using Key = std::tuple<int, int, int, Feature, std::uint32_t>;
+using Key = std::tuple<int, int, int, FeatureKind, std::uint32_t>;
 Key key(const btManifoldPoint& p) {
     const bullet::PointKey k = bullet::CollisionDispatcher::key(p);
     return {k.child0 * 1000 + k.child1, k.vertex_body, k.vertex, k.feature, k.other};

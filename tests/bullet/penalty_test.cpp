@@ -95,7 +95,7 @@ TEST(Penalty, WeightedForcesCarryTheWeight) {
     for (int i = 0; i < 12000; ++i) world.step(step);
     double pressure = 0;
     for (const Contact& c : world.scene().contacts()) {
-        const double along = std::fabs(static_cast<double>(c.normal[2])); // a ray's direction is not the plane's
+        const double along = std::fabs(static_cast<double>(c.normal.z)); // a ray's direction is not the plane's
         pressure += static_cast<double>(c.weight) * static_cast<double>(c.depth) * along;
     }
     EXPECT_NEAR(stiffness * pressure, world.mass(body) * gravity, 0.05 * world.mass(body) * gravity);

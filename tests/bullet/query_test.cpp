@@ -87,7 +87,7 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
     btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
     btRigidBody& high = w.add_mesh(Shape::make(box_mesh(1, 1, 1)), 0, at(0, 0, 0.49));
     Settings settings;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     Scene scene(settings);
     bullet::Objects objects(scene, bullet::ConvexShapes::ours);
     bullet::Queries queries(settings, objects, bullet::ConvexShapes::ours, w.dispatcher);
@@ -99,7 +99,7 @@ TEST(Query, AHundredThousandCallsNeedFourSlots) {
         result.setPersistentManifold(manifold);
         queries.run(a, b, w.world.getDispatchInfo(), result);
         ASSERT_EQ(queries.scene().contacts().size(), 4u) << i;
-        ASSERT_LT(queries.scene().contacts().front().body_b, 4u) << i;
+        ASSERT_LT(queries.scene().contacts().front().body_b.slot, 4u) << i;
     }
     EXPECT_EQ(manifold->getNumContacts(), 4);
     EXPECT_EQ(queries.scene().body_count(), 0u);
@@ -230,7 +230,7 @@ TEST(Query, WithoutADispatchOldShapesAreForgotten) {
     TestWorld w;
     btRigidBody& low = w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
     Settings settings;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     Scene scene(settings);
     bullet::Objects objects(scene, bullet::ConvexShapes::ours);
     bullet::ShapeCache& shapes = objects.shapes();

@@ -107,14 +107,14 @@ TEST(Rain, SameSeedSameHash) {
         EXPECT_GT(scene.contacts_total(), 300u);
         return scene.hash();
     };
-    o.settings.threads = 1;
+    o.settings.execution.threads = 1;
     const std::string hash = hash_of(o);
     for (const std::uint32_t threads : {1u, 2u, 5u}) {
-        o.settings.threads = threads;
+        o.settings.execution.threads = threads;
         EXPECT_EQ(hash_of(o), hash) << threads;
     }
     o.settings.method = Method::standard;
-    o.settings.caster = Caster::basic;
+    o.settings.paper.caster = Caster::basic;
     EXPECT_EQ(hash_of(o), hash);
     o.seed = 2;
     EXPECT_NE(hash_of(o), hash);

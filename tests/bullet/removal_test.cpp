@@ -151,15 +151,15 @@ TEST(Removal, PinnedBodiesKeepTheirIds) {
     TestWorld w;
     btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, at(0, 0, -0.5));
     btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 3));
-    EXPECT_EQ(w.dispatcher.add_body(body), 0u);
-    EXPECT_EQ(w.dispatcher.add_body(ground), 1u);
+    EXPECT_EQ(w.dispatcher.add_body(body), BodyId{0});
+    EXPECT_EQ(w.dispatcher.add_body(ground), BodyId{1});
     w.steps(120);
     ASSERT_FALSE(w.dispatcher.scene().contacts().empty());
     for (const Contact& c : w.dispatcher.scene().contacts()) {
-        EXPECT_EQ(c.body_a, 0u);
-        EXPECT_EQ(c.body_b, 1u);
-        EXPECT_GT(c.normal[2], -1.01f);
-        EXPECT_LT(c.normal[2], -0.99f); // from the table to the ground
+        EXPECT_EQ(c.body_a, BodyId{0});
+        EXPECT_EQ(c.body_b, BodyId{1});
+        EXPECT_GT(c.normal.z, -1.01f);
+        EXPECT_LT(c.normal.z, -0.99f); // from the table to the ground
     }
     w.world.removeRigidBody(&body);
     EXPECT_EQ(w.dispatcher.scene().body_count(), 2u);

@@ -285,7 +285,7 @@ TEST(Speculative, ABarComesToRestOnAPrism) {
                 w.steps(1);
                 deepest = std::max(deepest, w.dispatcher.scene().stats().depth_max);
                 for (const Contact& c : w.dispatcher.scene().contacts())
-                    edges_alone = edges_alone && c.feature == Feature::edges;
+                    edges_alone = edges_alone && c.feature.kind == FeatureKind::edges;
                 if (i < 60) continue;
                 fastest = std::max(fastest, double(bar.getLinearVelocity().length()));
                 fastest = std::max(fastest, 0.04 * double(bar.getAngularVelocity().length()));
@@ -310,7 +310,7 @@ TEST(Speculative, NoDepthIsWithoutContact) {
         Pose pose;
         pose.translation.z = 0.01 - depth;
         const std::array pair{Pair{ground, scene.add(bar, pose)}};
-        EXPECT_GE(scene.step(pair).size(), 4u) << depth;
+        EXPECT_GE(scene.find_contacts(pair).size(), 4u) << depth;
         (scene.stats().contacts > 0 ? touching : near) += 1;
     }
     EXPECT_GT(touching, 20);

@@ -26,7 +26,7 @@ bool depends_on_state(Method method) {
 Settings settings_of(Method method) {
     Settings settings;
     settings.method = method;
-    settings.schedule = Schedule::counted;
+    settings.execution.schedule = Schedule::counted;
     return settings;
 }
 
@@ -74,7 +74,7 @@ public:
         std::ranges::set_difference(crowd.pairs, gone, std::back_inserter(stay));
         std::vector<Contact> contacts = contacts_of(first_, crowd, stay), others = contacts_of(second_, crowd, gone);
         contacts.insert(contacts.end(), others.begin(), others.end());
-        std::ranges::stable_sort(contacts, {}, [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+        std::ranges::stable_sort(contacts, {}, [](const Contact& c) { return pair_of(c); });
         return contacts;
     }
 
@@ -110,16 +110,17 @@ std::size_t run_with_fault(Method method, Fault fault, std::size_t at, bool shar
             const bool lost = script.failed > 0;
             EXPECT_EQ(rig.stats.devices_lost, lost ? 1u : 0u) << where;
             EXPECT_EQ(rig.stats.warnings.size(), lost ? 1u : 0u) << where;
-            EXPECT_EQ(rig.stats.work.size(), 3u);
+            EXPECT_EQ(rig.stats.details.work.size(), 3u);
             if (lost) {
                 EXPECT_NE(rig.stats.warnings[0].find("fake:1"), std::string::npos) << rig.stats.warnings[0];
                 const auto own = rig.narrow.assignment().pairs_of(1);
                 gone.assign(own.begin(), own.end());
                 EXPECT_GT(gone.size(), 10u);
-                EXPECT_EQ(rig.stats.work[1].pairs, 0u);
+                EXPECT_EQ(rig.stats.details.work[1].pairs, 0u);
             }
         }
-        EXPECT_EQ(rig.stats.work[0].pairs + rig.stats.work[1].pairs + rig.stats.work[2].pairs, crowd.pairs.size());
+        EXPECT_EQ(rig.stats.details.work[0].pairs + rig.stats.details.work[1].pairs + rig.stats.details.work[2].pairs,
+                  crowd.pairs.size());
         EXPECT_TRUE(same(found, reference.step(crowd, gone))) << where;
         contacts += found.size();
         crowd.move();
@@ -272,13 +273,13 @@ Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at)
         if (step == faulty) rig.scripts[device]->start(Fault::lost, at);
         const std::vector<Contact>& found = rig.step(crowd);
         if (step == faulty) result.calls = rig.scripts[device]->calls.size();
-        if (rig.stats.pairs_moved > 0 && result.moved_in < 0) result.moved_in = step;
+        if (rig.stats.details.pairs_moved > 0 && result.moved_in < 0) result.moved_in = step;
         if (rig.stats.devices_lost > 0) {
             // Pairs that had moved to it before it failed were new in that step as well.
             const auto now = rig.narrow.assignment().pairs_of(device);
             gone = now.empty() ? before : std::vector<SlotPair>(now.begin(), now.end());
         }
-        result.moved += rig.stats.pairs_moved;
+        result.moved += rig.stats.details.pairs_moved;
         result.lost += rig.stats.devices_lost;
         result.contacts += found.size();
         EXPECT_TRUE(same(found, reference.step(crowd, gone)))
@@ -314,9 +315,9 @@ TEST(SeveralDevices, HaveTheContactsOfOne) {
                 Reference reference(crowd, method);
                 for (int step = 0; step < 6; ++step) {
                     EXPECT_TRUE(same(rig.step(crowd), reference.step(crowd, {}))) << to_string(method) << devices;
-                    ASSERT_EQ(rig.stats.work.size(), devices);
+                    ASSERT_EQ(rig.stats.details.work.size(), devices);
                     std::uint64_t pairs = 0;
-                    for (const DeviceWork& work : rig.stats.work) {
+                    for (const DeviceWork& work : rig.stats.details.work) {
                         EXPECT_GT(work.pairs, crowd.pairs.size() / devices / 2);
                         EXPECT_GT(work.load, 0);
                         EXPECT_GT(work.ms, 0);

@@ -70,10 +70,10 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
     settings.speculative = speculative;
     settings.features = features;
     settings.method = method;
-    settings.caster = caster;
+    settings.paper.caster = caster;
     settings.direction = direction;
-    settings.devices = device;
-    settings.threads = 2;
+    settings.execution.devices = device;
+    settings.execution.threads = 2;
     Scene scene(settings);
     Random random(2013);
     std::vector<Pose> poses;
@@ -85,12 +85,12 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
     ContactHash hash(direction, speculative);
     std::size_t contacts = 0, untouched = 0;
     for (std::uint32_t step = 0; step < 5; ++step) {
-        hash.add(step, scene.step());
+        hash.add(step, scene.find_contacts());
         contacts += scene.stats().contacts;
         untouched += scene.stats().contacts_speculative;
-        for (BodyId body = 0; body < poses.size(); ++body) {
+        for (std::uint32_t body = 0; body < poses.size(); ++body) {
             poses[body].translation = poses[body].translation + crowd.speed * random.in_ball();
-            scene.set_pose(body, poses[body]);
+            scene.set_pose({body}, poses[body]);
         }
     }
     EXPECT_GE(contacts, crowd.least_contacts) << crowd.name;
@@ -244,7 +244,7 @@ TEST(parts, of_different_devices_hand_pairs_over) {
             elsewhere.end(there);
             contacts += there.size();
             here.insert(here.end(), there.begin(), there.end());
-            std::ranges::stable_sort(here, {}, [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+            std::ranges::stable_sort(here, {}, [](const Contact& c) { return pair_of(c); });
             ASSERT_TRUE(same(here, expected)) << to_string(method) << ", step " << step;
         }
         EXPECT_GT(contacts, 100u);
@@ -258,30 +258,30 @@ protected:
     static Settings settings(const std::string& device) {
         Settings settings;
         settings.method = GetParam();
-        settings.devices = device;
+        settings.execution.devices = device;
         return settings;
     }
 };
 
 TEST_P(Nothing, is_no_contact) {
     Scene scene(settings(tested_device()));
-    EXPECT_EQ(scene.step().size(), 0u) << "no body";
+    EXPECT_EQ(scene.find_contacts().size(), 0u) << "no body";
     const auto shape = prepared_shape(tetrahedron_mesh());
     Pose far;
     far.translation = {100, 0, 0};
     scene.add(shape);
-    EXPECT_EQ(scene.step().size(), 0u) << "one body";
+    EXPECT_EQ(scene.find_contacts().size(), 0u) << "one body";
     const BodyId other = scene.add(shape, far);
-    EXPECT_EQ(scene.step().size(), 0u) << "no pair";
-    const Pair pair{0, other};
-    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "a pair out of reach";
-    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "again";
+    EXPECT_EQ(scene.find_contacts().size(), 0u) << "no pair";
+    const Pair pair{BodyId{0}, other};
+    EXPECT_EQ(scene.find_contacts({&pair, 1}).size(), 0u) << "a pair out of reach";
+    EXPECT_EQ(scene.find_contacts({&pair, 1}).size(), 0u) << "again";
     scene.set_pose(other, Pose{});
-    const std::size_t touching = scene.step({&pair, 1}).size();
+    const std::size_t touching = scene.find_contacts({&pair, 1}).size();
     scene.set_pose(other, far);
-    EXPECT_EQ(scene.step({&pair, 1}).size(), 0u) << "gone, after " << touching;
+    EXPECT_EQ(scene.find_contacts({&pair, 1}).size(), 0u) << "gone, after " << touching;
     scene.remove(other);
-    EXPECT_EQ(scene.step().size(), 0u);
+    EXPECT_EQ(scene.find_contacts().size(), 0u);
 }
 
 // Their arrays of the grids that know an outside are empty.
@@ -297,7 +297,7 @@ TEST_P(Nothing, is_known_of_the_outside_of_open_meshes) {
             scene.add(sheet, pose);
         }
         ContactHash hash;
-        for (std::uint32_t step = 0; step < 3; ++step) hash.add(step, scene.step());
+        for (std::uint32_t step = 0; step < 3; ++step) hash.add(step, scene.find_contacts());
         EXPECT_GT(scene.contacts().size(), 0u);
         hashes[i] = hash.hex();
     }
@@ -314,11 +314,11 @@ TEST(Prepared, in_the_middle_of_a_scene) {
                 shapes.push_back(i == 0 ? prepared_shape(mesh) : Shape::make(mesh));
             Settings settings;
             settings.method = method;
-            settings.devices = i == 2 ? "cpu," + tested_device() : i == 1 ? tested_device() : "cpu";
+            settings.execution.devices = i == 2 ? "cpu," + tested_device() : i == 1 ? tested_device() : "cpu";
             Scene scene(settings);
             Random random(8);
             std::vector<Pose> poses;
-            for (BodyId k = 0; k < 10; ++k) {
+            for (std::uint32_t k = 0; k < 10; ++k) {
                 poses.push_back(random.rotation());
                 poses.back().translation = random.in_ball();
                 scene.add(shapes[k % 3], poses.back());
@@ -327,11 +327,11 @@ TEST(Prepared, in_the_middle_of_a_scene) {
             for (std::uint32_t step = 0; step < 12; ++step) {
                 if (step == 4) shapes[0]->prepare();
                 if (step == 8) scene.prepare();
-                for (BodyId k = 0; k < 10; ++k) {
+                for (std::uint32_t k = 0; k < 10; ++k) {
                     poses[k].translation = poses[k].translation + 0.01 * random.in_ball();
-                    scene.set_pose(k, poses[k]);
+                    scene.set_pose({k}, poses[k]);
                 }
-                hash.add(step, scene.step());
+                hash.add(step, scene.find_contacts());
             }
             EXPECT_GT(scene.contacts().size(), 20u);
             hashes[i] = hash.hex();

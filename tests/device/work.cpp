@@ -33,9 +33,9 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
     for (const Way& way : ways) {
         Settings settings;
         settings.method = way.method;
-        settings.caster = way.caster;
-        settings.skip_outside = way.skip_outside;
-        if (way.method == Method::predictive) settings.displacement_threshold = 0.05;
+        settings.paper.caster = way.caster;
+        settings.paper.skip_outside = way.skip_outside;
+        if (way.method == Method::predictive) settings.paper.displacement_threshold = 0.05;
         std::vector<PlacedBody> bodies = work.bodies;
         for (PlacedBody& body : bodies) body.shape_index = part.shapes().index_of(body.shape);
         part.forget();
@@ -48,8 +48,8 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
             outcome.contacts.insert(outcome.contacts.end(), found.begin(), found.end());
             StepStats stats;
             part.count(stats);
-            outcome.rays += stats.rays;
-            outcome.side_tests += stats.side_tests;
+            outcome.rays += stats.details.rays;
+            outcome.side_tests += stats.details.side_tests;
         }
     }
     return outcome;

@@ -40,7 +40,7 @@ double size_of(const Shape& shape) {
 }
 
 Vec3 normal_of(const Contact& c) {
-    return {double(c.normal[0]), double(c.normal[1]), double(c.normal[2])};
+    return {double(c.normal.x), double(c.normal.y), double(c.normal.z)};
 }
 
 // Null where there is none.
@@ -363,7 +363,7 @@ TEST(assemblies, sunk_bar) {
                         ++without;
                         continue;
                     }
-                    const bool up = (swapped ? -1 : 1) * double(deepest->normal[2]) > 0.9;
+                    const bool up = (swapped ? -1 : 1) * double(deepest->normal.z) > 0.9;
                     const bool right = std::fabs(double(deepest->depth) - (0.2 - z)) < 0.1 * (0.2 - z);
                     upwards += up;
                     deep += right;

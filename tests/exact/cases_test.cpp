@@ -102,9 +102,9 @@ private:
                                             bool moving) {
         Settings settings;
         settings.features = Features::edges;
-        settings.caster = caster;
+        settings.paper.caster = caster;
         settings.method = method;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         Scene scene(settings);
         Pose pose_a, pose_b = c.pose_b;
         if (far) pose_a.translation = {8000, 0, 6000}, pose_b.translation = pose_b.translation + pose_a.translation;
@@ -116,7 +116,7 @@ private:
             Pose pose = pose_b;
             pose.translation = pose.translation + (0.002 * step) * Vec3{0.5, 0.7, 1};
             scene.set_pose(mover, pose);
-            scene.step(pairs);
+            scene.find_contacts(pairs);
         }
         return {scene.contacts().begin(), scene.contacts().end()};
     }
@@ -126,12 +126,12 @@ private:
         if (c.answer == Answer::yes) expect(!contacts.empty(), way + ": missed");
         for (const Contact& contact : contacts) {
             const auto& n = contact.normal;
-            const double size = std::sqrt(double(n[0]) * n[0] + double(n[1]) * n[1] + double(n[2]) * n[2]);
+            const double size = std::sqrt(double(n.x) * n.x + double(n.y) * n.y + double(n.z) * n.z);
             expect(std::fabs(size - 1) < 1e-5, way + ": a normal that is not unit");
             expect(contact.depth > 0, way + ": a depth that is not above 0");
             expect(double(contact.depth) <= c.deepest, way + ": depth " + std::to_string(contact.depth) + " above "
                                                            + std::to_string(c.deepest) + " of feature "
-                                                           + std::to_string(int(contact.feature)));
+                                                           + std::to_string(int(contact.feature.kind)));
         }
         if (c.answer == Answer::no) expect(contacts.empty(), way + ": invented");
     }
@@ -315,8 +315,8 @@ TEST(exact_cases, ridges_that_cross_are_told_though_a_pillar_touches) {
             double ridges = 0;
             std::size_t vertices = 0;
             for (const Contact& c : collide(*roof, {}, *roof, turned)) {
-                vertices += c.feature == Feature::vertex;
-                if (c.feature == Feature::edges && length(c.point) < 0.05) ridges = double(c.depth);
+                vertices += c.feature.kind == FeatureKind::vertex;
+                if (c.feature.kind == FeatureKind::edges && length(c.point()) < 0.05) ridges = double(c.depth);
             }
             EXPECT_NEAR(ridges, overlap, 1e-3) << "pillar to " << pillar;
             EXPECT_EQ(vertices > 0, pillar > 0);
@@ -360,8 +360,8 @@ TEST(exact_cases, a_plate_pierced_straight_is_left_by_one_side) {
     for (const double z : {-0.05, -0.01, 0.0, 0.01, 0.05}) {
         std::size_t up = 0, down = 0;
         for (const Contact& c : collide(*plate, {}, *cube, at(0.31, 0.17, z))) {
-            up += c.normal[2] > 0.9f;
-            down += c.normal[2] < -0.9f;
+            up += c.normal.z > 0.9f;
+            down += c.normal.z < -0.9f;
         }
         EXPECT_GE(up + down, 4u);
         EXPECT_TRUE(up == 0 || down == 0) << "the middle of the cube at " << z << ": " << up << " up, " << down;

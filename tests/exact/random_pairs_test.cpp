@@ -154,10 +154,10 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
     const double larger = std::max(pair.a->size(), pair.b->size());
     for (const Contact& c : contacts) {
         const auto& n = c.normal;
-        const float size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        const float size = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
         EXPECT_NEAR(size, 1, 1e-5) << words(pair, number);
         EXPECT_TRUE(c.depth > 0 && double(c.depth) <= larger) << c.depth << ' ' << words(pair, number);
-        EXPECT_TRUE(std::isfinite(c.point.x) && std::isfinite(c.point.y) && std::isfinite(c.point.z));
+        EXPECT_TRUE(std::isfinite(c.point().x) && std::isfinite(c.point().y) && std::isfinite(c.point().z));
         if (pair.apart > 0 && pair.apart < 1e-3 * smaller) {
             if (double(c.depth) / smaller > counts.worst) {
                 counts.worst = double(c.depth) / smaller;
@@ -174,8 +174,8 @@ void judge(const PosedPair& pair, std::span<const Contact> contacts, std::size_t
     counts.colliding += truth;
     // b's vertices in the frame of a, as the reference has them: the very same numbers, so no case is excused.
     counts.intersects_wrong += intersects(*pair.b->shape, pair.pose_b, *pair.a->shape, pair.pose_a) != truth;
-    counts.by_vertices +=
-        std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.feature == Feature::vertex; });
+    counts.by_vertices += std::any_of(contacts.begin(), contacts.end(),
+                                      [](const Contact& c) { return c.feature.kind == FeatureKind::vertex; });
     if (truth == found) return;
     const double touching = 1e-6 * larger;
     if (truth ? comes_apart(pair.a->exact, pair.b->exact, relative, touching)
@@ -204,8 +204,8 @@ void try_pairs(const char* what, const std::vector<Body>& as, const std::vector<
         Settings settings;
         settings.features = Features::edges;
         settings.method = k % 2 == 0 ? Method::standard : Method::certified;
-        settings.caster = k / 2 % 2 == 0 ? Caster::bvh : Caster::basic;
-        settings.threads = 2;
+        settings.paper.caster = k / 2 % 2 == 0 ? Caster::bvh : Caster::basic;
+        settings.execution.threads = 2;
         Scene scene(settings);
         const bool swapped = k / 4 % 2 != 0;
         std::vector<PosedPair> posed;
@@ -221,7 +221,7 @@ void try_pairs(const char* what, const std::vector<Body>& as, const std::vector<
             pairs.emplace_back(a, scene.add(pair.b->shape, pair.pose_b));
             posed.push_back(pair);
         }
-        const auto parts = by_pair(scene.step(pairs), pairs.size());
+        const auto parts = by_pair(scene.find_contacts(pairs), pairs.size());
         for (std::size_t i = 0; i < posed.size(); ++i) judge(posed[i], parts[i], first + i, counts);
     }
     std::printf("[ counts   ] %s: %llu pairs, %llu colliding (%llu by vertices), %llu missed, %llu invented, %llu "

@@ -66,8 +66,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         add_common_options(app, settings);
         if (!words.empty()) read(app, {words.begin() + 1, words.end()});
         check_common_options(settings);
-        settings.threads = std::min(settings.threads, 2u);
-        if (settings.devices == "auto") settings.devices = "cpu";
+        settings.execution.threads = std::min(settings.execution.threads, 2u);
+        if (settings.execution.devices == "auto") settings.execution.devices = "cpu";
         const Scene made(settings);
     });
     return 0;

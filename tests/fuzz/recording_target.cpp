@@ -20,8 +20,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         if (reader.steps() > 64 || reader.bodies().size() > 64) return;
         recording::ReplayOptions options;
         options.settings = reader.info().settings;
-        options.settings.devices = "cpu";
-        options.settings.threads = 1;
+        options.settings.execution.devices = "cpu";
+        options.settings.execution.threads = 1;
         recording::replay(reader, options);
     });
     return 0;

@@ -40,8 +40,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::taken([&] {
         SceneFileOptions options;
         options.steps = 3;
-        options.settings.threads = 1;
-        options.settings.devices = "cpu";
+        options.settings.execution.threads = 1;
+        options.settings.execution.devices = "cpu";
         options.settings.features = size % 2 == 0 ? Features::vertices : Features::edges;
         scenes::SceneDescription scene = read_scene_file(file, options);
         if (scene.bodies.size() > 24) return;

@@ -58,23 +58,23 @@ Pose wild_pose(fuzz::Source& source) {
 void change(Settings& settings, fuzz::Source& source) {
     settings.direction =
         reference::directions[source.below(static_cast<std::uint32_t>(std::size(reference::directions)))];
-    settings.caster = source.below(2) == 0 ? Caster::bvh : Caster::basic;
+    settings.paper.caster = source.below(2) == 0 ? Caster::bvh : Caster::basic;
     settings.features = source.below(2) == 0 ? Features::vertices : Features::edges;
-    settings.skip_outside = source.below(2) == 0;
-    settings.cast_lost_walks = source.below(2) == 0;
-    settings.max_iterations = source.get<std::uint16_t>();
+    settings.paper.skip_outside = source.below(2) == 0;
+    settings.paper.cast_lost_walks = source.below(2) == 0;
+    settings.paper.max_iterations = source.get<std::uint16_t>();
     settings.max_contacts_per_pair = source.below(4) == 0 ? 1 + source.below(8) : 0;
     settings.max_contacts = source.below(4) == 0 ? 1 + source.below(64) : 0;
     settings.speculative = source.below(4) == 0;
     settings.speculative_margin.reset();
     if (source.below(4) == 0) settings.speculative_margin = std::ldexp(1.0, -int(source.below(40)));
-    settings.displacement_threshold.reset();
-    settings.culling_distance.reset();
-    settings.distance_extension.reset();
-    if (source.below(2) == 0) settings.displacement_threshold = std::ldexp(1.0, -int(source.below(40)));
-    if (source.below(4) == 0) settings.culling_distance = source.get<float>();
-    if (source.below(4) == 0) settings.distance_extension = source.get<float>();
-    if (source.below(4) == 0) settings.confidence = source.get<float>();
+    settings.paper.displacement_threshold.reset();
+    settings.paper.culling_distance.reset();
+    settings.paper.distance_extension.reset();
+    if (source.below(2) == 0) settings.paper.displacement_threshold = std::ldexp(1.0, -int(source.below(40)));
+    if (source.below(4) == 0) settings.paper.culling_distance = source.get<float>();
+    if (source.below(4) == 0) settings.paper.distance_extension = source.get<float>();
+    if (source.below(4) == 0) settings.paper.confidence = source.get<float>();
 }
 
 class Four {
@@ -113,7 +113,7 @@ public:
         case 4: { // one that was never given, or is gone
             const BodyId body = source.below(2) == 0 ? source.get<BodyId>() : BodyId{source.get<std::uint8_t>()};
             all([&](Scene& scene) { scene.pose(body); });
-            all([&](Scene& scene) { scene.body_in(slot_of(body)); });
+            all([&](Scene& scene) { scene.has(body); });
             break;
         }
         case 5: {
@@ -133,7 +133,7 @@ public:
                 const auto a = one(source), b = one(source);
                 if (a && b) pairs.emplace_back(*a, *b);
             }
-            step([&](Scene& scene) { scene.step(pairs); });
+            step([&](Scene& scene) { scene.find_contacts(pairs); });
             break;
         }
         case 7:
@@ -145,11 +145,11 @@ public:
                 pose.translation.z += by * source.get<std::int8_t>() / 128;
                 all([&](Scene& scene) { scene.set_pose(body, pose); });
             }
-            step([](Scene& scene) { scene.step(); });
+            step([](Scene& scene) { scene.find_contacts(); });
             break;
         }
         default:
-            step([](Scene& scene) { scene.step(); });
+            step([](Scene& scene) { scene.find_contacts(); });
         }
     }
 
@@ -200,12 +200,12 @@ private:
     void check(const Scene& scene) const {
         for (const Contact& contact : scene.contacts()) {
             if (contact.body_a >= contact.body_b) fuzz::fail("a contact's bodies are not in order");
-            scene.body_in(contact.body_a);
-            scene.body_in(contact.body_b);
+            if (!scene.has(contact.body_a) || !scene.has(contact.body_b))
+                fuzz::fail("a contact of a body that is gone");
             if (!(contact.depth >= 0 || scene.settings().is_speculative()) || !std::isfinite(contact.ray_length))
                 fuzz::fail("a depth that is none");
             const auto& n = contact.normal;
-            const float length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+            const float length = n.x * n.x + n.y * n.y + n.z * n.z;
             if (!(std::fabs(length - 1) < 1e-3f)) fuzz::fail("a normal that is not of length 1");
         }
         if (scene.stats().contacts + scene.stats().contacts_speculative != scene.contacts().size())
@@ -214,8 +214,8 @@ private:
 
     static Settings first_settings() {
         Settings settings;
-        settings.threads = 1;
-        settings.devices = "cpu";
+        settings.execution.threads = 1;
+        settings.execution.devices = "cpu";
         settings.features = Features::vertices;
         return settings;
     }

@@ -32,13 +32,13 @@ Result run(const Settings& settings, const std::vector<Mesh>& meshes, double spr
     Result result;
     ContactHash hash(settings.direction);
     for (std::uint32_t step = 0; step < steps; ++step) {
-        const auto contacts = scene.step();
+        const auto contacts = scene.find_contacts();
         hash.add(step, contacts);
         result.contacts += contacts.size();
-        result.rays += scene.stats().rays;
-        for (BodyId body = 0; body < poses.size(); ++body) {
+        result.rays += scene.stats().details.rays;
+        for (std::uint32_t body = 0; body < poses.size(); ++body) {
             poses[body].translation = poses[body].translation + 0.02 * random.in_ball();
-            scene.set_pose(body, poses[body]);
+            scene.set_pose({body}, poses[body]);
         }
     }
     result.hash = hash.hex();
@@ -55,8 +55,8 @@ void expect_golden(const std::vector<Mesh>& meshes, double spread, std::uint32_t
                 settings.features = features;
                 settings.method = method;
                 settings.direction = direction;
-                settings.caster = caster;
-                settings.threads = threads;
+                settings.paper.caster = caster;
+                settings.execution.threads = threads;
                 const Result result = run(settings, meshes, spread, steps);
                 if (caster == Caster::bvh && threads == 1)
                     std::printf("[ counts   ] %s, %u steps, %llu rays, %llu contacts, hash %s\n",

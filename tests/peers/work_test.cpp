@@ -47,10 +47,10 @@ TEST(PeersWork, PairsStartApartAndEndInContact) {
     std::vector<std::size_t> contacts;
     for (const WorkStep& step : work.steps) {
         place(*scene, step);
-        contacts.push_back(scene->step(step.pairs).size());
+        contacts.push_back(scene->find_contacts(step.pairs).size());
         for (const Pair& pair : step.pairs) {
-            EXPECT_EQ(pair.first % 2, 0u);
-            EXPECT_EQ(pair.second, pair.first + 1) << "a pair sees another";
+            EXPECT_EQ(pair.first.slot % 2, 0u);
+            EXPECT_EQ(pair.second.slot, pair.first.slot + 1) << "a pair sees another";
         }
     }
     EXPECT_EQ(contacts.front(), 0u);
@@ -108,7 +108,7 @@ TEST(PeersContest, EveryMethodIsHeldAgainstStandard) {
     EXPECT_EQ(of(results, "iterative").hash, of(results, "iterative-basic").hash);
     // The state from step to step is at work: iterative follows rays, certified leaves rays out.
     EXPECT_EQ(of(results, "iterative").steps, 20u);
-    EXPECT_GT(of(results, "iterative").sums.walks, 0u);
+    EXPECT_GT(of(results, "iterative").sums.details.walks, 0u);
     EXPECT_GT(of(results, "predictive").sums.pair_bytes, 0u);
     EXPECT_LT(of(results, "certified").rays, bvh.rays);
 }
@@ -126,7 +126,7 @@ TEST(PeersContest, PeersMeetWhereWeDo) {
     // Apart, nobody finds anything; well apart, since the peers see edges meet before any vertex is inside.
     Work apart = work;
     for (WorkStep& step : apart.steps)
-        for (BodyId body = 1; body < step.poses.size(); body += 2) step.poses[body].translation.z += 2;
+        for (std::uint32_t body = 1; body < step.poses.size(); body += 2) step.poses[body].translation.z += 2;
     for (const Result& r : contest(apart, only(names), 1, [](const std::string&) {}))
         EXPECT_EQ(r.contacts, 0u) << r.peer;
 }
@@ -152,7 +152,7 @@ TEST(PeersWork, RollingPairsKeepTheirContactsAndTheirPace) {
         double contacts = 0;
         for (const WorkStep& step : work.steps) {
             place(*scene, step);
-            contacts += static_cast<double>(scene->step(step.pairs).size());
+            contacts += static_cast<double>(scene->find_contacts(step.pairs).size());
         }
         EXPECT_NEAR(contacts / static_cast<double>(work.pair_steps()), options.contacts, 0.5) << triangles;
     }
@@ -173,7 +173,7 @@ TEST(PeersWork, SwarmIsFastAndMeets) {
     std::size_t contacts = 0;
     for (const WorkStep& step : one.steps) {
         place(*scene, step);
-        contacts += scene->step(step.pairs).size();
+        contacts += scene->find_contacts(step.pairs).size();
     }
     EXPECT_GT(contacts, 30u);
 }
@@ -189,14 +189,14 @@ TEST(Sweep, EveryThresholdAndTheChosenOne) {
         EXPECT_GT(row.us, 0);
         EXPECT_EQ(row.sums.contacts + row.wrong.missed, row.wrong.contacts_compared + row.wrong.invented);
         EXPECT_EQ(row.wrong.contacts_compared, rows[0].sums.contacts);
-        EXPECT_LE(row.sums.pairs_full, 2 * row.pair_steps);
+        EXPECT_LE(row.sums.details.pairs_full, 2 * row.pair_steps);
         const bool exact = row.method == Method::standard || row.method == Method::certified;
         EXPECT_TRUE(!exact || row.wrong.total() == 0);
     }
     EXPECT_EQ(*rows[1].fraction, 1e-4);
     EXPECT_NEAR(*rows[4].fraction, 1e-1, 1e-12);
     EXPECT_FALSE(rows[5].fraction.has_value());
-    EXPECT_LT(rows[4].sums.pairs_full, rows[1].sums.pairs_full); // a larger threshold looks less often
+    EXPECT_LT(rows[4].sums.details.pairs_full, rows[1].sums.details.pairs_full); // a larger threshold looks less often
     EXPECT_NEAR(rows[0].size, 1, 0.01);
     const std::vector<bench::Verdict> found = verdicts(rows);
     ASSERT_EQ(found.size(), 3u);

@@ -41,7 +41,7 @@ void run(Scene& scene, const std::vector<std::shared_ptr<const Shape>>& shapes, 
         poses.push_back(pose);
     }
     for (std::uint32_t step = 0; step < steps; ++step) {
-        scene.step();
+        scene.find_contacts();
         done(step);
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             const Vec3 by = random.in_ball();
@@ -53,11 +53,12 @@ void run(Scene& scene, const std::vector<std::shared_ptr<const Shape>>& shapes, 
 }
 
 void print(const Contact& contact) {
-    std::printf("%u %u %s %u", contact.body_a, contact.body_b, contact_key(contact).c_str(), contact.triangle);
-    for (const double number : {contact.point.x, contact.point.y, contact.point.z})
+    std::printf("%u %u %016llx %u", contact.body_a.slot, contact.body_b.slot,
+                static_cast<unsigned long long>(contact.key()), contact.feature.other_index());
+    for (const double number : {contact.point().x, contact.point().y, contact.point().z})
         std::printf(" %016llx", static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(number)));
     for (const float number :
-         {contact.normal[0], contact.normal[1], contact.normal[2], contact.depth, contact.ray_length, contact.weight})
+         {contact.normal.x, contact.normal.y, contact.normal.z, contact.depth, contact.ray_length, contact.weight})
         std::printf(" %08x", std::bit_cast<std::uint32_t>(number));
     std::printf("\n");
 }
@@ -70,11 +71,11 @@ void print_scenes(const std::vector<std::shared_ptr<const Shape>>& shapes) {
                     for (const std::uint32_t threads : {1u, 3u}) {
                         Settings settings;
                         settings.method = method;
-                        settings.caster = caster;
+                        settings.paper.caster = caster;
                         settings.direction = direction;
                         settings.features = features;
-                        settings.devices = "cpu";
-                        settings.threads = threads;
+                        settings.execution.devices = "cpu";
+                        settings.execution.threads = threads;
                         Scene scene(settings);
                         ContactHash hash(direction);
                         std::size_t contacts = 0;
@@ -106,7 +107,7 @@ void record(const std::filesystem::path& file, const std::vector<std::shared_ptr
     RecorderOptions options;
     options.dt = 0.01;
     Recorder recorder(file, scene, options);
-    run(scene, shapes, [&](std::uint32_t) { recorder.step(); });
+    run(scene, shapes, [&](std::uint32_t) { recorder.record(); });
     recorder.finish();
     std::printf("recording: %u steps, hash %s\n", recorder.steps(), recorder.hash().c_str());
 }

@@ -26,12 +26,12 @@ Settings with(Caster caster, Direction direction = Direction::reprojected, Featu
     settings.features = features;
     settings.direction = direction;
     settings.method = Method::standard; // every ray of the rule
-    settings.caster = caster;
+    settings.paper.caster = caster;
     return settings;
 }
 
 auto key(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
+    return std::tuple(c.body_a, c.body_b, c.key());
 }
 
 struct Counts {
@@ -46,30 +46,31 @@ void expect_flipped(std::span<const Contact> one, std::span<const Contact> two, 
     std::map<decltype(key({})), const Contact*> flipped;
     for (const Contact& d : two) {
         Contact c = d;
-        c.vertex_body = d.vertex_body == VertexBody::a && d.feature != Feature::edges ? VertexBody::b : VertexBody::a;
-        if (d.feature == Feature::edges) std::swap(c.vertex, c.triangle);
+        c.feature.source = d.feature.source == Side::a && d.feature.kind != FeatureKind::edges ? Side::b : Side::a;
+        std::swap(c.feature.index_a, c.feature.index_b);
         flipped[key(c)] = &d;
     }
     std::size_t exact = 0;
     for (const Contact& c : one) {
         const auto at = flipped.find(key(c));
-        if (c.feature == Feature::edges) {
+        if (c.feature.kind == FeatureKind::edges) {
             const bool alike = at != flipped.end() && std::fabs(c.depth - at->second->depth) < 1e-6 * size;
             (alike ? counts.swapped : counts.swapped_otherwise) += 1;
             continue;
         }
         ASSERT_NE(at, flipped.end());
         const Contact& d = *at->second;
-        ASSERT_EQ(c.triangle, d.triangle);
-        ASSERT_EQ(c.point, d.point);
-        for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(c.normal[k], -d.normal[k]);
+        ASSERT_EQ(c.feature.other_index(), d.feature.other_index());
+        ASSERT_EQ(c.point(), d.point());
+        ASSERT_EQ(c.normal, (Vec3f{-d.normal.x, -d.normal.y, -d.normal.z}));
         ASSERT_EQ(c.depth, d.depth);
         ASSERT_EQ(c.ray_length, d.ray_length);
         ASSERT_EQ(c.weight, d.weight);
         ++counts.swapped;
         ++exact;
     }
-    ASSERT_EQ(exact, std::count_if(two.begin(), two.end(), [](const auto& d) { return d.feature != Feature::edges; }));
+    ASSERT_EQ(exact, std::count_if(two.begin(), two.end(),
+                                   [](const auto& d) { return d.feature.kind != FeatureKind::edges; }));
 }
 
 template <class Place>
@@ -82,14 +83,14 @@ void run(Place place, std::size_t poses, Counts& counts, Features features = Fea
         Scene bvh(with(Caster::bvh, direction, features));
         Scene basic(with(Caster::basic, direction, features));
         Scene swapped(with(Caster::bvh, direction, features));
-        const auto contacts = bvh.step(add_all(bvh, placements));
-        const auto of_basic = basic.step(add_all(basic, placements));
-        const auto of_swapped = swapped.step(add_all(swapped, placements, true));
+        const auto contacts = bvh.find_contacts(add_all(bvh, placements));
+        const auto of_basic = basic.find_contacts(add_all(basic, placements));
+        const auto of_swapped = swapped.find_contacts(add_all(swapped, placements, true));
         ASSERT_TRUE(same_bits(contacts, of_basic)) << "the casters differ, poses from " << done;
-        ASSERT_EQ(bvh.stats().rays, basic.stats().rays);
+        ASSERT_EQ(bvh.stats().details.rays, basic.stats().details.rays);
         ASSERT_EQ(bvh.stats().contacts, contacts.size());
-        counts.rays_of_library += bvh.stats().rays;
-        counts.side_tests += bvh.stats().side_tests;
+        counts.rays_of_library += bvh.stats().details.rays;
+        counts.side_tests += bvh.stats().details.side_tests;
         for (std::size_t i = 1; i < contacts.size(); ++i) ASSERT_LT(key(contacts[i - 1]), key(contacts[i]));
 
         const auto parts = by_pair(contacts, batch);
@@ -282,7 +283,7 @@ TEST(agreement, many_leaves_in_one_place) {
                 Scene scene(with(caster));
                 scene.add(needles);
                 scene.set_pose(scene.add(body), {pose.rotation, at});
-                const auto found = scene.step();
+                const auto found = scene.find_contacts();
                 of[caster == Caster::basic].assign(found.begin(), found.end());
             }
             ASSERT_TRUE(same_bits(of[0], of[1])) << "the casters differ, pose " << i;

@@ -69,7 +69,7 @@ void move(Scene& scene, int step) {
         const double sway = 0.02 * (phase < 8 ? phase : 16 - phase);
         const std::uint32_t column = body % 4, row = body / 4 % 4, layer = body / 16;
         const Vec3 at{0.7 * column + sway, 0.7 * row - sway, 0.7 * layer};
-        scene.set_pose(body, pose_from_quaternion(at, 1, 0.1 * body, sway, 0.3));
+        scene.set_pose({body}, pose_from_quaternion(at, 1, 0.1 * body, sway, 0.3));
     }
 }
 
@@ -82,20 +82,20 @@ void expect_none_after_warm_up(Features features, const std::shared_ptr<const Sh
                 Settings settings;
                 settings.features = features;
                 settings.method = method;
-                settings.threads = threads;
+                settings.execution.threads = threads;
                 settings.direction = given ? Direction::weighted : Direction::reprojected;
                 Scene scene(settings);
-                for (BodyId body = 0; body < 64; ++body) scene.add(shape);
+                for (std::uint32_t body = 0; body < 64; ++body) scene.add(shape);
                 std::vector<Pair> pairs;
                 const auto step = [&](int i) {
                     move(scene, i);
                     if (given)
-                        scene.step(pairs);
+                        scene.find_contacts(pairs);
                     else
-                        scene.step();
+                        scene.find_contacts();
                 };
-                for (BodyId a = 0; a < 64; ++a)
-                    for (BodyId b = a + 1; b < 64; ++b) pairs.emplace_back(a, b);
+                for (std::uint32_t a = 0; a < 64; ++a)
+                    for (std::uint32_t b = a + 1; b < 64; ++b) pairs.emplace_back(BodyId{a}, BodyId{b});
                 // What a pair keeps follows its speed, smoothed: a few periods until every state has returned.
                 for (int i = 0; i < 96; ++i) step(i);
                 const std::uint64_t before = allocations;
@@ -123,18 +123,18 @@ TEST(Allocations, NoneForPairsThatReturn) {
     for (const Method method : methods) {
         Settings settings;
         settings.method = method;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         Scene scene(settings);
-        for (BodyId body = 0; body < 64; ++body) scene.add(shape);
+        for (std::uint32_t body = 0; body < 64; ++body) scene.add(shape);
         // Of different length, so that what is kept for a part of the pairs comes and goes, too.
         std::vector<Pair> pairs[3];
-        for (BodyId a = 0; a < 64; ++a)
-            for (BodyId b = a + 1; b < 64; ++b)
+        for (std::uint32_t a = 0; a < 64; ++a)
+            for (std::uint32_t b = a + 1; b < 64; ++b)
                 for (std::uint32_t part = 0; part < 3; ++part)
-                    if (a >= 4 * part && (a + b) % 3 != part) pairs[part].emplace_back(a, b);
+                    if (a >= 4 * part && (a + b) % 3 != part) pairs[part].emplace_back(BodyId{a}, BodyId{b});
         const auto step = [&](int i) {
             move(scene, i);
-            scene.step(pairs[i / 2 % 3]);
+            scene.find_contacts(pairs[i / 2 % 3]);
         };
         for (int i = 0; i < 192; ++i) step(i);
         const std::uint64_t before = allocations;
@@ -148,18 +148,18 @@ TEST(Allocations, NoneForPairsThatReturn) {
 TEST(Allocations, NoneForAMillionBodiesThatComeAndGo) {
     const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     Settings settings;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     Scene scene(settings);
-    for (BodyId body = 0; body < 8; ++body)
+    for (std::uint32_t body = 0; body < 8; ++body)
         scene.add(shape, pose_from_quaternion({0.7 * double(body), 0, 0}, 1, 0, 0, 0));
     const auto round = [&](int i) {
         BodyId guests[4];
         for (int k = 0; k < 4; ++k)
             guests[k] = scene.add(shape, pose_from_quaternion({0.7 * k, 0.5, 0.1 * (i % 4)}, 1, 0.1 * k, 0, 0));
-        if (i % 64 == 0) scene.step();
-        if (i % 64 == 1) scene.step(); // with others
+        if (i % 64 == 0) scene.find_contacts();
+        if (i % 64 == 1) scene.find_contacts(); // with others
         for (const BodyId guest : guests) {
-            EXPECT_LT(slot_of(guest), 16u);
+            EXPECT_LT(guest.slot, 16u);
             scene.remove(guest);
         }
     };
@@ -173,7 +173,7 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
     const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     Scene scene;
     const BodyId stays = scene.add(shape);
-    scene.step(std::span<const Pair>{});
+    scene.find_contacts(std::span<const Pair>{});
     const std::int64_t before = bytes_held;
     std::vector<BodyId> guests;
     guests.reserve(100000);
@@ -181,7 +181,7 @@ TEST(Allocations, AHundredThousandBodiesAtOnceAreGivenBack) {
     const std::int64_t most = bytes_held - before;
     for (const BodyId guest : guests) scene.remove(guest);
     guests = std::vector<BodyId>();
-    scene.step(std::span<const Pair>{});
+    scene.find_contacts(std::span<const Pair>{});
     EXPECT_GT(most, 100000 * 200);
     EXPECT_LT(bytes_held - before, 100000 * 40); // which generation each slot is in
     EXPECT_EQ(scene.pose(stays), Pose{});
@@ -198,7 +198,7 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
     for (const Method method : methods) {
         Settings settings;
         settings.method = method;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         settings.features = features;
         settings.speculative = speculative;
         settings.speculative_margin = 0.02;
@@ -206,12 +206,12 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
         for (std::int64_t k = 0;; ++k) {
             Scene scene(settings);
             for (std::uint32_t body = 0; body < bodies; ++body) scene.add(shape, pose_of(body, 0.8));
-            ASSERT_GT(scene.step().size(), 0u);
-            for (std::uint32_t body = 0; body < bodies; ++body) scene.set_pose(body, pose_of(body, 0.6));
+            ASSERT_GT(scene.find_contacts().size(), 0u);
+            for (std::uint32_t body = 0; body < bodies; ++body) scene.set_pose({body}, pose_of(body, 0.6));
             bool failed = false;
             allocations_left = k;
             try {
-                scene.step();
+                scene.find_contacts();
             } catch (const std::bad_alloc&) {
                 failed = true;
             }
@@ -221,15 +221,14 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
             EXPECT_TRUE(scene.contacts().empty());
             Scene fresh(settings);
             for (std::uint32_t body = 0; body < bodies; ++body) fresh.add(shape, pose_of(body, 0.6));
-            const auto expected = fresh.step();
+            const auto expected = fresh.find_contacts();
             for (int again = 0; again < 2; ++again) {
                 // All stand still, as they do in a scene that knows no last pose.
-                for (const BodyId body : scene.bodies()) scene.set_next_pose(body, scene.pose(body));
-                const auto found = scene.step();
+                for (const BodyId body : scene.bodies()) scene.set_next_pose({body}, scene.pose({body}));
+                const auto found = scene.find_contacts();
                 ASSERT_EQ(found.size(), expected.size()) << to_string(method) << ", allocation " << k;
                 for (std::size_t i = 0; i < found.size(); ++i) {
-                    ASSERT_EQ(found[i].vertex, expected[i].vertex);
-                    ASSERT_EQ(found[i].triangle, expected[i].triangle);
+                    ASSERT_TRUE(found[i].feature == expected[i].feature);
                     ASSERT_EQ(found[i].depth, expected[i].depth);
                 }
             }

@@ -56,26 +56,26 @@ TEST(ceilings, launches_and_reads_of_a_step) {
         Settings settings;
         settings.method = ceiling.method;
         settings.features = ceiling.features;
-        settings.devices = "cpu";
-        settings.threads = 1;
+        settings.execution.devices = "cpu";
+        settings.execution.threads = 1;
         Scene scene(settings);
         Random random(21);
         std::vector<Pose> poses = add_crowd(scene, random, 60, 1.9);
         std::vector<std::uint64_t> launches, reads;
         for (int step = 0; step < 60; ++step) {
-            EXPECT_GT(scene.step().size(), 100u);
+            EXPECT_GT(scene.find_contacts().size(), 100u);
             const StepStats& stats = scene.stats();
-            ASSERT_EQ(stats.work.size(), 1u);
-            EXPECT_EQ(stats.work[0].device, "cpu");
-            EXPECT_EQ(stats.work[0].pairs, stats.pairs);
-            EXPECT_GT(stats.work[0].bytes_down, 0u);
-            EXPECT_GT(stats.work[0].busy_ms, 0);
-            launches.push_back(stats.work[0].launches);
-            reads.push_back(stats.work[0].reads);
-            for (BodyId body = 0; body < poses.size(); ++body) {
+            ASSERT_EQ(stats.details.work.size(), 1u);
+            EXPECT_EQ(stats.details.work[0].device, "cpu");
+            EXPECT_EQ(stats.details.work[0].pairs, stats.pairs);
+            EXPECT_GT(stats.details.work[0].bytes_down, 0u);
+            EXPECT_GT(stats.details.work[0].busy_ms, 0);
+            launches.push_back(stats.details.work[0].launches);
+            reads.push_back(stats.details.work[0].reads);
+            for (std::uint32_t body = 0; body < poses.size(); ++body) {
                 const double pace = body % 6 == 0 ? 0.02 : 0.0005;
                 poses[body].translation = poses[body].translation + pace * random.in_ball();
-                scene.set_pose(body, poses[body]);
+                scene.set_pose({body}, poses[body]);
             }
         }
         EXPECT_LE(median(launches), ceiling.launches) << to_string(ceiling.method);
@@ -87,21 +87,21 @@ TEST(ceilings, launches_and_reads_of_a_step) {
 TEST(ceilings, a_growing_heap_seldom_repeats_a_step) {
     Settings settings;
     settings.method = Method::standard;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     Scene scene(settings);
     Random random(22);
     std::vector<Pose> poses = add_crowd(scene, random, 400, 6.0);
     std::vector<std::uint64_t> reads;
     for (int step = 0; step < 40; ++step) {
-        scene.step();
-        reads.push_back(scene.stats().work[0].reads);
-        for (BodyId body = 0; body < poses.size(); ++body) {
+        scene.find_contacts();
+        reads.push_back(scene.stats().details.work[0].reads);
+        for (std::uint32_t body = 0; body < poses.size(); ++body) {
             poses[body].translation = 0.98 * poses[body].translation;
-            scene.set_pose(body, poses[body]);
+            scene.set_pose({body}, poses[body]);
         }
     }
-    EXPECT_GT(scene.stats().vertices, 4 * 16 * 4096u); // the first room has been outgrown
-    EXPECT_EQ(median(reads), 1u);                      // one more for each repetition
+    EXPECT_GT(scene.stats().details.vertices, 4 * 16 * 4096u); // the first room has been outgrown
+    EXPECT_EQ(median(reads), 1u);                              // one more for each repetition
 }
 
 } // namespace

@@ -67,10 +67,10 @@ void play(const Episode& episode, Counts& counts) {
     const Vec3 velocity = 3 * episode.scale * random.in_ball();
     const Vec3 axis = random.direction();
     for (int step = 0; step < episode.steps; ++step) {
-        for (BodyId body = 0; body < episode.bodies; ++body) {
+        for (std::uint32_t body = 0; body < episode.bodies; ++body) {
             Pose pose = composed(frame, movers[body].next(random));
             if (episode.rounded) pose = rounded_to_float(pose);
-            triplet.each([&](Scene& scene) { scene.set_pose(body, pose); });
+            triplet.each([&](Scene& scene) { scene.set_pose({body}, pose); });
         }
         if (episode.together) {
             const Vec3 at = frame.translation + velocity;
@@ -190,7 +190,7 @@ TEST(certified, dense_crowds) {
     for (std::uint64_t i = 0; static_cast<double>(counts.decisions) < wanted; ++i) {
         Random random(first_seed() + 200000 + i);
         Settings settings = some_settings(random);
-        settings.skip_outside = true;
+        settings.paper.skip_outside = true;
         settings.features = i % 4 ? Features::vertices : Features::edges;
         Triplet triplet(settings, thresholds[random.below(std::size(thresholds))], "dense crowd " + std::to_string(i));
         std::vector<Mover> movers;
@@ -203,9 +203,9 @@ TEST(certified, dense_crowds) {
             movers.emplace_back(i % 2 ? Course::mixed : Course::drift, home, 1.0, random);
         }
         for (int step = 0; step < 150; ++step) {
-            for (BodyId b = 0; b < bodies; ++b) {
+            for (std::uint32_t b = 0; b < bodies; ++b) {
                 const Pose pose = movers[b].next(random);
-                triplet.each([&](Scene& scene) { scene.set_pose(b, pose); });
+                triplet.each([&](Scene& scene) { scene.set_pose({b}, pose); });
             }
             triplet.step(counts);
         }
@@ -231,9 +231,9 @@ TEST(certified, fine_meshes_that_creep) {
         movers.reserve(homes.size());
         for (const Pose& home : homes) movers.emplace_back(Course::creep, home, 1.0, random);
         for (int step = 0; step < 50; ++step) {
-            for (BodyId b = 0; b < movers.size(); ++b) {
+            for (std::uint32_t b = 0; b < movers.size(); ++b) {
                 const Pose pose = movers[b].next(random);
-                triplet.each([&](Scene& scene) { scene.set_pose(b, pose); });
+                triplet.each([&](Scene& scene) { scene.set_pose({b}, pose); });
             }
             triplet.step(counts);
         }
@@ -263,7 +263,7 @@ TEST(certified, eventful_scenes) {
             auto shape = stock[random.below(static_cast<std::uint32_t>(stock.size()))];
             // A shape of its own moves the others in the store when it goes and the store is packed.
             if (random.below(3) == 0) shape = prepared_shape(model_mesh("gear"));
-            BodyId id = 0;
+            BodyId id;
             triplet.each([&](Scene& scene) { id = scene.add(shape); });
             Pose home = random.rotation();
             home.translation = 1.2 * random.in_ball();
@@ -291,8 +291,8 @@ TEST(certified, eventful_scenes) {
                     Settings changed = scene.settings();
                     if (!same) {
                         changed.direction = direction;
-                        changed.caster = step % 3 ? Caster::bvh : Caster::basic;
-                        if (changed.displacement_threshold) changed.displacement_threshold = threshold;
+                        changed.paper.caster = step % 3 ? Caster::bvh : Caster::basic;
+                        if (changed.paper.displacement_threshold) changed.paper.displacement_threshold = threshold;
                     }
                     scene.set_settings(changed);
                 });

@@ -28,18 +28,16 @@ using namespace raycontact::reference;
 
 namespace {
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, Feature, VertexBody, std::uint32_t, std::uint32_t>;
+using Key = std::tuple<BodyId, BodyId, std::uint64_t>;
 
 /// The order of contacts; a slot, as a contact names it, finds the body that is there.
 struct BySlot {
-    bool operator()(BodyId a, BodyId b) const { return slot_of(a) < slot_of(b); }
+    bool operator()(BodyId a, BodyId b) const { return a.slot < b.slot; }
 };
 
-Key key(const Contact& c) {
-    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other()};
-}
-Key key(const LostContact& c) {
-    return {c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other};
+template <class AnyContact>
+Key key(const AnyContact& c) {
+    return {c.body_a, c.body_b, c.key()};
 }
 
 struct Guest {
@@ -57,13 +55,14 @@ struct Counts {
 
 // The ray of the contact's vertex meets that triangle, from inside, within its exit distance: all within rounding.
 bool is_genuine(const Contact& c, const Guest& a, const Guest& b) {
-    const bool of_a = c.vertex_body == VertexBody::a;
+    const bool of_a = c.feature.source == Side::a;
     const Guest &source = of_a ? a : b, &target = of_a ? b : a;
     const Solid &s = source.subject->solid, &t = target.subject->solid;
-    const auto v = static_cast<std::size_t>(std::find(s.vertex_index.begin(), s.vertex_index.end(), c.vertex)
-                                            - s.vertex_index.begin());
-    const auto f = static_cast<std::size_t>(std::find(t.triangle_index.begin(), t.triangle_index.end(), c.triangle)
-                                            - t.triangle_index.begin());
+    const auto v = static_cast<std::size_t>(
+        std::find(s.vertex_index.begin(), s.vertex_index.end(), c.feature.source_index()) - s.vertex_index.begin());
+    const auto f =
+        static_cast<std::size_t>(std::find(t.triangle_index.begin(), t.triangle_index.end(), c.feature.other_index())
+                                 - t.triangle_index.begin());
     if (v == s.vertices.size() || f == t.triangles.size()) return false;
     const double size = std::max(s.diagonal, t.diagonal), rounding = 1e-5 * size;
     const Vec3 shift = (source.pose.translation - target.pose.translation)
@@ -82,15 +81,14 @@ bool is_genuine(const Contact& c, const Guest& a, const Guest& b) {
 
     // And what is said about it is that of this hit.
     const Vec3 normal = rotate(target.pose, t.face_normals[f]);
-    const Vec3 said{static_cast<double>(c.normal[0]), static_cast<double>(c.normal[1]),
-                    static_cast<double>(c.normal[2])};
+    const Vec3 said{static_cast<double>(c.normal.x), static_cast<double>(c.normal.y), static_cast<double>(c.normal.z)};
     const Vec3 ray = rotate(target.pose, direction);
     const double sign = of_a ? -1 : 1;
     const bool along_face = length(said - sign * normal) < 1e-4, along_ray = length(said - sign * ray) < 1e-4;
     const Vec3 point = transform_point(source.pose, source.subject->shape->vertices()[v]);
     const bool weighted = std::fabs(c.weight - s.vertex_areas[v]) < 1e-6 * s.vertex_areas[v];
     return (along_face || along_ray) && (c.weight == 1 || (weighted && along_ray)) && c.depth >= 0
-           && length(c.point - point) < 1e-6 * size;
+           && length(c.point() - point) < 1e-6 * size;
 }
 
 std::vector<Subject> make_subjects() {
@@ -119,7 +117,7 @@ public:
 private:
     static Settings settings_of(Method method) {
         Settings settings;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         settings.method = method;
         return settings;
     }
@@ -142,7 +140,7 @@ private:
         guest.pose = somewhere();
         const BodyId id = scene_.add(guest.subject->shape, guest.pose);
         EXPECT_FALSE(guests_.contains(id)) << "a slot was given twice";
-        counts_.successors += generation_of(id) > 0;
+        counts_.successors += id.generation > 0;
         guests_[id] = guest;
     }
 
@@ -200,7 +198,7 @@ private:
             ++counts_.wrong;
         } catch (const InputError& error) {
             ++counts_.refused;
-            EXPECT_NE(std::string(error.what()).find("body " + std::to_string(slot_of(id))), std::string::npos)
+            EXPECT_NE(std::string(error.what()).find("body " + std::to_string(id.slot)), std::string::npos)
                 << error.what();
         }
         EXPECT_EQ(scene_.pose(id), guests_[id].pose);
@@ -213,16 +211,16 @@ private:
         if (random_.below(2)) changed.features = random_.below(2) ? Features::edges : Features::vertices;
         if (random_.below(2))
             changed.direction = directions[random_.below(static_cast<std::uint32_t>(std::size(directions)))];
-        if (random_.below(3) == 0) changed.caster = random_.below(2) ? Caster::bvh : Caster::basic;
-        if (random_.below(3) == 0) changed.skip_outside = random_.below(2) != 0;
+        if (random_.below(3) == 0) changed.paper.caster = random_.below(2) ? Caster::bvh : Caster::basic;
+        if (random_.below(3) == 0) changed.paper.skip_outside = random_.below(2) != 0;
         if (random_.below(2)) {
-            changed.displacement_threshold.reset();
-            if (random_.below(2)) changed.displacement_threshold = std::pow(10.0, random_.uniform(-7, 1));
-            changed.confidence = random_.uniform(1, 4);
-            changed.max_iterations = 1 + random_.below(30);
-            changed.cast_lost_walks = random_.below(2) != 0;
-            changed.culling_distance.reset();
-            if (random_.below(3) == 0) changed.culling_distance = random_.uniform(0, 0.2);
+            changed.paper.displacement_threshold.reset();
+            if (random_.below(2)) changed.paper.displacement_threshold = std::pow(10.0, random_.uniform(-7, 1));
+            changed.paper.confidence = random_.uniform(1, 4);
+            changed.paper.max_iterations = 1 + random_.below(30);
+            changed.paper.cast_lost_walks = random_.below(2) != 0;
+            changed.paper.culling_distance.reset();
+            if (random_.below(3) == 0) changed.paper.culling_distance = random_.uniform(0, 0.2);
         }
         scene_.set_settings(changed);
     }
@@ -233,7 +231,7 @@ private:
             for (const auto& [a, guest_a] : guests_)
                 for (const auto& [b, guest_b] : guests_)
                     if (BySlot()(a, b) && random_.below(4) != 0) asked.emplace_back(a, b);
-        const std::span<const Contact> found = given_ ? scene_.step(asked) : scene_.step();
+        const std::span<const Contact> found = given_ ? scene_.find_contacts(asked) : scene_.find_contacts();
         if (given_) {
             EXPECT_TRUE(std::equal(asked.begin(), asked.end(), scene_.pairs().begin(), scene_.pairs().end()));
         }
@@ -256,24 +254,25 @@ private:
             return;
         }
         for (const Contact& c : found) {
-            if (c.feature != Feature::vertex) continue;             // they follow from the vertices that were found
+            if (c.feature.kind != FeatureKind::vertex) continue;    // they follow from the vertices that were found
             if (settings.direction == Direction::refined) continue; // it names another face than the ray met
             if (is_genuine(c, guests_[c.body_a], guests_[c.body_b])) {
                 ++counts_.genuine;
                 Contact lie = c;
-                lie.triangle += 1;
+                ++(c.feature.source == Side::a ? lie.feature.index_b : lie.feature.index_a);
                 ++counts_.lies;
                 counts_.believed += is_genuine(lie, guests_[c.body_a], guests_[c.body_b]);
                 continue;
             }
             if (++counts_.false_hits == 1)
-                ADD_FAILURE() << to_string(method) << ", step " << counts_.steps << ": vertex " << c.vertex
-                              << " does not meet triangle " << c.triangle << ", ray " << c.ray_length;
+                ADD_FAILURE() << to_string(method) << ", step " << counts_.steps << ": vertex "
+                              << c.feature.source_index() << " does not meet triangle " << c.feature.other_index()
+                              << ", ray " << c.ray_length;
         }
         std::set<Key> keys;
         for (const Contact& c : found) keys.insert(key(c));
         for (const Contact& c : expected) {
-            if (c.feature != Feature::vertex) continue;
+            if (c.feature.kind != FeatureKind::vertex) continue;
             ++counts_.of_standard;
             counts_.missed_by_others += !keys.contains(key(c));
         }
@@ -305,9 +304,8 @@ private:
         const auto pairs = scene_.pairs();
         for (const Contact& c : found) {
             const bool exist = guests_.contains(c.body_a) && guests_.contains(c.body_b);
-            const bool asked = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-                return pair == Pair(scene_.body_in(c.body_a), scene_.body_in(c.body_b));
-            });
+            const bool asked = std::any_of(pairs.begin(), pairs.end(),
+                                           [&](const Pair& pair) { return pair == Pair(c.body_a, c.body_b); });
             counts_.false_pairs += !exist || !asked;
         }
     }
@@ -363,11 +361,11 @@ TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
         const std::vector<Pose> homes = touching_poses(shapes, random.uniform(0, 0.3), random);
         Settings settings;
         settings.features = Features::vertices;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         settings.method = Method::standard;
         Scene standard(settings);
         settings.method = i % 2 ? Method::predictive : Method::iterative;
-        settings.displacement_threshold = 0;
+        settings.paper.displacement_threshold = 0;
         Scene follower(settings);
         std::vector<Mover> movers;
         for (std::size_t b = 0; b < shapes.size(); ++b) {
@@ -377,20 +375,20 @@ TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
                                 length(shapes[b]->box_max() - shapes[b]->box_min()), random);
         }
         for (int step = 0; step < 100; ++step) {
-            for (BodyId body = 0; body < movers.size(); ++body) {
+            for (std::uint32_t body = 0; body < movers.size(); ++body) {
                 const Pose pose = movers[body].next(random);
-                standard.set_pose(body, pose);
-                follower.set_pose(body, pose);
+                standard.set_pose({body}, pose);
+                follower.set_pose({body}, pose);
             }
             const auto named = [](std::span<const Contact> list) {
                 std::set<std::pair<Key, std::uint32_t>> names;
-                for (const Contact& c : list) names.insert({key(c), c.triangle});
+                for (const Contact& c : list) names.insert({key(c), c.feature.other_index()});
                 return names;
             };
-            ASSERT_EQ(named(standard.step()), named(follower.step()))
+            ASSERT_EQ(named(standard.find_contacts()), named(follower.find_contacts()))
                 << name_of(kind) << ", " << to_string(settings.method) << ", step " << step;
             contacts += standard.contacts().size();
-            looks += follower.stats().pairs_full;
+            looks += follower.stats().details.pairs_full;
             ordered += 2 * follower.stats().pairs;
         }
     }
@@ -419,7 +417,7 @@ TEST(coherence, memory_follows_the_pairs_that_overlap) {
     for (const Method method : {Method::certified, Method::iterative, Method::predictive}) {
         Settings settings;
         settings.features = Features::vertices;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         settings.method = method;
         std::vector<std::uint64_t> bytes;
         for (const std::uint32_t count : {10u, 40u}) {
@@ -432,7 +430,7 @@ TEST(coherence, memory_follows_the_pairs_that_overlap) {
                     pose.translation.z += 1e-6;
                     scene.set_pose(second, pose);
                 }
-                scene.step();
+                scene.find_contacts();
             }
             EXPECT_EQ(scene.pairs().size(), count);
             EXPECT_GT(scene.stats().contacts, 0u);
@@ -440,13 +438,13 @@ TEST(coherence, memory_follows_the_pairs_that_overlap) {
 
             // Opened and closed many times over, it is no more.
             for (int round = 0; round < 20; ++round) {
-                scene.step(std::span<const Pair>{});
+                scene.find_contacts(std::span<const Pair>{});
                 EXPECT_LE(scene.stats().pair_bytes, 256u) << to_string(method);
-                scene.step(pairs);
+                scene.find_contacts(pairs);
             }
             EXPECT_LE(scene.stats().pair_bytes, 2 * bytes.back() + 256) << to_string(method);
             for (const auto& [first, second] : pairs) scene.remove(second);
-            scene.step();
+            scene.find_contacts();
             EXPECT_LE(scene.stats().pair_bytes, 256u) << to_string(method);
         }
         std::printf("[ counts   ] %s keeps %llu bytes for 10 touching pairs, %llu for 40\n",
@@ -465,7 +463,7 @@ TEST(coherence, memory_follows_the_pairs_that_overlap) {
 TEST(coherence, predictive_leaves_fast_pairs_to_certified) {
     Settings settings;
     settings.features = Features::vertices;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     settings.method = Method::standard;
     Scene standard(settings);
     settings.method = Method::predictive;
@@ -491,9 +489,10 @@ TEST(coherence, predictive_leaves_fast_pairs_to_certified) {
                 if (c.body_a != pairs[0].first) of.push_back(c);
             return of;
         };
-        const std::vector<Contact> expected = of_fast(standard.step(pairs)), found = of_fast(predictive.step(pairs));
+        const std::vector<Contact> expected = of_fast(standard.find_contacts(pairs)),
+                                   found = of_fast(predictive.find_contacts(pairs));
         if (step % 20 < 2) continue; // a pair that sped up is followed until it has come as far as it was to be
-        (fast ? walks_of_one : walks_of_all) += predictive.stats().walks;
+        (fast ? walks_of_one : walks_of_all) += predictive.stats().details.walks;
         if (!fast) continue;
         ASSERT_TRUE(same_bits(expected, found)) << "step " << step;
         compared += found.size();

@@ -45,10 +45,10 @@ public:
         }
     }
     void move(double pace = 0.01) {
-        for (BodyId body = 0; body < poses.size(); ++body) {
+        for (std::uint32_t body = 0; body < poses.size(); ++body) {
             const Vec3 by = pace * random_.in_ball();
             poses[body].translation = poses[body].translation + by;
-            scene.set_pose(body, poses[body]);
+            scene.set_pose({body}, poses[body]);
         }
     }
     Scene scene;
@@ -60,7 +60,7 @@ private:
 
 Settings threads(std::uint32_t count) {
     Settings settings;
-    settings.threads = count;
+    settings.execution.threads = count;
     return settings;
 }
 
@@ -78,7 +78,7 @@ Trace run(const Settings& settings, const Shapes& shapes = closed_shapes()) {
     Crowd crowd(settings, shapes);
     ContactHash hash;
     for (std::uint32_t step = 0; step < 12; ++step) {
-        result.steps.push_back(copy(crowd.scene.step()));
+        result.steps.push_back(copy(crowd.scene.find_contacts()));
         hash.add(step, result.steps.back());
         crowd.move();
     }
@@ -126,11 +126,11 @@ TEST(determinism, threads_and_casters_change_no_edge) {
         const Trace first = run(settings, crowd_shapes(Kind::coarse, 1));
         std::size_t edges = 0;
         for (const auto& step : first.steps)
-            for (const Contact& c : step) edges += c.feature != Feature::vertex;
+            for (const Contact& c : step) edges += c.feature.kind != FeatureKind::vertex;
         for (const std::uint32_t count : {1u, 2u, 3u, 4u})
             for (const Caster caster : {Caster::bvh, Caster::basic}) {
-                settings.threads = count;
-                settings.caster = caster;
+                settings.execution.threads = count;
+                settings.paper.caster = caster;
                 const Trace other = run(settings, crowd_shapes(Kind::coarse, 1));
                 EXPECT_EQ(other.hash, first.hash) << to_string(method) << ", " << count << " threads";
                 for (std::size_t i = 0; i < first.steps.size(); ++i)
@@ -148,7 +148,8 @@ TEST(determinism, every_method_asks_edges_in_full) {
     using Lists = std::map<Pair, std::array<std::vector<Contact>, 2>>; // of vertices, of edges
     const auto sorted = [](std::span<const Contact> contacts) {
         Lists lists;
-        for (const Contact& c : contacts) lists[{c.body_a, c.body_b}][c.feature != Feature::vertex].push_back(c);
+        for (const Contact& c : contacts)
+            lists[{c.body_a, c.body_b}][c.feature.kind != FeatureKind::vertex].push_back(c);
         return lists;
     };
     const auto& shapes = crowd_shapes(Kind::coarse, 1);
@@ -158,13 +159,13 @@ TEST(determinism, every_method_asks_edges_in_full) {
         settings.method = Method::standard;
         Crowd standard(settings, shapes);
         settings.method = method;
-        settings.displacement_threshold = 0.05;
+        settings.paper.displacement_threshold = 0.05;
         Crowd other(settings, shapes);
         settings.features = Features::vertices;
         Crowd alone(settings, shapes);
         std::size_t alike = 0, all = 0, edges = 0;
         for (int step = 0; step < 24; ++step) {
-            Lists expected = sorted(standard.scene.step()), found = sorted(other.scene.step());
+            Lists expected = sorted(standard.scene.find_contacts()), found = sorted(other.scene.find_contacts());
             for (const auto& [pair, lists] : expected) found.try_emplace(pair);
             std::vector<Contact> vertices;
             for (auto& [pair, lists] : found) {
@@ -175,7 +176,7 @@ TEST(determinism, every_method_asks_edges_in_full) {
                 edges += lists[1].size();
                 EXPECT_TRUE(same_bits(lists[1], expected[pair][1])) << to_string(method) << ", step " << step;
             }
-            EXPECT_TRUE(same_bits(vertices, alone.scene.step())) << to_string(method) << ", step " << step;
+            EXPECT_TRUE(same_bits(vertices, alone.scene.find_contacts())) << to_string(method) << ", step " << step;
             for (Crowd* crowd : {&standard, &other, &alone}) crowd->move(0.004);
         }
         std::printf("[ counts   ] %s: %zu of %zu pairs with the vertex contacts of standard, %zu contacts of edges\n",
@@ -187,12 +188,24 @@ TEST(determinism, every_method_asks_edges_in_full) {
 
 // All that was counted of a step, beside the times.
 std::vector<double> counters(const StepStats& s) {
-    const std::uint64_t counted[] = {s.pairs,      s.vertices,   s.rays,         s.rays_cast,
-                                     s.side_tests, s.pairs_full, s.pairs_asleep, s.pairs_as_standard,
-                                     s.walks,      s.walks_lost, s.walk_casts,   s.predictions,
-                                     s.pair_bytes, s.contacts,   s.contacts_new, s.contacts_lost};
+    const std::uint64_t counted[] = {s.pairs,
+                                     s.details.vertices,
+                                     s.details.rays,
+                                     s.details.rays_cast,
+                                     s.details.side_tests,
+                                     s.details.pairs_full,
+                                     s.details.pairs_asleep,
+                                     s.details.pairs_as_standard,
+                                     s.details.walks,
+                                     s.details.walks_lost,
+                                     s.details.walk_casts,
+                                     s.details.predictions,
+                                     s.pair_bytes,
+                                     s.contacts,
+                                     s.contacts_new,
+                                     s.contacts_lost};
     std::vector<double> all(std::begin(counted), std::end(counted));
-    all.insert(all.end(), {s.ray_length, s.depth_max});
+    all.insert(all.end(), {s.details.ray_length, s.depth_max});
     return all;
 }
 
@@ -210,13 +223,13 @@ TEST(determinism, threads_change_no_counter_where_caps_are_asked) {
         Crowd crowd(threads(count), shapes);
         std::uint64_t known = 0, rays = 0;
         for (std::size_t step = 0; step < 24; ++step) {
-            const auto contacts = crowd.scene.step();
+            const auto contacts = crowd.scene.find_contacts();
             const StepStats& stats = crowd.scene.stats();
             if (count == 1) first.push_back({copy(contacts), counters(stats)});
             EXPECT_TRUE(same_bits(first[step].contacts, contacts)) << count << " threads, step " << step;
             EXPECT_EQ(first[step].counted, counters(stats)) << count << " threads, step " << step;
-            known += stats.rays - stats.rays_cast;
-            rays += stats.rays;
+            known += stats.details.rays - stats.details.rays_cast;
+            rays += stats.details.rays;
             crowd.move(step % 6 == 5 ? 0.01 : 0.001);
         }
         EXPECT_GT(known, rays / 2);
@@ -241,15 +254,18 @@ TEST(determinism, hash_sees_every_field_and_the_step) {
         change(other[other.size() / 2]);
         return hash_of(0, other);
     };
-    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_a; }));
-    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_b; }));
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_a.slot; }));
+    EXPECT_NE(plain, changed([](Contact& c) { ++c.body_b.slot; }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.feature.source = c.feature.source == Side::a ? Side::b : Side::a; }));
+    EXPECT_NE(plain,
+              changed([](Contact& c) { ++(c.feature.source == Side::a ? c.feature.index_a : c.feature.index_b); }));
+    EXPECT_NE(plain,
+              changed([](Contact& c) { ++(c.feature.source == Side::a ? c.feature.index_b : c.feature.index_a); }));
     EXPECT_NE(plain, changed([](Contact& c) {
-                  c.vertex_body = c.vertex_body == VertexBody::a ? VertexBody::b : VertexBody::a;
+                  double& z = (c.feature.source == Side::a ? c.point_a : c.point_b).z;
+                  z = std::nextafter(z, 1e9);
               }));
-    EXPECT_NE(plain, changed([](Contact& c) { ++c.vertex; }));
-    EXPECT_NE(plain, changed([](Contact& c) { ++c.triangle; }));
-    EXPECT_NE(plain, changed([](Contact& c) { c.point.z = std::nextafter(c.point.z, 1e9); }));
-    EXPECT_NE(plain, changed([](Contact& c) { c.normal[1] = std::nextafter(c.normal[1], 9.0f); }));
+    EXPECT_NE(plain, changed([](Contact& c) { c.normal.y = std::nextafter(c.normal.y, 9.0f); }));
     EXPECT_NE(plain, changed([](Contact& c) { c.depth = std::nextafter(c.depth, 9.0f); }));
     EXPECT_NE(plain, changed([](Contact& c) { c.ray_length = std::nextafter(c.ray_length, 9.0f); }));
 
@@ -264,31 +280,31 @@ TEST(determinism, hash_sees_every_field_and_the_step) {
 
 TEST(determinism, pairs_given_twice_or_in_any_order) {
     Crowd crowd({});
-    const std::vector<Contact> expected = copy(crowd.scene.step());
+    const std::vector<Contact> expected = copy(crowd.scene.find_contacts());
     std::vector<Pair> pairs(crowd.scene.pairs().begin(), crowd.scene.pairs().end());
     ASSERT_GE(pairs.size(), 100u);
     EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step(pairs)));
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts(pairs)));
     std::vector<Pair> mixed(pairs.rbegin(), pairs.rend());
     mixed.insert(mixed.end(), pairs.begin(), pairs.end());
     for (std::size_t i = 0; i < mixed.size(); i += 2) std::swap(mixed[i].first, mixed[i].second);
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step(mixed)));
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts(mixed)));
     EXPECT_EQ(crowd.scene.stats().pairs, pairs.size());
     EXPECT_TRUE(std::equal(pairs.begin(), pairs.end(), crowd.scene.pairs().begin(), crowd.scene.pairs().end()));
-    EXPECT_TRUE(crowd.scene.step(std::span<const Pair>{}).empty());
-    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{3, 3}}), InputError);
-    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{0, 4000}}), InputError);
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step(pairs))); // a refused call left nothing behind
+    EXPECT_TRUE(crowd.scene.find_contacts(std::span<const Pair>{}).empty());
+    EXPECT_THROW(crowd.scene.find_contacts(std::vector<Pair>{{BodyId{3}, BodyId{3}}}), InputError);
+    EXPECT_THROW(crowd.scene.find_contacts(std::vector<Pair>{{BodyId{0}, BodyId{4000}}}), InputError);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts(pairs))); // a refused call left nothing behind
 }
 
 TEST(determinism, the_broad_phase_misses_no_contact) {
     Crowd crowd({});
     for (int step = 0; step < 3; ++step) {
-        const std::vector<Contact> found = copy(crowd.scene.step());
+        const std::vector<Contact> found = copy(crowd.scene.find_contacts());
         std::vector<Pair> all;
-        for (BodyId a = 0; a < crowd.poses.size(); ++a)
-            for (BodyId b = a + 1; b < crowd.poses.size(); ++b) all.emplace_back(a, b);
-        EXPECT_TRUE(same_bits(found, crowd.scene.step(all))) << "step " << step;
+        for (std::uint32_t a = 0; a < crowd.poses.size(); ++a)
+            for (std::uint32_t b = a + 1; b < crowd.poses.size(); ++b) all.emplace_back(BodyId{a}, BodyId{b});
+        EXPECT_TRUE(same_bits(found, crowd.scene.find_contacts(all))) << "step " << step;
         EXPECT_GE(found.size(), 1000u);
         crowd.move();
     }
@@ -300,13 +316,13 @@ TEST(determinism, bodies_that_come_and_go_leave_no_trace) {
     const Pose middle;
     for (int step = 0; step < 4; ++step) {
         const BodyId guest = eventful.scene.add(closed_subjects()[0].shape, middle);
-        EXPECT_GE(eventful.scene.step().size(), plain.scene.step().size());
+        EXPECT_GE(eventful.scene.find_contacts().size(), plain.scene.find_contacts().size());
         eventful.scene.remove(guest);
         const BodyId other = eventful.scene.add(closed_subjects()[1].shape, middle);
         EXPECT_NE(other, guest) << "an id was given twice";
         eventful.scene.remove(other);
         EXPECT_THROW(eventful.scene.set_pose(other, middle), InputError);
-        EXPECT_TRUE(same_bits(plain.scene.step(), eventful.scene.step()));
+        EXPECT_TRUE(same_bits(plain.scene.find_contacts(), eventful.scene.find_contacts()));
         EXPECT_EQ(eventful.scene.body_count(), plain.scene.body_count());
         plain.move();
         eventful.move();
@@ -315,27 +331,27 @@ TEST(determinism, bodies_that_come_and_go_leave_no_trace) {
 
 TEST(determinism, removing_a_body_removes_its_contacts_and_no_others) {
     Crowd crowd({});
-    std::vector<Contact> expected = copy(crowd.scene.step());
-    std::erase_if(expected, [](const Contact& c) { return c.body_a == 7 || c.body_b == 7; });
-    crowd.scene.remove(7);
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
-    EXPECT_THROW(crowd.scene.step(std::vector<Pair>{{6, 7}}), InputError);
+    std::vector<Contact> expected = copy(crowd.scene.find_contacts());
+    std::erase_if(expected, [](const Contact& c) { return c.body_a.slot == 7 || c.body_b.slot == 7; });
+    crowd.scene.remove({7});
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts()));
+    EXPECT_THROW(crowd.scene.find_contacts(std::vector<Pair>{{BodyId{6}, BodyId{7}}}), InputError);
 }
 
 TEST(determinism, a_teleport_there_and_back_leaves_no_trace) {
     Crowd crowd({});
-    const std::vector<Contact> expected = copy(crowd.scene.step());
+    const std::vector<Contact> expected = copy(crowd.scene.find_contacts());
     Pose far = crowd.poses[5];
     far.translation = {1e6, -1e6, 1e6};
-    crowd.scene.set_pose(5, far);
-    for (const Contact& c : crowd.scene.step()) EXPECT_TRUE(c.body_a != 5 && c.body_b != 5);
-    crowd.scene.set_pose(5, crowd.poses[5]);
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
+    crowd.scene.set_pose({5}, far);
+    for (const Contact& c : crowd.scene.find_contacts()) EXPECT_TRUE(c.body_a.slot != 5 && c.body_b.slot != 5);
+    crowd.scene.set_pose({5}, crowd.poses[5]);
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts()));
 }
 
 TEST(determinism, a_bad_pose_is_refused_by_name_and_the_old_one_stays) {
     Crowd crowd({});
-    const std::vector<Contact> expected = copy(crowd.scene.step());
+    const std::vector<Contact> expected = copy(crowd.scene.find_contacts());
     const Pose good = crowd.poses[13];
     std::vector<Pose> bad(6, good);
     bad[0].translation.y = std::numeric_limits<double>::quiet_NaN();
@@ -346,17 +362,17 @@ TEST(determinism, a_bad_pose_is_refused_by_name_and_the_old_one_stays) {
     bad[5].rotation.fill(0);
     for (std::size_t i = 0; i < bad.size(); ++i) {
         try {
-            crowd.scene.set_pose(13, bad[i]);
+            crowd.scene.set_pose({13}, bad[i]);
             ADD_FAILURE() << "bad pose " << i << " was taken";
         } catch (const InputError& error) {
             const std::string text = error.what();
             EXPECT_NE(text.find("13"), std::string::npos) << text;
             EXPECT_EQ(text.find('\n'), std::string::npos) << text;
         }
-        EXPECT_EQ(crowd.scene.pose(13), good);
+        EXPECT_EQ(crowd.scene.pose({13}), good);
         EXPECT_THROW(crowd.scene.add(closed_subjects()[0].shape, bad[i]), InputError);
     }
-    EXPECT_TRUE(same_bits(expected, crowd.scene.step()));
+    EXPECT_TRUE(same_bits(expected, crowd.scene.find_contacts()));
 }
 
 } // namespace

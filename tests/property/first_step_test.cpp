@@ -37,8 +37,8 @@ Cost cost_of(const std::shared_ptr<const Shape>& shape, Method method, double pa
         Settings settings;
         settings.method = method;
         settings.features = Features::vertices;
-        settings.devices = "cpu";
-        settings.threads = 1;
+        settings.execution.devices = "cpu";
+        settings.execution.threads = 1;
         Scene scene(settings);
         const double size = shape->box_max().x - shape->box_min().x;
         scene.add(shape);
@@ -47,13 +47,13 @@ Cost cost_of(const std::shared_ptr<const Shape>& shape, Method method, double pa
             const Vec3 at{size * (0.3 - 0.5 * pace * step), size * (0.05 + 0.5 * pace * step), 0};
             scene.set_pose(moving, pose_from_quaternion(at, 1, pace * step, 0, 0));
             const double start = processor_ms();
-            scene.step();
+            scene.find_contacts();
             double& least = cost.ms[static_cast<std::size_t>(step)];
             least = std::min(least, processor_ms() - start);
-            cost.rays[static_cast<std::size_t>(step)] = scene.stats().rays_cast;
+            cost.rays[static_cast<std::size_t>(step)] = scene.stats().details.rays_cast;
         }
         EXPECT_GT(scene.contacts().size(), 100u);
-        cost.as_standard = scene.stats().pairs_as_standard;
+        cost.as_standard = scene.stats().details.pairs_as_standard;
     }
     return cost;
 }

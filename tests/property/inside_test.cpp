@@ -59,26 +59,27 @@ TEST(inside, every_contact_by_exact_predicates) {
     std::vector<Placement> placements(1000);
     for (Placement& p : placements) p = random_placement(pointers(closed_subjects()), random);
     Scene scene;
-    const auto parts = by_pair(scene.step(add_all(scene, placements)), placements.size());
+    const auto parts = by_pair(scene.find_contacts(add_all(scene, placements)), placements.size());
     for (std::size_t i = 0; i < placements.size(); ++i)
         for (const Contact& c : parts[i]) {
             const Placement& p = placements[i];
-            const bool of_a = c.vertex_body == VertexBody::a;
+            const bool of_a = c.feature.source == Side::a;
             const Solid& target = of_a ? p.b->solid : p.a->solid;
-            const Vec3 local = in_frame(p, of_a, c.point);
+            const Vec3 local = in_frame(p, of_a, c.point());
             const auto is_inside = [&](const Solid& solid, const Vec3& at) {
                 return (*oracles.at(&solid)->side)(point(at)) == CGAL::ON_BOUNDED_SIDE;
             };
             // Of edges, one or the other is inside.
             if (is_inside(target, local)
-                || (c.feature == Feature::edges && is_inside(p.a->solid, in_frame(p, false, point_on_b(c))))) {
+                || (c.feature.kind == FeatureKind::edges && is_inside(p.a->solid, in_frame(p, false, c.point_b)))) {
                 ++inside;
             } else if (distance_to_surface(target, local) < 1e-6 * std::max(1.0, target.diagonal)) {
                 ++near;
             } else {
-                ADD_FAILURE() << "pair " << i << ": vertex " << c.vertex << " of body " << (of_a ? "a" : "b")
-                              << " is outside " << target.name << " by " << distance_to_surface(target, local)
-                              << " m, ray " << c.ray_length << " m to triangle " << c.triangle;
+                ADD_FAILURE() << "pair " << i << ": vertex " << c.feature.source_index() << " of body "
+                              << (of_a ? "a" : "b") << " is outside " << target.name << " by "
+                              << distance_to_surface(target, local) << " m, ray " << c.ray_length << " m to triangle "
+                              << c.feature.other_index();
             }
         }
     std::printf("[ counts   ] %zu pairs, %llu contacts inside, %llu within 1e-6 of the surface\n", placements.size(),

@@ -26,7 +26,7 @@ namespace {
 Settings every_ray() {
     Settings settings;
     settings.method = Method::standard;
-    settings.skip_outside = false;
+    settings.paper.skip_outside = false;
     return settings;
 }
 
@@ -121,9 +121,9 @@ void cast(const Subject& target, Aim aim, double rays, std::uint64_t seed, Count
             scene.set_pose(source, pose);
 
             std::fill(hit.begin(), hit.end(), char{0});
-            for (const Contact& c : scene.step(pairs))
-                if (c.vertex_body == VertexBody::b) hit[c.vertex] = 1, ++counts.contacts;
-            counts.side_tests += scene.stats().side_tests;
+            for (const Contact& c : scene.find_contacts(pairs))
+                if (c.feature.source == Side::b) hit[c.feature.source_index()] = 1, ++counts.contacts;
+            counts.side_tests += scene.stats().details.side_tests;
             const auto index = cloud.shape->vertex_index();
             for (std::size_t v = 0; v < cloud.vertices.size(); ++v) {
                 const Vec3 p = rotate(off, cloud.vertices[v]) + shift;
@@ -196,9 +196,9 @@ TEST(invented, along_the_axes_of_boxes) {
                     pairs.emplace_back(body, scene.add(source, pose));
                 }
         std::vector<std::array<char, 3>> hit(poses.size());
-        for (const Contact& c : scene.step(pairs))
-            if (c.vertex_body == VertexBody::b) hit[c.body_b - 1][c.vertex] = 1, ++counts.contacts;
-        counts.side_tests += scene.stats().side_tests;
+        for (const Contact& c : scene.find_contacts(pairs))
+            if (c.feature.source == Side::b) hit[c.body_b.slot - 1][c.feature.source_index()] = 1, ++counts.contacts;
+        counts.side_tests += scene.stats().details.side_tests;
         for (std::size_t i = 0; i < poses.size(); ++i)
             for (std::uint32_t v = 0; v < 3; ++v) {
                 const Vec3 p = poses[i].translation + rotate(poses[i], source->vertices()[v]) - target.solid.centre;

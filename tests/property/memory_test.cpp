@@ -49,7 +49,7 @@ void place(Scene& scene, bool together) {
     for (std::uint32_t i = 0; i < scene.body_count(); ++i) {
         const double place = together ? 0.001 : 10;
         const std::uint32_t column = i % 10, row = i / 10 % 10, layer = i / 100;
-        scene.set_pose(i, {.translation = {place * column, place * row, place * layer}});
+        scene.set_pose({i}, {.translation = {place * column, place * row, place * layer}});
     }
 }
 
@@ -58,19 +58,19 @@ void expect_memory_follows(Method method, Features features = Features::vertices
     Settings settings;
     settings.method = method;
     settings.features = features;
-    settings.devices = "cpu";
-    settings.threads = 1;
+    settings.execution.devices = "cpu";
+    settings.execution.threads = 1;
     Scene scene(settings);
     const auto shape = tetrahedron();
     for (std::uint32_t i = 0; i < bodies; ++i) scene.add(shape);
     place(scene, false);
-    scene.step();
+    scene.find_contacts();
     const std::int64_t before = resident();
     for (int round = 0; round < 3; ++round) {
         std::int64_t stated = 0, most = 0;
         place(scene, true);
         for (int step = 0; step < 4; ++step) {
-            scene.step();
+            scene.find_contacts();
             ASSERT_EQ(scene.stats().pairs, bodies * (bodies - 1) / 2);
             stated = std::max(stated, static_cast<std::int64_t>(scene.stats().pair_bytes));
             most = std::max(most, resident() - before);
@@ -85,7 +85,7 @@ void expect_memory_follows(Method method, Features features = Features::vertices
         EXPECT_LE(most, 2 * stated) << to_string(method);
         EXPECT_GT(most, 32 * mega) << "else nothing is seen to be given back";
         place(scene, false);
-        for (int step = 0; step < 2; ++step) scene.step();
+        for (int step = 0; step < 2; ++step) scene.find_contacts();
         EXPECT_LE(resident() - before, std::max(most / 8, 8 * mega)) << to_string(method) << ", round " << round;
     }
 }
@@ -116,8 +116,8 @@ TEST(Memory, OfShapesThatNoBodyUsesIsGivenBackWithoutAStep) {
     const std::shared_ptr<const Shape> shapes[] = {prepared_shape(scenes::scene_model("knot", 902).mesh),
                                                    prepared_shape(scenes::scene_model("gear", 902).mesh)};
     Settings settings;
-    settings.devices = "cpu";
-    settings.threads = 1;
+    settings.execution.devices = "cpu";
+    settings.execution.threads = 1;
     Scene scene(settings);
     const BodyId stays = scene.add(tetrahedron());
     const std::int64_t before = resident();
@@ -128,14 +128,14 @@ TEST(Memory, OfShapesThatNoBodyUsesIsGivenBackWithoutAStep) {
     EXPECT_LE(resident() - before, 32 * mega);
     // And those that stay are what they were.
     const BodyId other = scene.add(shapes[0], {.translation = {0.3, 0, 0}});
-    const auto found = scene.step(std::vector<Pair>{{stays, other}});
+    const auto found = scene.find_contacts(std::vector<Pair>{{stays, other}});
     Scene fresh(settings);
     fresh.add(tetrahedron());
     fresh.add(shapes[0], {.translation = {0.3, 0, 0}});
-    const auto expected = fresh.step();
+    const auto expected = fresh.find_contacts();
     ASSERT_GT(expected.size(), 0u);
     ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].vertex, expected[i].vertex);
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].key(), expected[i].key());
 }
 
 } // namespace

@@ -42,11 +42,11 @@ struct Kept {
     std::uint64_t jumps = 0; ///< along the feature, by more than a hundredth of the smaller body's size
     double farthest = 0;     ///< of all points, in such sizes
 };
-using Keys = std::map<std::pair<std::uint32_t, std::string>, Contact>;
+using Keys = std::map<std::pair<BodyId, std::uint64_t>, Contact>;
 
 Keys by_key(std::span<const Contact> contacts) {
     Keys keys;
-    for (const Contact& c : contacts) keys.emplace(std::pair(c.body_a, contact_key(c)), c);
+    for (const Contact& c : contacts) keys.emplace(std::pair(c.body_a, c.key()), c);
     return keys;
 }
 
@@ -82,12 +82,12 @@ Features move(std::size_t batches, double by, bool flush = false) {
             if (flush) lay_flush(placements.back(), random);
         }
         const auto pairs = add_all(scene, placements);
-        const Keys before = by_key(scene.step(pairs));
+        const Keys before = by_key(scene.find_contacts(pairs));
         for (std::size_t i = 0; i < pairs.size(); ++i)
             scene.set_pose(pairs[i].second, nudged(placements[i].pose_b, by, placements[i].b->solid.diagonal, random));
-        const Keys after = by_key(scene.step(pairs));
+        const Keys after = by_key(scene.find_contacts(pairs));
         const auto of = [&](const Contact& c) -> Kept& {
-            return found[(c.feature == Feature::edges ? 1u : 0u) + (is_speculative(c) ? 2u : 0u)];
+            return found[(c.feature.kind == FeatureKind::edges ? 1u : 0u) + (c.is_speculative() ? 2u : 0u)];
         };
         for (const auto& [key, c] : before) of(c).changed += !after.contains(key);
         for (const auto& [key, c] : after) {
@@ -96,8 +96,9 @@ Features move(std::size_t batches, double by, bool flush = false) {
                 ++of(c).changed;
                 continue;
             }
-            const Placement& p = placements[c.body_a / 2];
-            const double jump = length(c.point - at->second.point) / std::min(p.a->solid.diagonal, p.b->solid.diagonal);
+            const Placement& p = placements[c.body_a.slot / 2];
+            const double jump =
+                length(c.point() - at->second.point()) / std::min(p.a->solid.diagonal, p.b->solid.diagonal);
             Kept& kept = of(c);
             ++kept.kept;
             kept.jumps += jump > 0.01;

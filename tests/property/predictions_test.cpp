@@ -15,7 +15,7 @@ namespace {
 
 template <class T>
 auto key_of(const T& c) {
-    return std::tuple(c.body_a, c.body_b, c.vertex_body, c.vertex);
+    return std::tuple(c.body_a, c.body_b, c.feature.source, c.feature.source_index());
 }
 
 double distance(const Vec3& a, const Vec3& b) {
@@ -27,7 +27,7 @@ std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, 
     Settings settings;
     settings.features = Features::vertices;
     settings.method = method;
-    settings.devices = devices;
+    settings.execution.devices = devices;
     Scene scene(settings);
     std::vector<std::shared_ptr<const Shape>> shapes;
     for (int i = 0; i < 3; ++i)
@@ -43,25 +43,25 @@ std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, 
     std::vector<std::vector<Prediction>> found;
     for (int step = 0; step < 20; ++step) {
         for (std::size_t i = 0; i < bodies.size(); ++i) scene.set_pose(bodies[i], movers[i].next(random));
-        scene.step();
+        scene.find_contacts();
         found.push_back(scene.predictions());
-        EXPECT_EQ(found.back().size(), scene.stats().predictions) << "step " << step;
-        counted += scene.stats().predictions;
+        EXPECT_EQ(found.back().size(), scene.stats().details.predictions) << "step " << step;
+        counted += scene.stats().details.predictions;
         for (const Prediction& p : found.back()) {
             EXPECT_FALSE(std::ranges::binary_search(scene.contacts(), key_of(p), {}, key_of<Contact>));
-            const BodyId source = scene.body_in(p.vertex_body == VertexBody::a ? p.body_a : p.body_b);
+            const BodyId source = p.feature.source == Side::a ? p.body_a : p.body_b;
             EXPECT_LT(distance(p.point, scene.pose(source).translation), 1e-9 + scene.shape(source).radius());
         }
         for (std::size_t i = 0; i < scene.pairs().size(); ++i)
-            EXPECT_LT(scene.device_of_pair(i), scene.stats().work.size());
+            EXPECT_LT(scene.device_of_pair(i), scene.stats().details.work.size());
         EXPECT_THROW(static_cast<void>(scene.device_of_pair(scene.pairs().size())), InputError);
     }
     return found;
 }
 
 bool same(const Prediction& p, const Prediction& q) {
-    return key_of(p) == key_of(q) && p.triangle == q.triangle && distance(p.point, q.point) == 0
-           && distance(p.ahead, q.ahead) == 0;
+    return key_of(p) == key_of(q) && p.feature.other_index() == q.feature.other_index()
+           && distance(p.point, q.point) == 0 && distance(p.ahead, q.ahead) == 0;
 }
 
 // Without the grids, and with a threshold that every motion exceeds: the paper's rays, all of them, in every step.
@@ -71,10 +71,10 @@ TEST(EveryRay, IsCastIfNoneIsKnownToBeOutside) {
             Settings settings;
             settings.features = Features::vertices;
             settings.method = method;
-            settings.caster = caster;
-            settings.displacement_threshold = 0;
-            settings.culling_distance = settings.distance_extension = 0.05;
-            settings.skip_outside = false;
+            settings.paper.caster = caster;
+            settings.paper.displacement_threshold = 0;
+            settings.paper.culling_distance = settings.paper.distance_extension = 0.05;
+            settings.paper.skip_outside = false;
             Scene scene(settings);
             settings.method = Method::standard;
             Scene standard(settings);
@@ -91,20 +91,21 @@ TEST(EveryRay, IsCastIfNoneIsKnownToBeOutside) {
             for (int step = 0; step < 10; ++step) {
                 for (std::size_t i = 0; i < shapes.size(); ++i) {
                     const Pose pose = movers[i].next(random);
-                    scene.set_pose(scene.body_in(static_cast<std::uint32_t>(i)), pose);
-                    standard.set_pose(standard.body_in(static_cast<std::uint32_t>(i)), pose);
+                    scene.set_pose({static_cast<std::uint32_t>(i)}, pose);
+                    standard.set_pose({static_cast<std::uint32_t>(i)}, pose);
                 }
-                scene.step();
-                standard.step();
-                EXPECT_EQ(scene.stats().rays_cast, scene.stats().rays) << to_string(method) << " step " << step;
+                scene.find_contacts();
+                standard.find_contacts();
+                EXPECT_EQ(scene.stats().details.rays_cast, scene.stats().details.rays)
+                    << to_string(method) << " step " << step;
                 EXPECT_TRUE(
                     std::ranges::equal(scene.contacts(), standard.contacts(), {}, key_of<Contact>, key_of<Contact>));
                 if (method == Method::iterative) {
-                    EXPECT_EQ(scene.stats().rays, standard.stats().rays);
+                    EXPECT_EQ(scene.stats().details.rays, standard.stats().details.rays);
                 } else {
-                    EXPECT_GT(scene.stats().rays, standard.stats().rays);
+                    EXPECT_GT(scene.stats().details.rays, standard.stats().details.rays);
                 }
-                rays += scene.stats().rays_cast;
+                rays += scene.stats().details.rays_cast;
             }
             EXPECT_GT(rays, 50u);
         }

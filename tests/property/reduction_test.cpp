@@ -19,12 +19,12 @@ using namespace raycontact::reference;
 
 namespace {
 
-using Slots = std::pair<std::uint32_t, std::uint32_t>;
+using Slots = std::pair<BodyId, BodyId>;
 Slots pair_of(const Contact& c) {
     return {c.body_a, c.body_b};
 }
 auto key_of(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
+    return std::tuple(c.body_a, c.body_b, c.key());
 }
 
 std::shared_ptr<const Shape> box(double x, double y, double z) {
@@ -52,7 +52,7 @@ public:
             poses_[i].translation = poses_[i].translation + 0.01 * random_.in_ball();
             scene_.set_pose(ids_[i], poses_[i]);
         }
-        return scene_.step();
+        return scene_.find_contacts();
     }
     Scene& scene() { return scene_; }
 
@@ -100,7 +100,7 @@ TEST(Reduction, KeepsSomeOfAllAndTheDeepestOfEachPair) {
             const StepStats& stats = fewer.scene().stats();
             EXPECT_EQ(stats.contacts, kept.size());
             EXPECT_EQ(stats.contacts + stats.contacts_reduced, all.size());
-            EXPECT_LE(stats.contacts_merged, stats.contacts_reduced);
+            EXPECT_LE(stats.details.contacts_merged, stats.contacts_reduced);
             EXPECT_EQ(stats.depth_max, full.scene().stats().depth_max);
             EXPECT_EQ(full.scene().stats().contacts_reduced, 0u);
             left_out += stats.contacts_reduced;
@@ -121,11 +121,11 @@ TEST(Reduction, IsTheSameOnEveryWayThroughTheLibrary) {
             return hash.hex();
         };
         const std::string hash = hash_of([](Settings&) {});
-        EXPECT_EQ(hash_of([](Settings& s) { s.threads = 1; }), hash);
-        EXPECT_EQ(hash_of([](Settings& s) { s.threads = 5; }), hash);
+        EXPECT_EQ(hash_of([](Settings& s) { s.execution.threads = 1; }), hash);
+        EXPECT_EQ(hash_of([](Settings& s) { s.execution.threads = 5; }), hash);
         EXPECT_EQ(hash_of([](Settings& s) { s.method = Method::standard; }), hash);
-        EXPECT_EQ(hash_of([](Settings& s) { s.caster = Caster::basic; }), hash);
-        EXPECT_EQ(hash_of([](Settings& s) { s.devices = "cpu/0,cpu/1"; }), hash);
+        EXPECT_EQ(hash_of([](Settings& s) { s.paper.caster = Caster::basic; }), hash);
+        EXPECT_EQ(hash_of([](Settings& s) { s.execution.devices = "cpu/0,cpu/1"; }), hash);
         EXPECT_NE(hash_of([](Settings& s) { s.max_contacts_per_pair = s.max_contacts = 0; }), hash);
     }
 }
@@ -167,15 +167,15 @@ TEST(Reduction, ABoxOnABoxHasFour) {
             Pose pose = small_rotation({0, 0, 1}, angle);
             pose.translation = {0.003, 0.002, 0.998};
             scene->add(shape, pose);
-            counts[scene == &fewer] = scene->step().size();
+            counts[scene == &fewer] = scene->find_contacts().size();
         }
         most = std::max(most, counts[0]);
         EXPECT_EQ(counts[1], 4u) << angle << " of " << counts[0];
         Vec3 low{1, 1, 1}, high{0, 0, 0};
         for (const Contact& c : fewer.contacts()) {
-            EXPECT_GT(c.normal[2], 0.99f);
-            low = {std::min(low.x, c.point.x), std::min(low.y, c.point.y), 0};
-            high = {std::max(high.x, c.point.x), std::max(high.y, c.point.y), 0};
+            EXPECT_GT(c.normal.z, 0.99f);
+            low = {std::min(low.x, c.point().x), std::min(low.y, c.point().y), 0};
+            high = {std::max(high.x, c.point().x), std::max(high.y, c.point().y), 0};
         }
         EXPECT_LT(low.x + low.y, angle == 0.2 ? 0.4 : 0.03) << angle;
         EXPECT_GT(high.x + high.y, angle == 0.2 ? 1.6 : 1.97) << angle;
@@ -223,7 +223,7 @@ TEST(Reduction, ABodyAtRestKeepsItsPoints) {
         pose.rotation = rocked.rotation;
         pose.translation = {4, 4, 0.9985};
         scene.set_pose(body, pose);
-        const auto contacts = scene.step();
+        const auto contacts = scene.find_contacts();
         ASSERT_EQ(contacts.size(), 4u);
         if (step == 0) continue;
         changed += scene.stats().contacts_new;

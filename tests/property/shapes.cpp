@@ -77,7 +77,7 @@ std::vector<std::span<const Contact>> by_pair(std::span<const Contact> contacts,
     std::size_t at = 0;
     for (std::size_t i = 0; i < pairs; ++i) {
         const std::size_t first = at;
-        while (at < contacts.size() && contacts[at].body_a == 2 * i) ++at;
+        while (at < contacts.size() && contacts[at].body_a.slot == 2 * i) ++at;
         parts.push_back(contacts.subspan(first, at - first));
     }
     return parts;
@@ -90,9 +90,9 @@ std::vector<Contact> contacts_of_fresh_scene(const Scene& scene, const Settings&
     for (const BodyId id : ids) renamed[id] = fresh.add(scene.shape(id).shared_from_this(), scene.pose(id));
     std::vector<Pair> pairs;
     for (const auto& [a, b] : scene.pairs()) pairs.emplace_back(renamed[a], renamed[b]);
-    const auto found = fresh.step(pairs);
+    const auto found = fresh.find_contacts(pairs);
     std::vector<Contact> contacts(found.begin(), found.end());
-    for (Contact& c : contacts) c.body_a = slot_of(ids[c.body_a]), c.body_b = slot_of(ids[c.body_b]);
+    for (Contact& c : contacts) c.body_a = ids[c.body_a.slot], c.body_b = ids[c.body_b.slot];
     return contacts;
 }
 
@@ -101,11 +101,11 @@ bool same_bits(std::span<const Contact> x, std::span<const Contact> y) {
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const Contact& c, const Contact& d) {
         const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
         const auto wide = [](double f) { return std::bit_cast<std::uint64_t>(f); };
-        return c.body_a == d.body_a && c.body_b == d.body_b && c.vertex_body == d.vertex_body && c.feature == d.feature
-               && c.vertex == d.vertex && c.triangle == d.triangle && wide(c.point.x) == wide(d.point.x)
-               && wide(c.point.y) == wide(d.point.y) && wide(c.point.z) == wide(d.point.z)
-               && bits(c.normal[0]) == bits(d.normal[0]) && bits(c.normal[1]) == bits(d.normal[1])
-               && bits(c.normal[2]) == bits(d.normal[2]) && bits(c.depth) == bits(d.depth)
+        const auto same = [&](const Vec3& p, const Vec3& q) {
+            return wide(p.x) == wide(q.x) && wide(p.y) == wide(q.y) && wide(p.z) == wide(q.z);
+        };
+        return c.body_a == d.body_a && c.body_b == d.body_b && c.feature == d.feature && same(c.point_a, d.point_a)
+               && same(c.point_b, d.point_b) && same(c.normal, d.normal) && bits(c.depth) == bits(d.depth)
                && bits(c.ray_length) == bits(d.ray_length) && bits(c.weight) == bits(d.weight);
     });
 }

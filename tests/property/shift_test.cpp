@@ -25,16 +25,14 @@ struct Counts {
 void compare_shifted(const Placement& p, std::span<const Contact> here, std::span<const Contact> there,
                      const Vec3& shift, Counts& counts) {
     ++counts.pairs;
-    using Key = std::tuple<VertexBody, std::uint32_t, Feature, std::uint32_t>;
-    std::map<Key, std::pair<const Contact*, const Contact*>> both;
-    for (const Contact& c : here) both[{c.vertex_body, c.vertex, c.feature, c.other()}].first = &c;
-    for (const Contact& c : there) both[{c.vertex_body, c.vertex, c.feature, c.other()}].second = &c;
+    std::map<std::uint64_t, std::pair<const Contact*, const Contact*>> both;
+    for (const Contact& c : here) both[c.key()].first = &c;
+    for (const Contact& c : there) both[c.key()].second = &c;
     for (const auto& [key, pair] : both) {
         const auto& [c, d] = pair;
-        if (c && d && c->triangle == d->triangle) {
-            double off = length(d->point - shift - c->point);
-            for (std::size_t k = 0; k < 3; ++k)
-                off = std::max(off, std::fabs(static_cast<double>(c->normal[k]) - static_cast<double>(d->normal[k])));
+        if (c && d && c->feature == d->feature) {
+            double off = length(d->point() - shift - c->point());
+            off = std::max(off, length(Vec3(c->normal) - Vec3(d->normal)));
             off = std::max(off, std::fabs(static_cast<double>(c->depth) - static_cast<double>(d->depth)));
             off = std::max(off, std::fabs(static_cast<double>(c->ray_length) - static_cast<double>(d->ray_length)));
             if (off <= 1e-6) {
@@ -43,14 +41,15 @@ void compare_shifted(const Placement& p, std::span<const Contact> here, std::spa
                 continue;
             }
         }
-        if (std::get<2>(key) != Feature::vertex) { // the margins are those of rays
+        const ContactFeature& feature = (c ? c : d)->feature;
+        if (feature.kind != FeatureKind::vertex) { // the margins are those of rays
             ++counts.excused;
             continue;
         }
-        const bool of_a = std::get<0>(key) == VertexBody::a;
+        const bool of_a = feature.source == Side::a;
         const Solid& source = of_a ? p.a->solid : p.b->solid;
         const Solid& target = of_a ? p.b->solid : p.a->solid;
-        const auto at = std::find(source.vertex_index.begin(), source.vertex_index.end(), std::get<1>(key));
+        const auto at = std::find(source.vertex_index.begin(), source.vertex_index.end(), feature.source_index());
         ASSERT_NE(at, source.vertex_index.end());
         const auto vertex = static_cast<std::uint32_t>(at - source.vertex_index.begin());
         const Margins m = ray_margins(source, of_a ? p.pose_a : p.pose_b, target, of_a ? p.pose_b : p.pose_a, vertex);
@@ -59,8 +58,9 @@ void compare_shifted(const Placement& p, std::span<const Contact> here, std::spa
             continue;
         }
         ++counts.wrong;
-        ADD_FAILURE() << source.name << " vertex " << std::get<1>(key) << " against " << target.name << ": "
-                      << (c ? c->triangle : -1) << " here, " << (d ? d->triangle : -1) << " there; ray lengths "
+        ADD_FAILURE() << source.name << " vertex " << feature.source_index() << " against " << target.name << ": "
+                      << (c ? std::int64_t{c->feature.other_index()} : -1) << " here, "
+                      << (d ? std::int64_t{d->feature.other_index()} : -1) << " there; ray lengths "
                       << (c ? c->ray_length : -1) << ", " << (d ? d->ray_length : -1) << "; margin " << m.least()
                       << " (" << m.name_of_least() << ")";
     }
@@ -88,8 +88,8 @@ TEST(shift, of_both_poses_by_ten_kilometres) {
         }
         Scene here;
         Scene there;
-        const auto one = by_pair(here.step(add_all(here, placements)), placements.size());
-        const auto two = by_pair(there.step(add_all(there, moved_placements)), placements.size());
+        const auto one = by_pair(here.find_contacts(add_all(here, placements)), placements.size());
+        const auto two = by_pair(there.find_contacts(add_all(there, moved_placements)), placements.size());
         for (std::size_t i = 0; i < placements.size(); ++i)
             compare_shifted(placements[i], one[i], two[i], shift, counts);
     }
@@ -121,8 +121,8 @@ TEST(shift, of_the_coordinates_in_the_file_by_ten_kilometres) {
     }
     Scene here;
     Scene there;
-    const auto one = by_pair(here.step(add_all(here, placements)), placements.size());
-    const auto two = by_pair(there.step(add_all(there, far_placements)), placements.size());
+    const auto one = by_pair(here.find_contacts(add_all(here, placements)), placements.size());
+    const auto two = by_pair(there.find_contacts(add_all(there, far_placements)), placements.size());
     for (std::size_t i = 0; i < placements.size(); ++i) compare_shifted(placements[i], one[i], two[i], {}, counts);
     report(counts);
 }

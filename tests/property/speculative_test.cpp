@@ -21,7 +21,7 @@ namespace {
 
 Settings speculative_settings() {
     Settings settings;
-    settings.devices = "cpu";
+    settings.execution.devices = "cpu";
     settings.speculative = true;
     settings.features = Features::vertices;
     return settings;
@@ -76,13 +76,17 @@ struct Counts {
     std::size_t same = 0, doubtful = 0;
 };
 
+Key key_of(const Contact& c) {
+    return {c.feature.source_index(), c.feature.kind == FeatureKind::edges ? c.feature.index_b : 0};
+}
+
 /// side: whose vertices, or a for edges, seen from the other.
-void compare(const Expectation& expected, std::span<const Contact> found, Feature feature, const View& view,
-             VertexBody side, Counts& counts) {
+void compare(const Expectation& expected, std::span<const Contact> found, FeatureKind kind, const View& view, Side side,
+             Counts& counts) {
     std::map<Key, const Contact*> got;
     for (const Contact& c : found)
-        if (is_speculative(c) && c.feature == feature && c.vertex_body == side) {
-            EXPECT_TRUE(got.emplace(Key{c.vertex, c.other()}, &c).second) << "twice: " << c.vertex;
+        if (c.is_speculative() && c.feature.kind == kind && c.feature.source == side) {
+            EXPECT_TRUE(got.emplace(key_of(c), &c).second) << "twice: " << c.feature.source_index();
         }
     for (const auto& [key, one] : expected.sure) {
         const auto at = got.find(key);
@@ -91,13 +95,13 @@ void compare(const Expectation& expected, std::span<const Contact> found, Featur
             continue;
         }
         const Contact& c = *at->second;
-        const double sign = side == VertexBody::a ? -1 : 1;
+        const double sign = side == Side::a ? -1 : 1;
         const Vec3 n = sign * rotate(view.target_now, one.normal);
         EXPECT_NEAR(double(c.depth), -one.gap, 1e-5 * view.size());
         EXPECT_EQ(c.ray_length, -c.depth);
-        EXPECT_LT(length(to_world(view.target, view.target_now, one.point) - c.point), 1e-5 * view.size());
+        EXPECT_LT(length(to_world(view.target, view.target_now, one.point) - c.point()), 1e-5 * view.size());
         if (one.gap > 1e-3 * view.size()) {
-            const Vec3 its{double(c.normal[0]), double(c.normal[1]), double(c.normal[2])};
+            const Vec3 its{double(c.normal.x), double(c.normal.y), double(c.normal.z)};
             EXPECT_LT(length(its - n), 1e-3) << key.first;
         }
         ++counts.same;
@@ -109,10 +113,10 @@ void compare(const Expectation& expected, std::span<const Contact> found, Featur
 }
 
 /// What touches, of a side: vertices, or two edges.
-std::set<Key> touching(std::span<const Contact> contacts, Feature feature, VertexBody side) {
+std::set<Key> touching(std::span<const Contact> contacts, FeatureKind kind, Side side) {
     std::set<Key> keys;
     for (const Contact& c : contacts)
-        if (!is_speculative(c) && c.feature == feature && c.vertex_body == side) keys.emplace(c.vertex, c.other());
+        if (!c.is_speculative() && c.feature.kind == kind && c.feature.source == side) keys.insert(key_of(c));
     return keys;
 }
 
@@ -125,8 +129,8 @@ void step(const std::vector<Flight>& flights, const Settings& settings, Check&& 
         scene.set_next_pose(pairs[i].first, flights[i].next_a);
         scene.set_next_pose(pairs[i].second, flights[i].next_b);
     }
-    scene.step(pairs);
-    const auto speculative = std::ranges::count_if(scene.contacts(), is_speculative);
+    scene.find_contacts(pairs);
+    const auto speculative = std::ranges::count_if(scene.contacts(), &Contact::is_speculative);
     EXPECT_EQ(scene.stats().contacts_speculative, std::uint64_t(speculative));
     EXPECT_EQ(scene.stats().contacts, scene.contacts().size() - std::size_t(speculative));
     const auto parts = by_pair(scene.contacts(), flights.size());
@@ -143,11 +147,11 @@ double margin_of(const Settings& settings, const Flight& f) {
 
 void expect_vertices(const std::vector<Flight>& flights, const Settings& settings, Counts& counts) {
     step(flights, settings, [&](const Flight& f, std::span<const Contact> contacts) {
-        for (const VertexBody side : {VertexBody::a, VertexBody::b}) {
-            const View seen = view(f, side == VertexBody::b);
+        for (const Side side : {Side::a, Side::b}) {
+            const View seen = view(f, side == Side::b);
             std::set<std::uint32_t> vertices;
-            for (const Key& key : touching(contacts, Feature::vertex, side)) vertices.insert(key.first);
-            compare(Vertices(seen, margin_of(settings, f)).expect(vertices), contacts, Feature::vertex, seen, side,
+            for (const Key& key : touching(contacts, FeatureKind::vertex, side)) vertices.insert(key.first);
+            compare(Vertices(seen, margin_of(settings, f)).expect(vertices), contacts, FeatureKind::vertex, seen, side,
                     counts);
         }
     });
@@ -199,10 +203,10 @@ TEST(Speculative, EdgesAreThoseOfTheReference) {
         step(flights, settings, [&](const Flight& f, std::span<const Contact> contacts) {
             const View seen = view(f, false);
             const bool told =
-                std::ranges::any_of(contacts, [](const Contact& c) { return c.feature == Feature::vertex; });
+                std::ranges::any_of(contacts, [](const Contact& c) { return c.feature.kind == FeatureKind::vertex; });
             const auto expected =
-                Edges(seen, margin_of(settings, f), told).expect(touching(contacts, Feature::edges, VertexBody::a));
-            compare(expected, contacts, Feature::edges, seen, VertexBody::a, counts);
+                Edges(seen, margin_of(settings, f), told).expect(touching(contacts, FeatureKind::edges, Side::a));
+            compare(expected, contacts, FeatureKind::edges, seen, Side::a, counts);
         });
     }
     std::printf("[ edges    ] %zu as expected, %zu doubtful\n", counts.same, counts.doubtful);
@@ -212,7 +216,7 @@ TEST(Speculative, EdgesAreThoseOfTheReference) {
 
 std::vector<Contact> touching_alone(std::span<const Contact> contacts) {
     std::vector<Contact> found;
-    std::ranges::copy_if(contacts, std::back_inserter(found), [](const Contact& c) { return !is_speculative(c); });
+    std::ranges::copy_if(contacts, std::back_inserter(found), [](const Contact& c) { return !c.is_speculative(); });
     return found;
 }
 
@@ -225,7 +229,7 @@ TEST(Speculative, ChangesNothingThatTouchesAndNoThreadChangesIt) {
             Settings settings = speculative_settings();
             settings.features = Features::edges;
             settings.method = method;
-            settings.threads = std::max(1u, threads);
+            settings.execution.threads = std::max(1u, threads);
             settings.speculative = threads > 0;
             Scene scene(settings);
             const auto pairs = add_all(scene, beginnings(flights));
@@ -233,7 +237,7 @@ TEST(Speculative, ChangesNothingThatTouchesAndNoThreadChangesIt) {
                 scene.set_next_pose(pairs[i].first, flights[i].next_a);
                 scene.set_next_pose(pairs[i].second, flights[i].next_b);
             }
-            const auto found = scene.step(pairs);
+            const auto found = scene.find_contacts(pairs);
             ContactHash hash, hash_of_all(Direction::reprojected, true);
             hash.add(0, found);
             hash_of_all.add(0, found);
@@ -243,7 +247,7 @@ TEST(Speculative, ChangesNothingThatTouchesAndNoThreadChangesIt) {
             EXPECT_TRUE(same_bits(touching_alone(found), without)) << threads;
             double ray_length = 0;
             for (const Contact& c : without) ray_length += double(c.ray_length);
-            EXPECT_EQ(scene.stats().ray_length, ray_length);
+            EXPECT_EQ(scene.stats().details.ray_length, ray_length);
             EXPECT_TRUE(threads == 0 || same_bits(found, all)) << threads;
         }
         EXPECT_GT(without.size(), 1000u);
@@ -263,7 +267,7 @@ TEST(Speculative, ATouchIsNewAndALiftIsLost) {
         const Pose pose{.translation = {0.1 * size, 0.05 * size, height}};
         scene.set_pose(body, pose);
         scene.set_next_pose(body, pose);
-        scene.step();
+        scene.find_contacts();
     };
     double low = 0, gap = high; // where it only just touches, by halving
     for (int i = 0; i < 40; ++i) {
@@ -278,7 +282,7 @@ TEST(Speculative, ATouchIsNewAndALiftIsLost) {
     step_at(low - 1e-3 * size);
     EXPECT_GT(scene.stats().contacts, 0u);
     EXPECT_EQ(scene.stats().contacts_new, scene.stats().contacts);
-    for (const Contact& c : scene.contacts()) EXPECT_TRUE(is_speculative(c) || c.is_new);
+    for (const Contact& c : scene.contacts()) EXPECT_TRUE(c.is_speculative() || c.is_new);
     const std::uint64_t touched = scene.stats().contacts;
     step_at(gap + 1e-3 * size);
     EXPECT_EQ(scene.lost_contacts().size(), touched);
@@ -294,7 +298,7 @@ TEST(Speculative, WithoutANextPoseTheLastMotionGoesOn) {
     const double size = cube.solid.diagonal;
     const auto step_at = [&](double height) {
         scene.set_pose(body, {.translation = {0.1 * size, 0.05 * size, height * size}});
-        return scene.step().size();
+        return scene.find_contacts().size();
     };
     EXPECT_EQ(step_at(2.7), 0u) << "it was never elsewhere";
     EXPECT_EQ(step_at(1.8), 0u) << "it comes to 0.9";
@@ -308,15 +312,15 @@ TEST(Speculative, WithoutANextPoseTheLastMotionGoesOn) {
     EXPECT_EQ(step_at(0.9), 0u) << "farther than its own size: it was put there";
     step_at(0.9);
     scene.set_next_pose(body, {.translation = {0.1 * size, 0.05 * size, 0}});
-    EXPECT_TRUE(same_bits(scene.step(), expected)) << "said, not guessed";
-    EXPECT_TRUE(scene.step().empty()) << "it was said for one step";
+    EXPECT_TRUE(same_bits(scene.find_contacts(), expected)) << "said, not guessed";
+    EXPECT_TRUE(scene.find_contacts().empty()) << "it was said for one step";
 
     // A body that gets the slot of another does not inherit its way.
     scene.set_next_pose(body, {.translation = {0, 0, 0}});
     scene.remove(body);
-    scene.step();
+    scene.find_contacts();
     scene.add(cube.shape, {.translation = {0, 0, 0.9 * size}});
-    EXPECT_TRUE(scene.step().empty());
+    EXPECT_TRUE(scene.find_contacts().empty());
 }
 
 // Two bodies on either side of a third, at gaps of 1 and 4 % of their size.
@@ -333,9 +337,9 @@ TEST(Speculative, ABodyMayHaveAMarginOfItsOwn) {
         const BodyId left = scene.add(prism.shape, {.translation = {-wide - 0.01 * size, 0, 0}});
         scene.add(prism.shape, {.translation = {wide + 0.04 * size, 0, 0}});
         const auto pairs_of = [&] {
-            scene.step();
+            scene.find_contacts();
             std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-            for (const Contact& c : scene.contacts()) pairs.emplace(c.body_a, c.body_b);
+            for (const Contact& c : scene.contacts()) pairs.emplace(c.body_a.slot, c.body_b.slot);
             return pairs.size();
         };
         EXPECT_EQ(pairs_of(), 0u);

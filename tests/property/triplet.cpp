@@ -17,19 +17,18 @@ namespace raycontact::reference {
 namespace {
 
 auto key(const Contact& c) {
-    return std::tuple(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other());
+    return std::tuple(c.body_a, c.body_b, c.key());
 }
 
 bool same_lost(std::span<const LostContact> x, std::span<const LostContact> y) {
     return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const LostContact& c, const LostContact& d) {
-        return std::tie(c.body_a, c.body_b, c.feature, c.vertex_body, c.vertex, c.other)
-               == std::tie(d.body_a, d.body_b, d.feature, d.vertex_body, d.vertex, d.other);
+        return std::tie(c.body_a, c.body_b, c.feature) == std::tie(d.body_a, d.body_b, d.feature);
     });
 }
 
 Settings with(Settings settings, Method method, std::optional<double> threshold) {
     settings.method = method;
-    settings.displacement_threshold = threshold;
+    settings.paper.displacement_threshold = threshold;
     return settings;
 }
 
@@ -47,8 +46,8 @@ std::uint64_t first_seed() {
 
 Settings some_settings(Random& random) {
     Settings settings;
-    settings.threads = 1;
-    settings.skip_outside = random.below(4) != 0; // now and then every ray is cast
+    settings.execution.threads = 1;
+    settings.paper.skip_outside = random.below(4) != 0; // now and then every ray is cast
     settings.direction = directions[random.below(static_cast<std::uint32_t>(std::size(directions)))];
     settings.features = random.below(4) == 0 ? Features::edges : Features::vertices;
     settings.speculative = random.below(4) == 0;
@@ -76,11 +75,11 @@ Triplet::Triplet(const Settings& settings, double threshold, std::string what)
 
 void Triplet::count(Counts& counts) {
     ++counts.steps;
-    counts.decisions += standard_.stats().rays;
+    counts.decisions += standard_.stats().details.rays;
     counts.contacts += standard_.contacts().size();
-    counts.cast += own_.stats().rays_cast;
+    counts.cast += own_.stats().details.rays_cast;
     counts.pairs += 2 * own_.stats().pairs;
-    counts.asleep += own_.stats().pairs_asleep;
+    counts.asleep += own_.stats().details.pairs_asleep;
     for (const Scene* scene : {&own_, &told_}) compare(*scene, counts);
     ++steps_;
 }
@@ -113,12 +112,12 @@ void Triplet::compare(const Scene& scene, Counts& counts) const {
 
 void Triplet::describe(const char* how, const Contact& c, const Scene& scene, Counts& counts) const {
     if (!counts.first.empty()) return;
-    const auto threshold = scene.settings().displacement_threshold;
+    const auto threshold = scene.settings().paper.displacement_threshold;
     char text[300];
     std::snprintf(text, sizeof text, "%s: %s, step %llu, threshold %g, bodies %u and %u, %s %u of %c, depth %g", how,
-                  what_.c_str(), static_cast<unsigned long long>(steps_), threshold ? *threshold : -1.0, c.body_a,
-                  c.body_b, c.feature == Feature::edges ? "edges" : "vertex", c.vertex,
-                  c.vertex_body == VertexBody::a ? 'a' : 'b', static_cast<double>(c.depth));
+                  what_.c_str(), static_cast<unsigned long long>(steps_), threshold ? *threshold : -1.0, c.body_a.slot,
+                  c.body_b.slot, c.feature.kind == FeatureKind::edges ? "edges" : "vertex", c.feature.source_index(),
+                  c.feature.source == Side::a ? 'a' : 'b', static_cast<double>(c.depth));
     counts.first = text;
 }
 

@@ -59,9 +59,9 @@ public:
         pose.translation = {0, 0, 10 - lowest - depth};
         scene_.set_pose(id_, pose);
         Vec3 sum{};
-        for (const Contact& c : scene_.step()) {
+        for (const Contact& c : scene_.find_contacts()) {
             const double size = double(c.weight) * double(c.depth);
-            sum = sum + size * Vec3{double(c.normal[0]), double(c.normal[1]), double(c.normal[2])};
+            sum = sum + size * Vec3{double(c.normal.x), double(c.normal.y), double(c.normal.z)};
         }
         return {sum.z, std::hypot(sum.x, sum.y)};
     }
@@ -70,13 +70,13 @@ private:
     static Settings settings(Direction direction) {
         Settings settings;
         settings.direction = direction;
-        settings.threads = 1;
+        settings.execution.threads = 1;
         return settings;
     }
 
     std::shared_ptr<const Shape> body_;
     Scene scene_;
-    BodyId id_ = 0;
+    BodyId id_;
 };
 
 // A pressure of depth x stiffness on a sphere of radius R that reaches h into a plane adds up to pi R h^2 across the
@@ -143,8 +143,8 @@ TEST(weighted, contacts_are_those_of_ray) {
     Scene ray(settings);
     settings.direction = Direction::weighted;
     Scene weighted(settings);
-    const auto expected = ray.step(add_all(ray, placements));
-    const auto found = weighted.step(add_all(weighted, placements));
+    const auto expected = ray.find_contacts(add_all(ray, placements));
+    const auto found = weighted.find_contacts(add_all(weighted, placements));
     ASSERT_GT(expected.size(), 3000u);
     std::vector<Contact> unweighted(found.begin(), found.end());
     for (Contact& c : unweighted) {
@@ -153,7 +153,7 @@ TEST(weighted, contacts_are_those_of_ray) {
     }
     EXPECT_TRUE(same_bits(unweighted, expected));
     EXPECT_FALSE(same_bits(found, expected));
-    EXPECT_EQ(ray.stats().ray_length, weighted.stats().ray_length);
+    EXPECT_EQ(ray.stats().details.ray_length, weighted.stats().details.ray_length);
 }
 
 } // namespace

@@ -50,7 +50,7 @@ TEST(Codec, StepsFromNonsense) {
     const auto numbers = [](const std::vector<Pair>& pairs) {
         std::vector<NumberPair> list;
         list.reserve(pairs.size());
-        for (const auto& [a, b] : pairs) list.emplace_back(slot_of(a), slot_of(b));
+        for (const auto& [a, b] : pairs) list.emplace_back(a.slot, b.slot);
         return list;
     };
     StepEncoder encoder;
@@ -114,7 +114,7 @@ TEST(Codec, IdsFollowFromTheEvents) {
         std::vector<Body> bodies(4);
         give_ids(version, events, bodies);
         const std::vector<BodyId> expected =
-            version == 1 ? std::vector<BodyId>{0, 1, 2, 3} : std::vector<BodyId>{0, 1, body_id(1, 1), body_id(0, 1)};
+            version == 1 ? std::vector<BodyId>{{0}, {1}, {2}, {3}} : std::vector<BodyId>{{0}, {1}, {1, 1}, {0, 1}};
         for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(bodies[i].id, expected[i]) << i << ", version " << version;
     }
 }

@@ -20,7 +20,7 @@ constexpr Method methods[] = {Method::standard, Method::iterative, Method::predi
 Settings settings_of(Method method) {
     Settings settings;
     settings.method = method;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     return settings;
 }
 
@@ -46,7 +46,7 @@ public:
     void step() {
         ++steps_;
         for (const auto& [id, number] : bodies) scene.set_pose(id, place(number));
-        hash.add(steps_ - 1, scene.step());
+        hash.add(steps_ - 1, scene.find_contacts());
     }
 
     Scene scene;
@@ -94,11 +94,11 @@ TEST_P(RecorderOf, BodiesThatComeAndGoReplayWithTheSameHash) {
             if (step > 20) row.add();
         }
         if (step == 25) { // all but one at once
-            while (row.bodies.size() > 1) row.remove(0);
+            while (row.bodies.size() > 1) row.remove({0});
             for (int i = 0; i < 4; ++i) row.add();
         }
         row.step();
-        recorder.step();
+        recorder.record();
         const auto ids = row.scene.bodies();
         EXPECT_EQ(ids.size(), row.bodies.size());
     }
@@ -126,10 +126,10 @@ TEST(Recorder, BeginsInMidLife) {
     ContactHash hash;
     for (std::uint32_t step = 0; step < 20; ++step) {
         if (step % 3 == 0) row.add();
-        if (step % 4 == 1) row.remove(0);
+        if (step % 4 == 1) row.remove({0});
         row.step();
         hash.add(step, row.scene.contacts());
-        recorder.step();
+        recorder.record();
     }
     recorder.finish();
     expect_same_contacts(file, hash.hex(), Method::certified, 20);
@@ -141,7 +141,7 @@ TEST(Recorder, OfAnEmptySceneKnowsHowManyBodiesCame) {
     Recorder recorder(file.path(), row.scene);
     for (int i = 0; i < 3; ++i) row.add();
     row.step();
-    recorder.step();
+    recorder.record();
     recorder.finish();
     EXPECT_EQ(recording::Reader(file.path()).info().bodies, 3u);
 }
@@ -154,7 +154,7 @@ TEST(Recorder, WithoutAnEndItCanBeReplayed) {
         Recorder recorder(file.path(), row.scene);
         for (int step = 0; step < 5; ++step) {
             row.step();
-            recorder.step();
+            recorder.record();
         }
     }
     recording::Reader reader(file.path());
@@ -191,15 +191,15 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     other.add();
     Recorder recorder(file.path(), other.scene);
     other.step();
-    recorder.step();
+    recorder.record();
     other.scene.set_settings(settings_of(Method::certified)); // the same contacts
     other.step();
-    recorder.step();
+    recorder.record();
     Settings ray = settings_of(Method::certified);
     ray.direction = Direction::ray;
     other.scene.set_settings(ray);
     other.step();
-    EXPECT_NE(message_of([&] { recorder.step(); }).find("have changed"), std::string::npos);
+    EXPECT_NE(message_of([&] { recorder.record(); }).find("have changed"), std::string::npos);
 }
 
 } // namespace

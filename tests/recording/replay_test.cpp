@@ -60,10 +60,10 @@ Settings settings_of(Method method) {
 
 Contact contact(std::uint32_t a, std::uint32_t vertex, std::uint32_t triangle) {
     Contact c;
-    c.body_a = a;
-    c.body_b = 9;
-    c.vertex = vertex;
-    c.triangle = triangle;
+    c.body_a = {a};
+    c.body_b = {9};
+    c.feature.index_a = vertex;
+    c.feature.index_b = triangle;
     return c;
 }
 
@@ -76,7 +76,7 @@ TEST_P(ReplayOf, ReproducesTheRun) {
     const TemporaryFile file;
     Settings settings = settings_of(GetParam());
     for (const std::optional<double> threshold : {std::optional<double>(), std::optional(0.004)}) {
-        settings.displacement_threshold = threshold;
+        settings.paper.displacement_threshold = threshold;
         const Found run = record_avalanche(file.path(), settings);
         EXPECT_GT(run.contacts, 600u);
         for (const Caster caster : {Caster::bvh, Caster::basic}) {
@@ -86,14 +86,14 @@ TEST_P(ReplayOf, ReproducesTheRun) {
                 ReplayOptions options;
                 options.settings = reader.info().settings;
                 EXPECT_TRUE(must_agree(reader.info().settings, options.settings));
-                options.settings.caster = caster;
-                options.settings.threads = threads;
+                options.settings.paper.caster = caster;
+                options.settings.execution.threads = threads;
                 const raycontact::recording::Replay result = replay(reader, options);
                 EXPECT_EQ(result.hash, run.hash) << to_string(caster) << ", " << threads;
                 EXPECT_EQ(result.contacts, run.contacts);
                 EXPECT_EQ(result.steps.size(), 60u);
                 EXPECT_FALSE(result.wrong_rays.has_value());
-                if (caster == settings.caster) {
+                if (caster == settings.paper.caster) {
                     EXPECT_EQ(result.rays, run.rays);
                 }
             }
@@ -126,7 +126,7 @@ TEST_P(ReplayOf, IsComparedWithStandard) {
     WrongRays sum;
     for (std::size_t i = 0; i < compared.steps.size(); ++i) {
         sum.add(compared.steps[i].wrong);
-        EXPECT_EQ(compared.steps[i].wrong.rays_compared, standard.steps[i].rays);
+        EXPECT_EQ(compared.steps[i].wrong.rays_compared, standard.steps[i].details.rays);
         EXPECT_EQ(compared.steps[i].pairs, standard.steps[i].pairs);
     }
     EXPECT_EQ(sum.total(), wrong.total());
@@ -148,7 +148,7 @@ TEST(Replay, StandardAndCertifiedReproduceEachOther) {
         Reader reader(file.path());
         ReplayOptions options;
         options.settings = settings_of(used);
-        options.settings.displacement_threshold = 0.01;
+        options.settings.paper.displacement_threshold = 0.01;
         EXPECT_TRUE(must_agree(reader.info().settings, options.settings));
         EXPECT_EQ(replay(reader, options).hash, run.hash);
     }
@@ -163,21 +163,26 @@ TEST(Replay, WhatMustAgree) {
             used.*member = value;
             return must_agree(recorded, used);
         };
+        const auto of_paper = [&](auto member, auto value) {
+            Settings used = recorded;
+            used.paper.*member = value;
+            return must_agree(recorded, used);
+        };
         EXPECT_TRUE(must_agree(recorded, recorded));
-        EXPECT_TRUE(agrees(&Settings::caster, Caster::basic));
-        EXPECT_TRUE(agrees(&Settings::threads, 3u));
+        EXPECT_TRUE(of_paper(&PaperOptions::caster, Caster::basic));
+        EXPECT_TRUE(agrees(&Settings::execution, Execution{.threads = 3}));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
         EXPECT_FALSE(agrees(&Settings::features, Features::vertices));
         EXPECT_FALSE(agrees(&Settings::max_contacts_per_pair, 4u));
         EXPECT_FALSE(agrees(&Settings::max_contacts, 4u));
-        EXPECT_EQ(agrees(&Settings::displacement_threshold, 0.01), exact);
-        EXPECT_EQ(agrees(&Settings::confidence, 3.0), exact);
-        EXPECT_EQ(agrees(&Settings::culling_distance, 0.01), exact);
-        EXPECT_EQ(agrees(&Settings::distance_extension, 0.01), exact);
-        EXPECT_EQ(agrees(&Settings::max_iterations, 3u), exact);
-        EXPECT_EQ(agrees(&Settings::cast_lost_walks, false), exact);
-        EXPECT_EQ(agrees(&Settings::skip_outside, false), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::displacement_threshold, 0.01), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::confidence, 3.0), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::culling_distance, 0.01), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::distance_extension, 0.01), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::max_iterations, 3u), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::cast_lost_walks, false), exact);
+        EXPECT_EQ(of_paper(&PaperOptions::skip_outside, false), exact);
         EXPECT_EQ(agrees(&Settings::method, Method::standard), exact);
         EXPECT_EQ(agrees(&Settings::method, Method::certified), exact);
         EXPECT_EQ(agrees(&Settings::method, Method::iterative), method == Method::iterative);
@@ -205,7 +210,7 @@ TEST(Replay, ARunWithEdgesIsReproduced) {
         options.settings = reader.info().settings;
         EXPECT_EQ(options.settings.features, Features::edges);
         for (const std::uint32_t threads : {1u, 2u}) {
-            options.settings.threads = threads;
+            options.settings.execution.threads = threads;
             const raycontact::recording::Replay again = replay(reader, options);
             EXPECT_EQ(again.hash, run.hash) << to_string(method);
             EXPECT_EQ(again.contacts, run.contacts);
@@ -242,13 +247,13 @@ TEST(Replay, BodiesComeAndGo) {
     Scene scene(sample.info.settings);
     ContactHash hash;
     for (std::uint32_t i = 0; i < 30; ++i) {
-        for (BodyId id = 0; id < sample.bodies.size(); ++id) {
+        for (std::uint32_t id = 0; id < sample.bodies.size(); ++id) {
             const Body& body = sample.bodies[id];
             if (body.first_step == i) scene.add(sample.shapes[body.shape], sample.poses[i][id]);
-            if (body.end_step == i) scene.remove(id);
-            if (body.alive(i)) scene.set_pose(id, sample.poses[i][id]);
+            if (body.end_step == i) scene.remove({id});
+            if (body.alive(i)) scene.set_pose({id}, sample.poses[i][id]);
         }
-        hash.add(i, scene.step(sample.pairs[i]));
+        hash.add(i, scene.find_contacts(sample.pairs[i]));
     }
     Reader reader(file.path());
     ReplayOptions options;
@@ -285,7 +290,7 @@ TEST(Replay, SlotsAreThoseOfTheRun) {
                     const std::uint32_t shape = below(2);
                     live.push_back(scene.add(shapes[shape], somewhere()));
                     ASSERT_EQ(writer.add_body(shape), live.back());
-                    last_generation = std::max(last_generation, generation_of(live.back()));
+                    last_generation = std::max(last_generation, live.back().generation);
                 } else {
                     std::swap(live[below(live.size())], live.back());
                     scene.remove(live.back());
@@ -295,9 +300,9 @@ TEST(Replay, SlotsAreThoseOfTheRun) {
                 }
             }
             for (const BodyId id : live) {
-                if (below(3) == 0) scene.set_pose(id, somewhere());
+                if (below(3) == 0) scene.set_pose({id}, somewhere());
             }
-            hash.add(i, scene.step());
+            hash.add(i, scene.find_contacts());
             contacts += scene.contacts().size();
             writer.step(scene);
             pairs.emplace_back(scene.pairs().begin(), scene.pairs().end());
@@ -314,7 +319,7 @@ TEST(Replay, SlotsAreThoseOfTheRun) {
             reader.read_step(i, poses, read);
             ASSERT_EQ(read, pairs[i]);
         }
-        for (const BodyId id : live) EXPECT_EQ(poses[slot_of(id)], scene.pose(id));
+        for (const BodyId id : live) EXPECT_EQ(poses[id.slot], scene.pose({id}));
         ReplayOptions options;
         options.settings = reader.info().settings;
         EXPECT_EQ(replay(reader, options).hash, hash.hex()) << to_string(method);
@@ -335,7 +340,7 @@ TEST(Replay, OlderRecordingsKeepTheirSlots) {
         writer.remove_body(first);
         writer.step(poses, {});
         const BodyId third = writer.add_body(0);
-        EXPECT_EQ(third, body_id(0, 1));
+        EXPECT_EQ(third, (BodyId{0, 1}));
         writer.step(std::vector<Pose>{pose(0.1), pose(0.3)}, std::vector<Pair>{{third, second}});
         writer.finish("0123456789abcdef");
     }
@@ -343,13 +348,13 @@ TEST(Replay, OlderRecordingsKeepTheirSlots) {
         Scene scene;
         ContactHash hash;
         const BodyId first = scene.add(shape, pose(0)), second = scene.add(shape, pose(0.3));
-        hash.add(0, scene.step(std::vector<Pair>{{first, second}}));
+        hash.add(0, scene.find_contacts(std::vector<Pair>{{first, second}}));
         EXPECT_GT(scene.contacts().size(), 0u);
         if (!older) scene.remove(first);
-        hash.add(1, scene.step(std::span<const Pair>{}));
+        hash.add(1, scene.find_contacts(std::span<const Pair>{}));
         const BodyId third = scene.add(shape, pose(0.1));
-        EXPECT_EQ(third, older ? 2u : body_id(0, 1));
-        hash.add(2, scene.step(std::vector<Pair>{{third, second}}));
+        EXPECT_EQ(third, older ? BodyId{2} : (BodyId{0, 1}));
+        hash.add(2, scene.find_contacts(std::vector<Pair>{{third, second}}));
         EXPECT_GT(scene.contacts().size(), 0u);
         return hash.hex();
     };
@@ -365,7 +370,7 @@ TEST(Replay, OlderRecordingsKeepTheirSlots) {
     bytes[side_chunk_at(bytes) + 8 + 8] = 1;
     write_bytes(file.path(), bytes);
     EXPECT_EQ(Reader(file.path()).version(), 1u);
-    EXPECT_EQ(Reader(file.path()).bodies()[2].id, 2u);
+    EXPECT_EQ(Reader(file.path()).bodies()[2].id, BodyId{2});
     EXPECT_EQ(replayed(), hash_of(true));
     EXPECT_NE(hash_of(true), hash_of(false));
 }

@@ -56,7 +56,7 @@ TEST(RoundTrip, StepsMayBeReadInAnyOrder) {
     for (const std::uint32_t i : order) {
         reader.read_step(i, poses, pairs);
         EXPECT_EQ(pairs, sample.pairs[i]);
-        for (BodyId id = 0; id < sample.bodies.size(); ++id) {
+        for (std::uint32_t id = 0; id < sample.bodies.size(); ++id) {
             if (sample.bodies[id].alive(i)) {
                 EXPECT_EQ(poses[id], sample.poses[i][id]) << i;
             }
@@ -121,9 +121,9 @@ TEST(RoundTrip, EveryMethodAndThresholdIsKept) {
              {std::optional<double>(), std::optional(0.0), std::optional(1e-300)}) {
             sample.info.settings = {};
             sample.info.settings.method = method;
-            sample.info.settings.displacement_threshold = length;
-            sample.info.settings.culling_distance = length;
-            sample.info.settings.distance_extension = length;
+            sample.info.settings.paper.displacement_threshold = length;
+            sample.info.settings.paper.culling_distance = length;
+            sample.info.settings.paper.distance_extension = length;
             const TemporaryFile file;
             record(sample, file.path(), true);
             Reader reader(file.path());
@@ -147,12 +147,12 @@ TEST(RoundTrip, OldRecordingsHaveDefaults) {
     Settings& old = sample.info.settings;
     const Settings fresh;
     old.method = Method::standard;
-    old.displacement_threshold = fresh.displacement_threshold;
-    old.confidence = fresh.confidence;
-    old.distance_extension = fresh.distance_extension;
-    old.max_iterations = fresh.max_iterations;
-    old.cast_lost_walks = fresh.cast_lost_walks;
-    old.skip_outside = fresh.skip_outside;
+    old.paper.displacement_threshold = fresh.paper.displacement_threshold;
+    old.paper.confidence = fresh.paper.confidence;
+    old.paper.distance_extension = fresh.paper.distance_extension;
+    old.paper.max_iterations = fresh.paper.max_iterations;
+    old.paper.cast_lost_walks = fresh.paper.cast_lost_walks;
+    old.paper.skip_outside = fresh.paper.skip_outside;
     old.max_contacts_per_pair = fresh.max_contacts_per_pair;
     old.max_contacts = fresh.max_contacts;
     EXPECT_EQ(difference(sample, reader, 5), "");
@@ -201,7 +201,7 @@ TEST(RoundTrip, BadInputIsRefusedInOneLine) {
     info.dt = 0;
     EXPECT_THROW(Writer(file.path(), info), InputError);
     info = {};
-    info.settings.confidence = 0.5;
+    info.settings.paper.confidence = 0.5;
     EXPECT_THROW(Writer(file.path(), info), InputError);
     EXPECT_THROW(Reader("/nonexistent/x.glb"), InputError);
     EXPECT_THROW(Reader{std::filesystem::temp_directory_path()}, InputError);
@@ -211,9 +211,10 @@ TEST(RoundTrip, BadInputIsRefusedInOneLine) {
     const std::uint32_t shape = writer.add_shape(*sample.shapes[0]);
     writer.add_body(shape);
     writer.add_body(shape);
-    EXPECT_THROW(writer.remove_body(2), InputError);
+    EXPECT_THROW(writer.remove_body({2}), InputError);
     std::vector<Pose> poses(2);
-    const Pair fine[] = {{1, 0}}, itself[] = {{1, 1}}, missing[] = {{0, 2}};
+    const BodyId zero{0}, one{1}, two{2};
+    const Pair fine[] = {{one, zero}}, itself[] = {{one, one}}, missing[] = {{zero, two}};
     EXPECT_THROW(writer.step(std::span(poses).first(1), fine), InputError);
     EXPECT_THROW(writer.step(poses, itself), InputError);
     EXPECT_THROW(writer.step(poses, missing), InputError);

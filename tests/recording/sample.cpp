@@ -52,21 +52,21 @@ Sample make_sample(std::uint32_t steps) {
     sample.info.bodies = 7;
     sample.info.dt = 1.0 / 240;
     sample.info.mesh_source = "meshes made for a test";
-    sample.info.settings.caster = Caster::basic;
+    sample.info.settings.paper.caster = Caster::basic;
     sample.info.settings.direction = Direction::ray;
-    sample.info.settings.threads = 2;
-    sample.info.settings.displacement_threshold = 0.1 / 3; // no short decimal
-    sample.info.settings.confidence = 2.0 + 1e-15;
-    sample.info.settings.distance_extension = 0.07;
-    sample.info.settings.max_iterations = 5;
-    sample.info.settings.cast_lost_walks = false;
-    sample.info.settings.skip_outside = false;
+    sample.info.settings.execution.threads = 2;
+    sample.info.settings.paper.displacement_threshold = 0.1 / 3; // no short decimal
+    sample.info.settings.paper.confidence = 2.0 + 1e-15;
+    sample.info.settings.paper.distance_extension = 0.07;
+    sample.info.settings.paper.max_iterations = 5;
+    sample.info.settings.paper.cast_lost_walks = false;
+    sample.info.settings.paper.skip_outside = false;
     sample.info.settings.max_contacts_per_pair = 7;
     sample.info.settings.max_contacts = 400;
     sample.shapes = {Shape::make(crooked("torus", 60)), Shape::make(crooked("knot", 60)),
                      Shape::make(crooked("sphere", 40))};
-    sample.bodies = {{0, 0, Body::never}, {1, 0, Body::never}, {1, 0, 12}, {0, 0, Body::never},
-                     {2, 0, Body::never}, {2, 7, Body::never}, {1, 9, 20}};
+    sample.bodies = {{0, 0, Body::never, {}}, {1, 0, Body::never, {}}, {1, 0, 12, {}}, {0, 0, Body::never, {}},
+                     {2, 0, Body::never, {}}, {2, 7, Body::never, {}}, {1, 9, 20, {}}};
     std::vector<Pose> poses;
     for (std::size_t i = 0; i < sample.bodies.size(); ++i)
         poses.push_back(pose_from_quaternion({10 * uniform(), 10 * uniform(), 1e-3 * uniform()}, uniform(), uniform(),
@@ -74,8 +74,8 @@ Sample make_sample(std::uint32_t steps) {
     std::vector<Pair> pairs;
     for (std::uint32_t step = 0; step < steps; ++step) {
         for (std::size_t i = 1; i < poses.size(); ++i) poses[i] = moved(poses[i]);
-        for (BodyId a = 0; a < poses.size(); ++a) {
-            for (BodyId b = a + 1; b < poses.size(); ++b) {
+        for (std::uint32_t a = 0; a < poses.size(); ++a) {
+            for (std::uint32_t b = a + 1; b < poses.size(); ++b) {
                 const Pair pair{a, b};
                 const auto at = std::lower_bound(pairs.begin(), pairs.end(), pair);
                 const bool had = at != pairs.end() && *at == pair;
@@ -99,10 +99,10 @@ Feeder::Feeder(const Sample& sample, Writer& writer) : sample_(sample), writer_(
 
 void Feeder::step() {
     std::size_t known = 0;
-    for (BodyId id = 0; id < sample_.bodies.size(); ++id) {
+    for (std::uint32_t id = 0; id < sample_.bodies.size(); ++id) {
         const Body& body = sample_.bodies[id];
         if (body.first_step == next_) writer_.add_body(body.shape);
-        if (body.end_step == next_) writer_.remove_body(id);
+        if (body.end_step == next_) writer_.remove_body({id});
         if (body.first_step <= next_) ++known;
     }
     // As a broad phase may hand them over: backwards, either way round, some twice.
@@ -143,15 +143,16 @@ bool same_shape(const Shape& p, const Shape& q) {
 bool same_info(const Info& p, const Info& q) {
     return p.scene == q.scene && p.seed == q.seed && p.bodies == q.bodies && p.dt == q.dt
            && p.mesh_source == q.mesh_source && p.settings.method == q.settings.method
-           && p.settings.caster == q.settings.caster && p.settings.direction == q.settings.direction
-           && p.settings.devices == q.settings.devices && p.settings.threads == q.settings.threads
-           && p.settings.displacement_threshold == q.settings.displacement_threshold
-           && p.settings.confidence == q.settings.confidence
-           && p.settings.culling_distance == q.settings.culling_distance
-           && p.settings.distance_extension == q.settings.distance_extension
-           && p.settings.max_iterations == q.settings.max_iterations
-           && p.settings.cast_lost_walks == q.settings.cast_lost_walks
-           && p.settings.skip_outside == q.settings.skip_outside
+           && p.settings.paper.caster == q.settings.paper.caster && p.settings.direction == q.settings.direction
+           && p.settings.execution.devices == q.settings.execution.devices
+           && p.settings.execution.threads == q.settings.execution.threads
+           && p.settings.paper.displacement_threshold == q.settings.paper.displacement_threshold
+           && p.settings.paper.confidence == q.settings.paper.confidence
+           && p.settings.paper.culling_distance == q.settings.paper.culling_distance
+           && p.settings.paper.distance_extension == q.settings.paper.distance_extension
+           && p.settings.paper.max_iterations == q.settings.paper.max_iterations
+           && p.settings.paper.cast_lost_walks == q.settings.paper.cast_lost_walks
+           && p.settings.paper.skip_outside == q.settings.paper.skip_outside
            && p.settings.max_contacts_per_pair == q.settings.max_contacts_per_pair
            && p.settings.max_contacts == q.settings.max_contacts;
 }
@@ -170,7 +171,7 @@ std::string difference(const Sample& sample, Reader& reader, std::uint32_t steps
         reader.read_step(i, poses, pairs);
         const std::string at = " of step " + std::to_string(i);
         if (pairs != sample.pairs[i]) return "pairs" + at;
-        for (BodyId id = 0; id < sample.bodies.size(); ++id) {
+        for (std::uint32_t id = 0; id < sample.bodies.size(); ++id) {
             const Body& body = sample.bodies[id];
             if (id >= reader.bodies().size()) {
                 if (body.alive(i)) return "missing body" + at;

@@ -110,7 +110,7 @@ TEST(Viewer, MeshesAreTheShapes) {
     const TemporaryFile file;
     record(sample, file.path(), true);
     const tinygltf::Model model = load(file.path());
-    for (BodyId id = 0; id < sample.bodies.size(); ++id) {
+    for (std::uint32_t id = 0; id < sample.bodies.size(); ++id) {
         if (sample.bodies[id].first_step >= 3) continue;
         const Shape& shape = *sample.shapes[sample.bodies[id].shape];
         const auto& mesh = model.meshes.at(static_cast<std::size_t>(model.nodes[id + 1].mesh));

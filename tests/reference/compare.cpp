@@ -19,7 +19,7 @@ struct Difference {
 // One directed pair: every ray of the reference, then what the library has beyond them.
 class OneWay {
 public:
-    OneWay(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose, VertexBody body,
+    OneWay(const Solid& source, const Pose& source_pose, const Solid& target, const Pose& target_pose, Side body,
            Direction direction, Comparison& sum)
         : source_(source), target_(target), source_pose_(source_pose), target_pose_(target_pose), body_(body),
           direction_(direction), sum_(sum), size_(std::max(source.diagonal, target.diagonal)) {}
@@ -27,9 +27,9 @@ public:
     void run(std::span<const Contact> contacts) {
         std::map<std::uint32_t, const Contact*> found;
         for (const Contact& contact : contacts)
-            if (contact.vertex_body == body_ && contact.feature == Feature::vertex
-                && !found.emplace(contact.vertex, &contact).second)
-                complain("vertex reported twice", contact.vertex, nullptr, &contact);
+            if (contact.feature.source == body_ && contact.feature.kind == FeatureKind::vertex
+                && !found.emplace(contact.feature.source_index(), &contact).second)
+                complain("vertex reported twice", contact.feature.source_index(), nullptr, &contact);
         for (const CastRay& ray : cast_all(source_, source_pose_, target_, target_pose_, direction_)) {
             ++sum_.rays;
             const std::uint32_t vertex = source_.vertex_index[ray.vertex];
@@ -52,17 +52,18 @@ public:
 
 private:
     void both(const CastRay& ray, const Contact& contact) {
-        const double sign = body_ == VertexBody::a ? -1 : 1;
-        const Vec3 normal{contact.normal[0], contact.normal[1], contact.normal[2]};
+        const double sign = body_ == Side::a ? -1 : 1;
+        const Vec3 normal{contact.normal.x, contact.normal.y, contact.normal.z};
         Difference d;
         d.normal = length(normal - sign * ray.normal);
         d.depth = std::fabs(contact.depth - ray.depth) / size_;
         d.ray_length = std::fabs(contact.ray_length - ray.ray_length) / size_;
         d.weight = std::fabs(contact.weight - ray.weight) / ray.weight;
-        d.point = length(contact.point - ray.point) / size_;
+        d.point = length(contact.point() - ray.point) / size_;
         if (direction_ == Direction::refined) return both_refined(ray, contact, d);
-        const bool same = contact.triangle == target_.triangle_index[ray.triangle] && d.normal < 1e-4 && d.depth < 1e-5
-                          && d.ray_length < 1e-5 && d.weight < 1e-6 && d.point < 1e-6 && contact.depth > 0;
+        const bool same = contact.feature.other_index() == target_.triangle_index[ray.triangle] && d.normal < 1e-4
+                          && d.depth < 1e-5 && d.ray_length < 1e-5 && d.weight < 1e-6 && d.point < 1e-6
+                          && contact.depth > 0;
         if (!same) return judge("other numbers", ray.vertex, &ray, &contact);
         ++sum_.agreed;
         sum_.worst_normal = std::max(sum_.worst_normal, d.normal);
@@ -74,12 +75,12 @@ private:
     // The nearest point may be one of several triangles; so what is compared is how far it is, and that depth and
     // normal lead to the triangle that is named.
     void both_refined(const CastRay& ray, const Contact& contact, const Difference& d) {
-        const auto face = static_cast<std::size_t>(std::ranges::find(target_.triangle_index, contact.triangle)
-                                                   - target_.triangle_index.begin());
-        const Vec3 normal{contact.normal[0], contact.normal[1], contact.normal[2]};
-        const Vec3 way = (body_ == VertexBody::a ? -1.0 : 1.0) * normal;
+        const auto face = static_cast<std::size_t>(
+            std::ranges::find(target_.triangle_index, contact.feature.other_index()) - target_.triangle_index.begin());
+        const Vec3 normal{contact.normal.x, contact.normal.y, contact.normal.z};
+        const Vec3 way = (body_ == Side::a ? -1.0 : 1.0) * normal;
         const Vec3 end =
-            rotate_back(target_pose_, contact.point + double(contact.depth) * way - target_pose_.translation)
+            rotate_back(target_pose_, contact.point() + double(contact.depth) * way - target_pose_.translation)
             - target_.centre;
         const auto& [p, q, r] = target_.triangles.at(face);
         const Vec3 on = closest_on_triangle(end, target_.vertices[p], target_.vertices[q], target_.vertices[r]);
@@ -115,7 +116,7 @@ private:
         ++sum_.wrong;
         if (sum_.complaints.size() >= 5) return;
         std::string s = what + text(": vertex %u of ", vertex) + source_.name + " (body "
-                        + (body_ == VertexBody::a ? "a" : "b") + ") against " + target_.name;
+                        + (body_ == Side::a ? "a" : "b") + ") against " + target_.name;
         if (ray)
             s += text("\n  reference: triangle %u, depth %.9g, ray %.9g, weight %.9g, normal %.6g %.6g %.6g out of the "
                       "target",
@@ -123,9 +124,10 @@ private:
                       ray->normal.y, ray->normal.z);
         if (contact)
             s += text("\n  library: triangle %u, depth %.9g, ray %.9g, weight %.9g, normal %.6g %.6g %.6g",
-                      contact->triangle, static_cast<double>(contact->depth), static_cast<double>(contact->ray_length),
-                      static_cast<double>(contact->weight), static_cast<double>(contact->normal[0]),
-                      static_cast<double>(contact->normal[1]), static_cast<double>(contact->normal[2]));
+                      contact->feature.other_index(), static_cast<double>(contact->depth),
+                      static_cast<double>(contact->ray_length), static_cast<double>(contact->weight),
+                      static_cast<double>(contact->normal.x), static_cast<double>(contact->normal.y),
+                      static_cast<double>(contact->normal.z));
         s += "\n  source pose " + text(source_pose_) + "\n  target pose " + text(target_pose_);
         sum_.complaints.push_back(s);
     }
@@ -134,7 +136,7 @@ private:
     const Solid& target_;
     const Pose& source_pose_;
     const Pose& target_pose_;
-    VertexBody body_;
+    Side body_;
     Direction direction_;
     Comparison& sum_;
     double size_;
@@ -145,8 +147,8 @@ private:
 void compare(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b, std::span<const Contact> contacts,
              Comparison& sum, Direction direction) {
     ++sum.pairs;
-    OneWay(a, pose_a, b, pose_b, VertexBody::a, direction, sum).run(contacts);
-    OneWay(b, pose_b, a, pose_a, VertexBody::b, direction, sum).run(contacts);
+    OneWay(a, pose_a, b, pose_b, Side::a, direction, sum).run(contacts);
+    OneWay(b, pose_b, a, pose_a, Side::b, direction, sum).run(contacts);
 }
 
 std::string Comparison::summary() const {

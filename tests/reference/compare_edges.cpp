@@ -16,10 +16,10 @@ namespace raycontact::reference {
 
 namespace {
 
-using Key = std::tuple<Feature, VertexBody, std::uint32_t, std::uint32_t>; // as contact_key()
+using Key = std::tuple<FeatureKind, Side, std::uint32_t, std::uint32_t>; // what Contact::key() tells
 
 Key key_of(const ReferenceContact& c) {
-    return {c.feature, c.vertex_body, c.vertex, c.feature == Feature::edges ? c.triangle : 0};
+    return {c.kind, c.vertex_body, c.vertex, c.kind == FeatureKind::edges ? c.triangle : 0};
 }
 
 // One answer, of the library or of the reference, in common terms.
@@ -34,14 +34,14 @@ Answers answers(const std::vector<ReferenceContact>& contacts) {
 Answers answers(std::span<const Contact> contacts) {
     Answers list;
     for (const Contact& c : contacts) {
-        if (c.feature == Feature::vertex) continue;
+        if (c.feature.kind == FeatureKind::vertex) continue;
         ReferenceContact r;
-        r.vertex_body = c.vertex_body;
-        r.feature = c.feature;
-        r.vertex = c.vertex;
-        r.triangle = c.triangle;
-        r.point = c.point;
-        r.normal = {c.normal[0], c.normal[1], c.normal[2]};
+        r.vertex_body = c.feature.source;
+        r.kind = c.feature.kind;
+        r.vertex = c.feature.source_index();
+        r.triangle = c.feature.other_index();
+        r.point = c.point();
+        r.normal = {c.normal.x, c.normal.y, c.normal.z};
         r.depth = c.depth;
         r.ray_length = c.ray_length;
         r.weight = c.weight;
@@ -97,11 +97,12 @@ Pose nudged(Pose pose, const Solid& solid, double by, double size, Random& rando
 // Vertices in contact, of which edges make much, are found in float32; near a tie they may be others, or meet other
 // triangles. Direction `refined` names another triangle than the one that was met.
 bool same_vertices(const std::vector<ReferenceContact>& expected, std::span<const Contact> found, Direction direction) {
-    std::set<std::tuple<VertexBody, std::uint32_t, std::uint32_t>> x, y;
+    std::set<std::tuple<Side, std::uint32_t, std::uint32_t>> x, y;
     const auto met = [&](std::uint32_t triangle) { return direction == Direction::refined ? 0 : triangle; };
     for (const ReferenceContact& c : expected) x.emplace(c.vertex_body, c.vertex, met(c.triangle));
     for (const Contact& c : found)
-        if (c.feature == Feature::vertex) y.emplace(c.vertex_body, c.vertex, met(c.triangle));
+        if (c.feature.kind == FeatureKind::vertex)
+            y.emplace(c.feature.source, c.feature.source_index(), met(c.feature.other_index()));
     return x == y;
 }
 
@@ -127,7 +128,7 @@ void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pos
         }
         const Difference d = difference(c, at->second, size);
         ++sum.agreed;
-        sum.inside += c.feature == Feature::inside;
+        sum.inside += c.kind == FeatureKind::inside;
         sum.worst_normal = std::max(sum.worst_normal, d.normal);
         sum.worst_depth = std::max(sum.worst_depth, d.depth);
         sum.worst_point = std::max(sum.worst_point, d.point);
@@ -153,9 +154,9 @@ void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pos
         if (sum.complaints.size() >= 5) continue;
         const auto [feature, body, vertex, other] = key;
         sum.complaints.push_back(
-            (feature == Feature::edges ? text("edges %u and %u of ", vertex, other)
-                                       : text("inside, vertex %u of ", vertex))
-            + (body == VertexBody::a ? a.name + " (a) against " + b.name : b.name + " (b) against " + a.name)
+            (feature == FeatureKind::edges ? text("edges %u and %u of ", vertex, other)
+                                           : text("inside, vertex %u of ", vertex))
+            + (body == Side::a ? a.name + " (a) against " + b.name : b.name + " (b) against " + a.name)
             + answer_of("reference", expected, key) + answer_of("library", found, key) + "\n  pose a " + text(pose_a)
             + "\n  pose b " + text(pose_b));
     }

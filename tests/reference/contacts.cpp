@@ -111,7 +111,7 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
 std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
                                             Direction direction) {
     std::vector<ReferenceContact> contacts;
-    const auto add = [&](VertexBody body, const Solid& source, const Solid& target, const std::vector<CastRay>& rays) {
+    const auto add = [&](Side body, const Solid& source, const Solid& target, const std::vector<CastRay>& rays) {
         for (const CastRay& ray : rays) {
             if (!ray.contact) continue;
             ReferenceContact contact;
@@ -119,15 +119,15 @@ std::vector<ReferenceContact> find_contacts(const Solid& a, const Pose& pose_a, 
             contact.vertex = source.vertex_index[ray.vertex];
             contact.triangle = target.triangle_index[ray.triangle];
             contact.point = ray.point;
-            contact.normal = body == VertexBody::a ? -ray.normal : ray.normal;
+            contact.normal = body == Side::a ? -ray.normal : ray.normal;
             contact.depth = ray.depth;
             contact.ray_length = ray.ray_length;
             contact.weight = ray.weight;
             contacts.push_back(contact);
         }
     };
-    add(VertexBody::a, a, b, cast_all(a, pose_a, b, pose_b, direction));
-    add(VertexBody::b, b, a, cast_all(b, pose_b, a, pose_a, direction));
+    add(Side::a, a, b, cast_all(a, pose_a, b, pose_b, direction));
+    add(Side::b, b, a, cast_all(b, pose_b, a, pose_a, direction));
     std::stable_sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
         return x.vertex_body != y.vertex_body ? x.vertex_body < y.vertex_body : x.vertex < y.vertex;
     });

@@ -31,8 +31,8 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
 
 /// The whole result of a pair of bodies (0, 1), in double and in the order of the contract.
 struct ReferenceContact {
-    VertexBody vertex_body = VertexBody::a;
-    Feature feature = Feature::vertex;
+    Side vertex_body = Side::a;
+    FeatureKind kind = FeatureKind::vertex;
     std::uint32_t vertex = 0, triangle = 0; ///< indices of the files; of edges as Contact::edge_a() and edge_b()
     Vec3 point, normal;                     ///< world; normal from A to B
     double depth = 0, ray_length = 0, weight = 1;

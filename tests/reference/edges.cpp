@@ -460,12 +460,13 @@ private:
 };
 
 // The vertex of a source that is farthest inside; in the frame of the pair.
-std::optional<ReferenceContact> inside(const Body& source, const Body& target, VertexBody body) {
+std::optional<ReferenceContact> inside(const Body& source, const Body& target, Side body) {
     std::optional<ReferenceContact> found;
     for (std::uint32_t v = 0; v < source.vertices.size() && target.solid.closed; ++v) {
         const Vec3 p = rotate_back(target.pose, source.vertices[v] - target.pose.translation);
         if (source.solid.vertex_areas[v] <= 0 || winding_number(target.solid, p) < 0.5) continue;
-        ReferenceContact c{body, Feature::inside, source.solid.vertex_index[v], 0, source.vertices[v], {}, inf, inf};
+        ReferenceContact c{body, FeatureKind::inside, source.solid.vertex_index[v], 0, source.vertices[v], {}, inf,
+                           inf};
         c.weight = source.solid.vertex_areas[v];
         for (std::uint32_t f = 0; f < target.normals.size(); ++f) {
             const auto& [x, y, z] = target.solid.triangles[f];
@@ -473,7 +474,7 @@ std::optional<ReferenceContact> inside(const Body& source, const Body& target, V
             const Vec3 out = closest_on_triangle(p, at[x], at[y], at[z]) - p;
             if (length(out) >= c.depth) continue;
             c.depth = c.ray_length = length(out);
-            c.normal = rotate(target.pose, unit(body == VertexBody::a ? -out : out));
+            c.normal = rotate(target.pose, unit(body == Side::a ? -out : out));
             c.triangle = target.solid.triangle_index[f];
         }
         if (!found || found->depth < c.depth) found = c;
@@ -504,12 +505,11 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
     PairOfBodies pair(of_a, of_b, hair);
     if (pair.crosses()) {
         for (const auto& [edges, c] : pair.contacts())
-            contacts.push_back({VertexBody::a, Feature::edges, edges.first->number, edges.second->number, c.point,
-                                -c.way, c.depth, c.depth,
-                                (of_a.area_at(*edges.first) + of_b.area_at(*edges.second)) / 12});
+            contacts.push_back({Side::a, FeatureKind::edges, edges.first->number, edges.second->number, c.point, -c.way,
+                                c.depth, c.depth, (of_a.area_at(*edges.first) + of_b.area_at(*edges.second)) / 12});
     } else if (of_a.contact.empty() && of_b.contact.empty()) {
-        if (const auto c = inside(of_a, of_b, VertexBody::a)) contacts.push_back(*c);
-        if (const auto c = inside(of_b, of_a, VertexBody::b)) contacts.push_back(*c);
+        if (const auto c = inside(of_a, of_b, Side::a)) contacts.push_back(*c);
+        if (const auto c = inside(of_b, of_a, Side::b)) contacts.push_back(*c);
     }
     for (ReferenceContact& c : contacts) {
         c.point = pose_b.translation + rotate(pose_b, b.centre + c.point);

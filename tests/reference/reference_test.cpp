@@ -117,7 +117,7 @@ TEST(reference_contacts, of_a_box_corner_in_a_box) {
     const auto contacts = find_contacts(big, at(0, 0, 0), small, at(0.125, 0.0625, 1.375));
     ASSERT_EQ(contacts.size(), 4u);
     for (const auto& c : contacts) {
-        EXPECT_EQ(c.vertex_body, VertexBody::b);
+        EXPECT_EQ(c.vertex_body, Side::b);
         EXPECT_NEAR(c.depth, 0.125, 1e-14);
         EXPECT_NEAR(c.ray_length, 0.125 * std::sqrt(3.0), 1e-14);
         EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15); // A (below) to B (above)
@@ -151,7 +151,7 @@ TEST(reference_contacts, swap_flips_normals) {
     const auto two = find_contacts(small, at(0.125, 0.0625, 1.375), big, at(0, 0, 0));
     ASSERT_EQ(one.size(), two.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(two[i].vertex_body, VertexBody::a);
+        EXPECT_EQ(two[i].vertex_body, Side::a);
         EXPECT_EQ(one[i].normal, -two[i].normal);
         EXPECT_EQ(one[i].depth, two[i].depth);
     }
@@ -203,7 +203,7 @@ TEST(reference_contacts, of_an_open_target_reach_beyond_its_box) {
     const auto contacts = find_contacts(sheet, {}, box, at(0.0625, 0, 0.125));
     ASSERT_EQ(contacts.size(), 4u);
     for (const auto& c : contacts) {
-        EXPECT_EQ(c.vertex_body, VertexBody::b);
+        EXPECT_EQ(c.vertex_body, Side::b);
         EXPECT_NEAR(c.depth, 0.125, 1e-14);
         EXPECT_LT(length(c.normal - Vec3{0, 0, 1}), 1e-15);
     }
@@ -219,8 +219,8 @@ TEST(reference_edges, of_crossed_bars) {
         const auto contacts = turned ? find_edges(high, pose, low, {}) : find_edges(low, {}, high, pose);
         ASSERT_EQ(contacts.size(), 4u);
         for (const auto& c : contacts) {
-            EXPECT_EQ(c.feature, Feature::edges);
-            EXPECT_EQ(c.vertex_body, VertexBody::a);
+            EXPECT_EQ(c.kind, FeatureKind::edges);
+            EXPECT_EQ(c.vertex_body, Side::a);
             EXPECT_NEAR(c.depth, 1.0 / 64, 1e-6);
             EXPECT_LT(length(c.normal - Vec3{0, 0, turned ? -1.0 : 1.0}), 1e-6);
             EXPECT_NEAR(c.point.z, turned ? 0.125 - 1.0 / 64 : 0.125, 1e-6); // a's
@@ -237,7 +237,7 @@ TEST(reference_edges, of_two_corners) {
     const Pose pose = at(0.9, 0.85, 0.8);
     EXPECT_EQ(find_contacts(box, {}, box, pose).size(), 2u);
     for (const auto& c : find_edges(box, {}, box, pose)) {
-        EXPECT_EQ(c.feature, Feature::edges);
+        EXPECT_EQ(c.kind, FeatureKind::edges);
         EXPECT_NEAR(std::fabs(c.normal.x) + std::fabs(c.normal.y) + std::fabs(c.normal.z), 1, 1e-6);
         EXPECT_GT(c.depth, 0.05 - 1e-6);
         EXPECT_LT(c.depth, 0.2 + 1e-6);
@@ -301,8 +301,8 @@ TEST(reference_edges, of_a_box_in_a_box) {
     const auto contacts =
         find_edges(solid(box_mesh({1, 1, 1})), {}, solid(box_mesh({0.25, 0.25, 0.25})), at(0.5, 0, 0.125));
     ASSERT_EQ(contacts.size(), 1u);
-    EXPECT_EQ(contacts[0].feature, Feature::inside);
-    EXPECT_EQ(contacts[0].vertex_body, VertexBody::b);
+    EXPECT_EQ(contacts[0].kind, FeatureKind::inside);
+    EXPECT_EQ(contacts[0].vertex_body, Side::b);
     EXPECT_NEAR(contacts[0].depth, 0.75, 1e-6);
     EXPECT_NEAR(std::fabs(contacts[0].normal.x) + std::fabs(contacts[0].normal.y) + std::fabs(contacts[0].normal.z), 1,
                 1e-6);
@@ -319,16 +319,21 @@ TEST(reference_edges, of_a_cone_through_a_plate) {
     EXPECT_TRUE(find_edges(solid(flat), {}, solid(flat), at(0.1, 0.2, 0)).empty());
 }
 
+void set_source(Contact& c, Side source, std::uint32_t vertex, std::uint32_t triangle, const Vec3& point) {
+    const Vec3 own = point;
+    const bool from_a = source == Side::a;
+    c.feature = {FeatureKind::vertex, source, from_a ? vertex : triangle, from_a ? triangle : vertex};
+    (from_a ? c.point_a : c.point_b) = own;
+}
+
 // What the library would have to say to agree with the reference.
 std::vector<Contact> as_library(const std::vector<ReferenceContact>& contacts) {
     std::vector<Contact> list;
     for (const ReferenceContact& r : contacts) {
         Contact c;
-        c.body_b = 1;
-        c.vertex_body = r.vertex_body;
-        c.vertex = r.vertex;
-        c.triangle = r.triangle;
-        c.point = r.point;
+        c.body_a = {0};
+        c.body_b = {1};
+        set_source(c, r.vertex_body, r.vertex, r.triangle, r.point);
         c.normal = {static_cast<float>(r.normal.x), static_cast<float>(r.normal.y), static_cast<float>(r.normal.z)};
         c.depth = static_cast<float>(r.depth);
         c.ray_length = static_cast<float>(r.ray_length);
@@ -363,23 +368,25 @@ TEST(reference_compare, notices_every_kind_of_error) {
         change(list[right.size() / 2]);
         return verdict(list).wrong;
     };
-    EXPECT_EQ(wrong_after([](Contact& c) { c.triangle = c.triangle ? 0 : 1; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) {
+                  set_source(c, c.feature.source, c.feature.source_index(), c.feature.other_index() ? 0 : 1, c.point());
+              }),
+              1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.depth += 1e-4f; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.ray_length += 1e-4f; }), 1u);
     EXPECT_EQ(wrong_after([](Contact& c) { c.weight *= 1.00001f; }), 1u);
-    EXPECT_EQ(wrong_after([](Contact& c) { c.point.x += 1e-4; }), 1u);
-    EXPECT_EQ(wrong_after([](Contact& c) {
-                  for (float& n : c.normal) n = -n;
-              }),
-              1u);
-    EXPECT_EQ(wrong_after([](Contact& c) { c.vertex = 4000; }), 2u); // one missed, one of no vertex
+    EXPECT_EQ(wrong_after([](Contact& c) { c.point_a.x += 1e-4, c.point_b.x += 1e-4; }), 1u);
+    EXPECT_EQ(wrong_after([](Contact& c) { c.normal = {-c.normal.x, -c.normal.y, -c.normal.z}; }), 1u);
+    EXPECT_EQ(
+        wrong_after([](Contact& c) { set_source(c, c.feature.source, 4000, c.feature.other_index(), c.point()); }),
+        2u); // one missed, one of no vertex
     std::vector<Contact> more = right;
     std::vector<bool> taken(a.vertices.size());
     for (const Contact& c : right)
-        if (c.vertex_body == VertexBody::a) taken[c.vertex] = true;
+        if (c.feature.source == Side::a) taken[c.feature.source_index()] = true;
     more.push_back(right[0]);
-    more.back().vertex_body = VertexBody::a;
-    more.back().vertex = static_cast<std::uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    const auto free = static_cast<std::uint32_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    set_source(more.back(), Side::a, free, right[0].feature.other_index(), right[0].point());
     EXPECT_EQ(verdict(more).wrong, 1u); // invented
 }
 

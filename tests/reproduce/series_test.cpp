@@ -60,8 +60,8 @@ TEST(Series, SharesAndDifferencesAreFinite) {
 TEST(PairLengths, KnowsThePairThatIsLongest) {
     const auto contact = [](std::uint32_t a, std::uint32_t b, float ray, float depth) {
         Contact c;
-        c.body_a = a;
-        c.body_b = b;
+        c.body_a = {a};
+        c.body_b = {b};
         c.ray_length = ray;
         c.depth = depth;
         return c;

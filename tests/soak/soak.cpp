@@ -82,7 +82,7 @@ public:
     /// From an empty scene: the same seed, the same story. Adds to `times`, milliseconds, and to `wrong`.
     Work play(std::uint64_t seed, std::vector<double>& times, std::uint64_t& wrong) {
         for (const BodyId body : scene_.bodies()) scene_.remove(body);
-        scene_.step();
+        scene_.find_contacts();
         Random random(seed);
         change(random);
         for (int i = 0; i < 24; ++i) add(random);
@@ -99,12 +99,13 @@ public:
                 scene_.set_pose(body, pose);
             }
             const auto start = Clock::now();
-            const auto contacts = scene_.step();
+            const auto contacts = scene_.find_contacts();
             times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
             hash.add(static_cast<std::uint32_t>(step), contacts);
             const StepStats& s = scene_.stats();
-            const std::array<std::uint64_t, 8> counts{s.pairs, s.rays,        s.rays_cast, s.vertices,
-                                                      s.walks, s.predictions, s.contacts,  s.contacts_lost};
+            const std::array<std::uint64_t, 8> counts{
+                s.pairs,         s.details.rays,        s.details.rays_cast, s.details.vertices,
+                s.details.walks, s.details.predictions, s.contacts,          s.contacts_lost};
             for (std::size_t i = 0; i < counts.size(); ++i) work.counts[i] += counts[i];
             if (step % sampled == sampled - 1 && !agrees_with_standard()) ++wrong;
         }
@@ -115,9 +116,9 @@ public:
 private:
     static Settings settings_of(const std::string& devices) {
         Settings settings;
-        settings.devices = devices;
-        settings.threads = 2;
-        settings.schedule = Schedule::counted;
+        settings.execution.devices = devices;
+        settings.execution.threads = 2;
+        settings.execution.schedule = Schedule::counted;
         settings.features = Features::vertices;
         return settings;
     }
@@ -140,7 +141,7 @@ private:
         settings_.method = methods[random.below(4)];
         settings_.direction =
             reference::directions[random.below(static_cast<std::uint32_t>(std::size(reference::directions)))];
-        settings_.caster = random.below(8) == 0 ? Caster::basic : Caster::bvh;
+        settings_.paper.caster = random.below(8) == 0 ? Caster::basic : Caster::bvh;
         settings_.features = random.below(8) == 0 ? Features::edges : Features::vertices;
         scene_.set_settings(settings_);
     }
@@ -168,7 +169,7 @@ private:
         if (settings_.method == Method::iterative || settings_.method == Method::predictive) return true;
         Settings settings = settings_;
         settings.method = Method::standard;
-        settings.devices = "cpu";
+        settings.execution.devices = "cpu";
         return reference::same_bits(reference::contacts_of_fresh_scene(scene_, settings), scene_.contacts());
     }
 

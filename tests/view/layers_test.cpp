@@ -15,13 +15,13 @@ constexpr double into = 0.01;
 LayerStep layer_of(Method method) {
     Settings settings;
     settings.method = method;
-    settings.threads = 1;
+    settings.execution.threads = 1;
     Scene scene(settings);
     scene.add(Shape::make(reference::box_mesh({2, 2, 1})));
     Pose pose;
     pose.translation = {0.3, 0.2, 1.25 - into};
     scene.add(Shape::make(reference::box_mesh({0.25, 0.25, 0.25})), pose);
-    scene.step();
+    scene.find_contacts();
     LayerReader reader;
     return reader.read(scene, 3);
 }
@@ -38,7 +38,7 @@ TEST(Layers, RaysGoFromVertexToHit) {
         EXPECT_NEAR(contact.point[2], 1 - into, 1e-6);
         EXPECT_NEAR(dot(contact.direction, contact.direction), 1, 1e-9);
         EXPECT_NEAR(contact.point[2] + contact.length * contact.direction[2], 1, 1e-6); // the hit is on the large box
-        EXPECT_NEAR(contact.normal[2], 1, 1e-6);                                        // from A, below, to B
+        EXPECT_NEAR(contact.normal[2], 1, 1e-6);                                         // from A, below, to B
         EXPECT_NEAR(contact.depth, into, 1e-6);
     }
 }
@@ -99,14 +99,14 @@ TEST(Layers, DirectionsOfAllEightSidesKeepTheirWay) {
 TEST(Layers, PredictionsReachTheFaceAhead) {
     Settings settings;
     settings.method = Method::predictive;
-    settings.displacement_threshold = 0.05;
-    settings.threads = 1;
+    settings.paper.displacement_threshold = 0.05;
+    settings.execution.threads = 1;
     Scene scene(settings);
     scene.add(Shape::make(reference::box_mesh({2, 2, 1})));
     Pose pose;
     pose.translation = {0.3, 0.2, 1.25 + 0.02}; // just above
     scene.add(Shape::make(reference::box_mesh({0.25, 0.25, 0.25})), pose);
-    scene.step(std::vector<Pair>{{0, 1}});
+    scene.find_contacts(std::vector<Pair>{{BodyId{0}, BodyId{1}}});
     LayerReader reader;
     const LayerStep layer = reader.read(scene, 0);
     EXPECT_TRUE(layer.contacts.empty());

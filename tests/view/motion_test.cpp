@@ -26,7 +26,7 @@ void record(const std::string& file, std::uint32_t steps) {
     const auto shape = Shape::make(reference::l_prism_mesh());
     writer.add_shape(*shape);
     writer.add_body(0);
-    BodyId second = 0;
+    BodyId second;
     for (std::uint32_t i = 0; i < steps; ++i) {
         if (i == 5) second = writer.add_body(0);
         if (i == 9) writer.remove_body(second);

@@ -130,7 +130,7 @@ void name_places(PairState& state) {
         const Leaf& leaf0 = state.record0.leaves[static_cast<std::size_t>(c.key.child0)];
         const Leaf& leaf1 = state.record1.leaves[static_cast<std::size_t>(c.key.child1)];
         const bool of_0 = c.key.vertex_body == 0;
-        const int other = c.key.feature == Feature::edges ? c.triangle / 3 : c.triangle;
+        const int other = c.key.feature == FeatureKind::edges ? c.triangle / 3 : c.triangle;
         c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, other);
         c.name1 = of_0 ? name_of_triangle(leaf1, other) : name_of_feature(leaf1, c.key);
     }
@@ -218,7 +218,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.sort_batch();
     s.stats.pairs = s.work.size();
     s.stats.mesh_pairs = s.pairs.size();
-    s.scene.step(s.pairs);
+    s.scene.find_contacts(s.pairs);
     if (s.recorder) s.recorder->step();
     s.hand_out(s.scene.contacts());
     for (PairState* state : s.work)
@@ -371,7 +371,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
                     add_plane(state, i, j, la, lb, *face);
                     break;
                 }
-                const bool swapped = slot_of(la.body) > slot_of(lb.body);
+                const bool swapped = la.body.slot > lb.body.slot;
                 const Pair pair = swapped ? Pair{lb.body, la.body} : Pair{la.body, lb.body};
                 const btScalar reach = manifolds.patch_reach * btMin(diagonal(la), diagonal(lb));
                 batch.push_back({pair, &state, i, j, swapped, reach});
@@ -489,7 +489,7 @@ void CollisionDispatcher::State::sort_batch() {
     order.clear();
     for (std::size_t i = 0; i < batch.size(); ++i) {
         const auto [first, second] = batch[i].pair;
-        order.emplace_back(Slots{slot_of(first), slot_of(second)}, static_cast<std::uint32_t>(i));
+        order.emplace_back(Slots{first.slot, second.slot}, static_cast<std::uint32_t>(i));
     }
     std::sort(order.begin(), order.end());
     pairs.clear();
@@ -499,30 +499,30 @@ void CollisionDispatcher::State::sort_batch() {
 void CollisionDispatcher::State::hand_out(std::span<const Contact> contacts) {
     std::size_t at = 0;
     for (const Contact& c : contacts) {
-        const Slots slots{c.body_a, c.body_b};
+        const Slots slots{c.body_a.slot, c.body_b.slot};
         while (at < order.size() && order[at].first < slots) ++at;
         if (at == order.size() || order[at].first != slots) continue;
         const BatchEntry* entry = &batch[order[at].second];
         Candidate candidate;
-        const int source = c.vertex_body == VertexBody::a ? 0 : 1;
+        const int source = c.feature.source == Side::a ? 0 : 1;
         candidate.key = {entry->child0,
                          entry->child1,
                          entry->swapped ? 1 - source : source,
-                         static_cast<int>(c.vertex),
-                         c.feature,
-                         static_cast<int>(c.other())};
-        candidate.triangle = static_cast<int>(c.triangle);
+                         static_cast<int>(c.feature.source_index()),
+                         c.feature.kind,
+                         static_cast<int>(c.feature.kind == FeatureKind::edges ? c.feature.index_b : 0)};
+        candidate.triangle = static_cast<int>(c.feature.other_index());
         if (entry->swapped) {
-            candidate.on0 = to_bullet(point_on_b(c));
-            candidate.on1 = to_bullet(point_on_a(c));
+            candidate.on0 = to_bullet(c.point_b);
+            candidate.on1 = to_bullet(c.point_a);
             candidate.normal = normal_of(c);
         } else {
-            candidate.on0 = to_bullet(point_on_a(c));
-            candidate.on1 = to_bullet(point_on_b(c));
+            candidate.on0 = to_bullet(c.point_a);
+            candidate.on1 = to_bullet(c.point_b);
             candidate.normal = -normal_of(c);
         }
         candidate.distance = btScalar(-c.depth);
-        candidate.speculative = is_speculative(c);
+        candidate.speculative = c.is_speculative();
         candidate.reach = entry->reach;
         entry->state->candidates.push_back(candidate);
     }
@@ -541,7 +541,7 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
     }
     objects.pin(object, true);
     for (const Leaf& leaf : record.leaves) {
-        if (leaf.body != Leaf::no_body) return leaf.body;
+        if (leaf.body.valid()) return leaf.body;
     }
     objects.pin(object, false);
     throw InputError("CollisionDispatcher::add_body: the object has no mesh, nor a shape that one stands for; only "

@@ -162,7 +162,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     leaf.fault.clear();
     if (!in_scene(leaf.kind) || leaf.flat) return;
     leaf.way = 0;
-    if (leaf.body != Leaf::no_body) {
+    if (leaf.body.valid()) {
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
         leaf.way = longest_way(*leaf.converted.shape, before, leaf.pose);
     } else {
@@ -189,7 +189,7 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
     btTransform then;
     btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     for (Leaf& leaf : record.leaves) {
-        if ((leaf.body == Leaf::no_body && leaf.kind != Kind::round) || leaf.left_out()) continue;
+        if ((!leaf.body.valid() && leaf.kind != Kind::round) || leaf.left_out()) continue;
         try {
             leaf.next = place(then * leaf.local).pose;
             if (leaf.kind == Kind::round) continue;
@@ -216,8 +216,8 @@ void Objects::make_leaves(const btCollisionObject& object, Object& record) {
 }
 
 void Objects::drop_body(Leaf& leaf) {
-    if (leaf.body != Leaf::no_body) scene_.remove(leaf.body);
-    leaf.body = Leaf::no_body;
+    if (leaf.body.valid()) scene_.remove(leaf.body);
+    leaf.body = {};
     leaf.converted = {};
 }
 

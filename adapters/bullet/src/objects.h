@@ -26,7 +26,7 @@ struct Leaf {
     Kind kind = Kind::other;
     Converted converted;                           ///< mesh, field or convex
     Stretch stretch = no_stretch;                  ///< of what was converted: its transform is scaled
-    BodyId body = no_body;                         ///< in the scene; of the same kinds
+    BodyId body;                                   ///< in the scene; of the same kinds
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid; of all kinds but `other`
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     btTransform next = btTransform::getIdentity(); ///< pose, or where a moving body is expected at the next dispatch
@@ -34,7 +34,6 @@ struct Leaf {
     bool flat = false;     ///< a convex shape without a mesh to stand for it
     std::string fault;     ///< why it is left out; empty: it takes part
     bool unusable = false; ///< no mesh can be made of it, which is its fault; else its transform
-    static constexpr BodyId no_body = ~BodyId{0};
 
     bool left_out() const { return !fault.empty(); }
 };
@@ -86,7 +85,8 @@ void each_leaf(const btCollisionShape& shape, const btTransform& local, Visit&& 
 /// The objects in use and their bodies in the scene. Never iterated, so no address decides an order.
 class Objects {
 public:
-    Objects(Scene& scene, ConvexShapes convex) : scene_(scene), convex_(convex), shapes_(scene.settings().threads) {}
+    Objects(Scene& scene, ConvexShapes convex)
+        : scene_(scene), convex_(convex), shapes_(scene.settings().execution.threads) {}
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
     /// poses to the scene once per `dispatch`. A leaf whose mesh or transform cannot be used is left out, which is a

@@ -105,7 +105,7 @@ void call_added(btManifoldPoint& point, const Candidate& candidate, const btColl
 }
 
 bool of_edge(const PointKey& key) {
-    return key.feature == Feature::edges;
+    return key.feature == FeatureKind::edges;
 }
 
 /// A point that was there in the step before under another key: where faces lie on each other, now a vertex speaks for
@@ -295,9 +295,9 @@ bool adds_are_told(const btCollisionObject& a, const btCollisionObject& b) {
 
 PointKey CollisionDispatcher::key(const btManifoldPoint& p) {
     const bool on1 = (p.m_contactPointFlags & flag_vertex_on_1) != 0;
-    const auto feature = static_cast<Feature>((p.m_contactPointFlags & feature_mask) >> feature_shift);
+    const auto feature = static_cast<FeatureKind>((p.m_contactPointFlags & feature_mask) >> feature_shift);
     const int own = on1 ? p.m_index1 : p.m_index0, other = on1 ? p.m_index0 : p.m_index1;
-    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, own, feature, feature == Feature::edges ? other : 0};
+    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, own, feature, feature == FeatureKind::edges ? other : 0};
 }
 
 bool CollisionDispatcher::is_ours(const btManifoldPoint& p) {

@@ -21,7 +21,7 @@ PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
 
 PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
     if (!has_triangles(leaf)) return {};
-    if (key.feature == Feature::edges) return name_of_triangle(leaf, key.vertex / 3);
+    if (key.feature == FeatureKind::edges) return name_of_triangle(leaf, key.vertex / 3);
     const Shape& shape = *leaf.converted.shape;
     const auto vertices = shape.vertex_index(); // ascending
     const auto at = std::lower_bound(vertices.begin(), vertices.end(), static_cast<std::uint32_t>(key.vertex));

@@ -38,7 +38,7 @@ struct Guest {
 } // namespace
 
 btVector3 normal_of(const Contact& c) {
-    return btVector3(c.normal[0], c.normal[1], c.normal[2]);
+    return btVector3(c.normal.x, c.normal.y, c.normal.z);
 }
 
 std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) {
@@ -171,17 +171,18 @@ void Queries::run_batch(const Placed& a, const Placed& b, btManifoldResult& resu
         const Guest guest_a(scene_, a.leaf.converted.shape, a.leaf.pose),
             guest_b(scene_, b.leaf.converted.shape, b.leaf.pose);
         const std::array pairs{Pair{guest_a.body, guest_b.body}};
-        const std::span<const Contact> found = scene_.step(pairs);
+        const std::span<const Contact> found = scene_.find_contacts(pairs);
         contacts.assign(found.begin(), found.end());
     }
     for (const Contact& c : contacts) {
-        const auto source = static_cast<int>(c.vertex);
-        const auto target = static_cast<int>(c.feature == Feature::edges ? c.triangle / 3 : c.triangle);
-        const bool of_a = c.vertex_body == VertexBody::a;
+        const auto source = static_cast<int>(c.feature.source_index());
+        const std::uint32_t other = c.feature.other_index();
+        const auto target = static_cast<int>(c.feature.kind == FeatureKind::edges ? other / 3 : other);
+        const bool of_a = c.feature.source == Side::a;
         const Leaf &source_leaf = of_a ? a.leaf : b.leaf, &target_leaf = of_a ? b.leaf : a.leaf;
-        identify(result, of_a, name_of_feature(source_leaf, {.vertex = source, .feature = c.feature}),
+        identify(result, of_a, name_of_feature(source_leaf, {.vertex = source, .feature = c.feature.kind}),
                  name_of_triangle(target_leaf, target));
-        result.addContactPoint(-normal_of(c), to_bullet(point_on_b(c)), btScalar(-c.depth));
+        result.addContactPoint(-normal_of(c), to_bullet(c.point_b), btScalar(-c.depth));
     }
 }
 

@@ -14,7 +14,7 @@ struct WorldRecorder::State {
 WorldRecorder::WorldRecorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options)
     : state_(std::make_unique<State>(State{Recorder(file, scene, options)})) {}
 void WorldRecorder::step() {
-    state_->recorder.step();
+    state_->recorder.record();
 }
 void WorldRecorder::finish() {
     state_->recorder.finish();

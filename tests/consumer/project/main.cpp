@@ -15,10 +15,10 @@ int main() {
     raycontact::Scene scene;
     scene.add(shape);
     scene.add(shape, {.translation = {0.8, 0.7, 0.6}});
-    for (const auto& contact : scene.step()) {
-        std::printf("%s: depth %.3f, normal %.1f %.1f %.1f\n", raycontact::contact_key(contact).c_str(),
-                    static_cast<double>(contact.depth), static_cast<double>(contact.normal[0]),
-                    static_cast<double>(contact.normal[1]), static_cast<double>(contact.normal[2]));
+    for (const auto& contact : scene.find_contacts()) {
+        std::printf("%016llx: depth %.3f, normal %.1f %.1f %.1f\n", static_cast<unsigned long long>(contact.key()),
+                    static_cast<double>(contact.depth), static_cast<double>(contact.normal.x),
+                    static_cast<double>(contact.normal.y), static_cast<double>(contact.normal.z));
     }
     return scene.contacts().size() == 4 ? 0 : 1; // a corner in each cube, and twice two edges beside them that pass
 }

@@ -20,8 +20,8 @@ int main(int, char** arguments) {
     raycontact::Recorder recorder(arguments[1], scene, options);
     for (int step = 0; step < 100; ++step) {
         scene.set_pose(moving, {.translation = {-1.0 + 0.02 * step, 0.3, 0.9}});
-        scene.step();
-        recorder.step();
+        scene.find_contacts();
+        recorder.record();
     }
     recorder.finish();
     std::printf("%u steps, hash %s\n", recorder.steps(), recorder.hash().c_str());

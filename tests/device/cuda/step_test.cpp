@@ -26,7 +26,7 @@ std::vector<Contact> step_on(std::vector<OpenDevice> devices, const MovingCrowd&
                              StepStats& stats) {
     Settings settings;
     settings.method = method;
-    settings.schedule = Schedule::counted;
+    settings.execution.schedule = Schedule::counted;
     NarrowPhase narrow(settings, std::move(devices));
     for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
     std::vector<Contact> contacts;

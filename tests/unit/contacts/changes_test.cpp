@@ -4,6 +4,7 @@
 #include "reference/random.h"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
 #include <set>
 #include <tuple>
@@ -11,7 +12,7 @@
 namespace raycontact {
 namespace {
 
-using Key = std::tuple<std::uint32_t, std::uint32_t, VertexBody, std::uint32_t>;
+using Key = std::tuple<std::uint32_t, std::uint32_t, Side, std::uint32_t>;
 
 TEST(Changes, AreTheDifferencesOfTwoSteps) {
     reference::Random random(1);
@@ -22,16 +23,16 @@ TEST(Changes, AreTheDifferencesOfTwoSteps) {
         const std::uint32_t count = step % 40 == 39 ? 0 : random.below(30);
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t a = random.below(3), b = a + 1 + random.below(2);
-            now.insert({a, b, random.below(2) ? VertexBody::a : VertexBody::b, random.below(3)});
+            now.insert({a, b, random.below(2) ? Side::a : Side::b, random.below(3)});
         }
         std::vector<Contact> contacts;
         for (const auto& [a, b, body, vertex] : now) {
             Contact contact;
-            contact.body_a = a;
-            contact.body_b = b;
-            contact.vertex_body = body;
-            contact.vertex = vertex;
-            contact.triangle = random.below(1000); // no part of the key
+            contact.body_a = {a};
+            contact.body_b = {b};
+            const std::uint32_t other = random.below(1000); // no part of the key
+            const bool from_a = body == Side::a;
+            contact.feature = {FeatureKind::vertex, body, from_a ? vertex : other, from_a ? other : vertex};
             contact.is_new = random.below(2) != 0;
             contact.depth = random.below(3) == 0 ? -1.0f : 1.0f; // speculative, or touching
             if (contact.depth > 0) touches.insert({a, b, body, vertex});
@@ -40,18 +41,52 @@ TEST(Changes, AreTheDifferencesOfTwoSteps) {
         changes.mark(contacts);
         std::size_t came = 0;
         for (const Contact& c : contacts) {
-            const auto& known = is_speculative(c) ? before : touched;
-            EXPECT_EQ(c.is_new, !known.contains({c.body_a, c.body_b, c.vertex_body, c.vertex}));
-            came += c.is_new && !is_speculative(c);
+            const auto& known = c.is_speculative() ? before : touched;
+            EXPECT_EQ(c.is_new,
+                      !known.contains({c.body_a.slot, c.body_b.slot, c.feature.source, c.feature.source_index()}));
+            came += c.is_new && !c.is_speculative();
         }
         EXPECT_EQ(changes.new_count(), came);
         std::vector<Key> lost, expected;
-        for (const LostContact& c : changes.lost()) lost.emplace_back(c.body_a, c.body_b, c.vertex_body, c.vertex);
+        for (const LostContact& c : changes.lost())
+            lost.emplace_back(c.body_a.slot, c.body_b.slot, c.feature.source, c.feature.source_index());
         std::set_difference(touched.begin(), touched.end(), touches.begin(), touches.end(),
                             std::back_inserter(expected));
         EXPECT_EQ(lost, expected); // in order
         before.swap(now);
         touched.swap(touches);
+    }
+}
+
+TEST(Changes, LostContactsTellAllThatTheirKeyTells) {
+    constexpr std::uint32_t none = ContactFeature::no_index, most_edge = 0x7ffffffeu, most_vertex = 0xfffffffdu;
+    const std::vector<ContactFeature> features{
+        {FeatureKind::vertex, Side::a, 0, 7},           {FeatureKind::vertex, Side::a, most_vertex, 7},
+        {FeatureKind::vertex, Side::b, 7, 0},           {FeatureKind::vertex, Side::b, 7, most_vertex},
+        {FeatureKind::edges, Side::a, 0, most_edge},    {FeatureKind::edges, Side::a, 1, 0},
+        {FeatureKind::edges, Side::a, most_edge, 0},    {FeatureKind::edges, Side::a, most_edge, most_edge},
+        {FeatureKind::inside, Side::a, most_vertex, 7}, {FeatureKind::inside, Side::b, 7, 3}};
+    std::vector<Contact> contacts;
+    for (const ContactFeature& feature : features) {
+        Contact& contact = contacts.emplace_back();
+        contact.body_a = {3, 1};
+        contact.body_b = {5, 2};
+        contact.feature = feature;
+        contact.depth = 1;
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(contacts, std::ranges::less_equal(), &Contact::key)); // and no key twice
+    Changes changes;
+    changes.mark(contacts);
+    changes.mark({});
+    ASSERT_EQ(changes.lost().size(), features.size());
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        const LostContact& lost = changes.lost()[i];
+        ContactFeature told = features[i];
+        if (told.kind != FeatureKind::edges) (told.source == Side::a ? told.index_b : told.index_a) = none;
+        EXPECT_TRUE(lost.feature == told) << i;
+        EXPECT_EQ(lost.key(), contacts[i].key()) << i;
+        EXPECT_EQ(lost.body_a, (BodyId{3, 1}));
+        EXPECT_EQ(lost.body_b, (BodyId{5, 2}));
     }
 }
 

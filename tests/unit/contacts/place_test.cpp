@@ -37,7 +37,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         }
     }
     std::vector<Contact> contacts(local.size()); // as a step with edges leaves it to the next
-    for (Contact& contact : contacts) contact.feature = Feature::edges;
+    for (Contact& contact : contacts) contact.feature.kind = FeatureKind::edges;
     Placer placer;
     placer.run(*opened.executor, Direction::ray, bodies, pairs, local, contacts);
 
@@ -45,11 +45,11 @@ TEST(Placer, SortsTheContactsOfEachPair) {
               [](const auto& a, const auto& b) { return std::pair(a.pair, a.vertex) < std::pair(b.pair, b.vertex); });
     ASSERT_EQ(contacts.size(), local.size());
     for (std::size_t i = 0; i < local.size(); ++i) {
-        EXPECT_EQ(contacts[i].body_a, local[i].pair / 2 * 2);
-        EXPECT_EQ(contacts[i].vertex_body, local[i].pair % 2 == 0 ? VertexBody::a : VertexBody::b);
-        EXPECT_EQ(contacts[i].vertex, shape->data().mesh.vertex_index[local[i].vertex]);
+        EXPECT_EQ(contacts[i].body_a.slot, local[i].pair / 2 * 2);
+        EXPECT_EQ(contacts[i].feature.source, local[i].pair % 2 == 0 ? Side::a : Side::b);
+        EXPECT_EQ(contacts[i].feature.source_index(), shape->data().mesh.vertex_index[local[i].vertex]);
         EXPECT_EQ(contacts[i].ray_length, local[i].distance);
-        EXPECT_EQ(contacts[i].feature, Feature::vertex);
+        EXPECT_EQ(contacts[i].feature.kind, FeatureKind::vertex);
     }
 }
 
@@ -67,7 +67,7 @@ TEST(Placer, MakesNormalDepthAndWeightByTheDirection) {
         Placer().run(*opened.executor, direction, bodies, pairs, local, contacts);
         return contacts;
     };
-    using Normal = std::array<float, 3>;
+    using Normal = Vec3f;
     const auto reprojected = place(Direction::reprojected);
     EXPECT_EQ(reprojected[0].normal, (Normal{-1, 0, 0})); // away from b's face
     EXPECT_EQ(reprojected[1].normal, (Normal{0, 1, 0}));  // away from a's face, which is turned

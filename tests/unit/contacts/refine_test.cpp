@@ -49,9 +49,9 @@ TEST(Refined, LeavesByTheNearerSlopeOfARidge) {
     ASSERT_EQ(refined.size(), 1u);
     EXPECT_NEAR(reprojected[0].depth, dot(right, Vec3{0, 0, 1} - tip), 1e-6);
     EXPECT_NEAR(refined[0].depth, dot(left, Vec3{0, 0, 1} - tip), 1e-6);
-    EXPECT_NEAR(refined[0].normal[0], -left.x, 1e-6); // from the needle to the roof
-    EXPECT_NEAR(refined[0].normal[2], -left.z, 1e-6);
-    EXPECT_GE(refined[0].triangle, 6u); // of the left slope
+    EXPECT_NEAR(refined[0].normal.x, -left.x, 1e-6); // from the needle to the roof
+    EXPECT_NEAR(refined[0].normal.z, -left.z, 1e-6);
+    EXPECT_GE(refined[0].feature.other_index(), 6u); // of the left slope
     EXPECT_EQ(refined[0].ray_length, reprojected[0].ray_length);
 }
 
@@ -63,7 +63,7 @@ TEST(Refined, ACubeOnACubeLeavesUpwards) {
     const auto contacts = vertices_of(cube, pose, cube, Direction::refined);
     ASSERT_FALSE(contacts.empty());
     for (const Contact& contact : contacts) {
-        EXPECT_NEAR(contact.normal[2], -1, 1e-6);
+        EXPECT_NEAR(contact.normal.z, -1, 1e-6);
         EXPECT_NEAR(contact.depth, 0.001, 1e-6);
     }
 }

@@ -131,7 +131,7 @@ TEST(Load, NoTextOfOursFollowsTheHostsLocale) {
             all += error.what();
         }
         Settings settings;
-        settings.confidence = 0.5;
+        settings.paper.confidence = 0.5;
         try {
             check_settings(settings);
         } catch (const InputError& error) {

@@ -95,7 +95,7 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
             a->end(found);
             b->end(others);
             found.insert(found.end(), others.begin(), others.end());
-            std::ranges::stable_sort(found, {}, [](const Contact& c) { return SlotPair(c.body_a, c.body_b); });
+            std::ranges::stable_sort(found, {}, [](const Contact& c) { return pair_of(c); });
             ASSERT_TRUE(device_test::same(found, expected)) << to_string(method) << ", step " << step;
             contacts += found.size();
         }

@@ -33,7 +33,7 @@ TEST(Collide, FindsWhatASceneFinds) {
                 scene.add(p.a->shape, p.pose_a);
                 scene.add(p.b->shape, p.pose_b);
                 const Pair pair{0, 1};
-                const auto expected = scene.step({&pair, 1});
+                const auto expected = scene.find_contacts({&pair, 1});
                 const auto found = collide(*p.a->shape, p.pose_a, *p.b->shape, p.pose_b,
                                            {.direction = direction, .features = features});
                 EXPECT_TRUE(same_bits(expected, found));
@@ -52,14 +52,14 @@ TEST(Collide, WitnessPointsAreADepthApart) {
                                       : collide(*small, at(0, 0, 0.6), *box, at(0, 0, 0));
         ASSERT_FALSE(contacts.empty());
         for (const Contact& c : contacts) {
-            const Vec3 a = point_on_a(c), b = point_on_b(c);
+            const Vec3 a = c.point_a, b = c.point_b;
             EXPECT_NEAR(a.z, swapped ? 0.5 : 0.4, 1e-6);
             EXPECT_NEAR(b.z, swapped ? 0.4 : 0.5, 1e-6);
             EXPECT_NEAR(c.depth, 0.1, 1e-6);
             const Vec3 apart{a.x - b.x, a.y - b.y, a.z - b.z};
-            EXPECT_NEAR(apart.x, double(c.depth) * double(c.normal[0]), 1e-6);
-            EXPECT_NEAR(apart.y, double(c.depth) * double(c.normal[1]), 1e-6);
-            EXPECT_NEAR(apart.z, double(c.depth) * double(c.normal[2]), 1e-6);
+            EXPECT_NEAR(apart.x, double(c.depth) * double(c.normal.x), 1e-6);
+            EXPECT_NEAR(apart.y, double(c.depth) * double(c.normal.y), 1e-6);
+            EXPECT_NEAR(apart.z, double(c.depth) * double(c.normal.z), 1e-6);
         }
     }
 }

@@ -50,11 +50,11 @@ scenes::RunLog small_log() {
         scenes::StepRow row;
         row.step = step;
         row.pairs = 1234 + step;
-        row.rays = 56789 + step;
+        row.details.rays = 56789 + step;
         row.contacts = step < 5 ? 0 : 4321 + step;
         row.step_ms = 12.625;
         row.narrow_ms = 7.375;
-        row.ray_length = 3.0625;
+        row.details.ray_length = 3.0625;
         row.penetration_max = 0.015625;
         row.median_speed = 2.03125;
         log.rows.push_back(row);

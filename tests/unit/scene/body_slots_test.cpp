@@ -17,7 +17,7 @@ BodyId add(BodySlots& slots) {
 
 TEST(BodySlots, IdsCountUpFromZero) {
     BodySlots slots;
-    for (BodyId i = 0; i < 100; ++i) EXPECT_EQ(add(slots), i);
+    for (std::uint32_t i = 0; i < 100; ++i) EXPECT_EQ(add(slots), BodyId{i});
     EXPECT_EQ(slots.count(), 100u);
     EXPECT_EQ(slots.end(), 100u);
 }
@@ -26,10 +26,10 @@ TEST(BodySlots, TheLowestFreeSlotIsGiven) {
     BodySlots slots;
     for (int i = 0; i < 6; ++i) add(slots);
     for (const BodySlot slot : {4u, 1u, 3u}) slots.take_back(slot); // no step has seen them
-    EXPECT_EQ(add(slots), body_id(1, 1));
-    EXPECT_EQ(add(slots), body_id(3, 1));
-    EXPECT_EQ(add(slots), body_id(4, 1));
-    EXPECT_EQ(add(slots), body_id(6, 0));
+    EXPECT_EQ(add(slots), (BodyId{1, 1}));
+    EXPECT_EQ(add(slots), (BodyId{3, 1}));
+    EXPECT_EQ(add(slots), (BodyId{4, 1}));
+    EXPECT_EQ(add(slots), (BodyId{6, 0}));
 }
 
 TEST(BodySlots, ASlotThatAStepSawRestsUntilOneSawItEmpty) {
@@ -38,16 +38,16 @@ TEST(BodySlots, ASlotThatAStepSawRestsUntilOneSawItEmpty) {
     add(slots);
     slots.step_done();
     slots.take_back(0);
-    EXPECT_EQ(add(slots), 2u);
+    EXPECT_EQ(add(slots), BodyId{2});
     slots.take_back(2);
-    EXPECT_EQ(add(slots), body_id(2, 1)); // this one no step has seen
+    EXPECT_EQ(add(slots), (BodyId{2, 1})); // this one no step has seen
     EXPECT_EQ(slots.end(), 3u);
     slots.step_done();
-    EXPECT_EQ(add(slots), body_id(0, 1));
-    EXPECT_FALSE(slots.is_there(0));
-    EXPECT_TRUE(slots.was_given(0));
-    EXPECT_FALSE(slots.was_given(body_id(0, 2)));
-    EXPECT_FALSE(slots.was_given(3));
+    EXPECT_EQ(add(slots), (BodyId{0, 1}));
+    EXPECT_FALSE(slots.is_there(BodyId{0}));
+    EXPECT_TRUE(slots.was_given(BodyId{0}));
+    EXPECT_FALSE(slots.was_given(BodyId{0, 2}));
+    EXPECT_FALSE(slots.was_given(BodyId{3}));
 }
 
 TEST(BodySlots, ListsEndWhereTheLastBodyIs) {
@@ -58,7 +58,7 @@ TEST(BodySlots, ListsEndWhereTheLastBodyIs) {
     EXPECT_EQ(slots.end(), 1000u); // a step has to see that they are empty
     slots.step_done();
     EXPECT_EQ(slots.end(), 2u);
-    EXPECT_EQ(add(slots), body_id(2, 1));
+    EXPECT_EQ(add(slots), (BodyId{2, 1}));
     EXPECT_EQ(slots.end(), 3u);
 }
 
@@ -70,10 +70,10 @@ TEST(BodySlots, AStaleIdStaysOneAfterTwoToThe31Uses) {
         slots.take_back(0);
     }
     const BodyId now = add(slots);
-    EXPECT_EQ(generation_of(now), (std::uint32_t{1} << 31) + 4);
+    EXPECT_EQ(now.generation, (std::uint32_t{1} << 31) + 4);
     EXPECT_TRUE(slots.is_there(now));
     for (const BodyId id : old) EXPECT_FALSE(slots.is_there(id));
-    EXPECT_FALSE(slots.is_there(0)); // of the first use
+    EXPECT_FALSE(slots.is_there(BodyId{0})); // of the first use
 }
 
 TEST(BodySlots, ASlotOutOfGenerationsIsNeverGivenAgain) {
@@ -81,14 +81,14 @@ TEST(BodySlots, ASlotOutOfGenerationsIsNeverGivenAgain) {
     const BodyId first = add(slots);
     slots.take_back(0);
     const BodyId last = add(slots);
-    EXPECT_EQ(last, body_id(0, 0xffffffffu));
+    EXPECT_EQ(last, (BodyId{0, 0xffffffffu}));
     slots.take_back(0);
     EXPECT_EQ(slots.end(), 0u);
     for (int i = 0; i < 3; ++i) {
         const BodyId id = add(slots);
-        EXPECT_GT(slot_of(id), 0u);
+        EXPECT_GT(id.slot, 0u);
         slots.step_done();
-        slots.take_back(slot_of(id));
+        slots.take_back(id.slot);
         slots.step_done();
     }
     EXPECT_FALSE(slots.is_there(first));
@@ -112,19 +112,19 @@ TEST(BodySlots, AMillionComeAndGo) {
             seen = there;
         } else if (there.size() < 16 && event < 5) {
             const BodyId id = add(slots);
-            ASSERT_LT(slot_of(id), 64u);
+            ASSERT_LT(id.slot, 64u);
             ASSERT_TRUE(there.insert(id).second);
-            ASSERT_FALSE(resting.contains(slot_of(id)));
-            if (generation_of(id) > 0) {
-                ASSERT_EQ(id, last_of_slot[slot_of(id)] + body_id(0, 1));
+            ASSERT_FALSE(resting.contains(id.slot));
+            if (id.generation > 0) {
+                ASSERT_EQ(id, (BodyId{id.slot, last_of_slot[id.slot].generation + 1}));
             }
-            last_of_slot[slot_of(id)] = id;
+            last_of_slot[id.slot] = id;
         } else if (!there.empty()) {
             auto gone = there.begin();
             std::advance(gone, random() % there.size());
-            slots.take_back(slot_of(*gone));
+            slots.take_back(gone->slot);
             ASSERT_FALSE(slots.is_there(*gone));
-            if (seen.contains(*gone)) resting.insert(slot_of(*gone));
+            if (seen.contains(*gone)) resting.insert(gone->slot);
             there.erase(gone);
         }
         ASSERT_EQ(slots.count(), there.size());

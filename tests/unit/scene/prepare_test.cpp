@@ -47,13 +47,13 @@ TEST(Prepare, ComesAfterASecondMeetingAndNotBefore) {
         scene.add(a);
         scene.add(b, {.translation = {0.3, 0, 0}});
         scene.add(lonely, {.translation = {100, 0, 0}});
-        scene.step();
+        scene.find_contacts();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         EXPECT_FALSE(a->is_prepared() || b->is_prepared()) << "one query";
-        scene.step();
+        scene.find_contacts();
         wait_until_prepared(*a);
         wait_until_prepared(*b);
-        scene.step();
+        scene.find_contacts();
         EXPECT_FALSE(lonely->is_prepared());
     }
 }
@@ -66,7 +66,7 @@ TEST(Prepare, MethodsThatFollowRaysDoSoFirst) {
         Scene scene(settings);
         scene.add(a);
         scene.add(b, {.translation = {0.3, 0, 0}});
-        scene.step();
+        scene.find_contacts();
         EXPECT_TRUE(a->is_prepared() && b->is_prepared());
     }
 }
@@ -94,7 +94,7 @@ TEST(Prepare, NoContactDependsOnWhen) {
             }
             Settings settings;
             settings.method = method;
-            settings.threads = 2;
+            settings.execution.threads = 2;
             Scene scene(settings), reference(settings);
             std::vector<Pose> poses;
             std::vector<Vec3> ways;
@@ -108,12 +108,12 @@ TEST(Prepare, NoContactDependsOnWhen) {
             for (std::uint32_t step = 0; step < 40; ++step) {
                 if (run < 3 && step == 5u * static_cast<std::uint32_t>(run)) shapes[step % 4]->prepare(1);
                 if (run == 3 && step == 20) scene.prepare();
-                for (BodyId i = 0; i < 12; ++i) {
+                for (std::uint32_t i = 0; i < 12; ++i) {
                     poses[i].translation = poses[i].translation + ways[i];
-                    scene.set_pose(i, poses[i]);
-                    reference.set_pose(i, poses[i]);
+                    scene.set_pose({i}, poses[i]);
+                    reference.set_pose({i}, poses[i]);
                 }
-                ASSERT_TRUE(same_bits(scene.step(), reference.step())) << "step " << step;
+                ASSERT_TRUE(same_bits(scene.find_contacts(), reference.find_contacts())) << "step " << step;
                 contacts += scene.contacts().size();
             }
         }
@@ -132,7 +132,7 @@ TEST(Prepare, ASceneThatGoesDoesNotWait) {
             Scene scene(settings);
             scene.add(shape);
             scene.add(shape, {.translation = {0.99 * (shape->box_max().x - shape->box_min().x), 0, 0}});
-            for (int k = 0; k < 3; ++k) scene.step();
+            for (int k = 0; k < 3; ++k) scene.find_contacts();
         }
         waited = shape->is_prepared();
         shape->prepare();

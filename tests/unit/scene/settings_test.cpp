@@ -26,7 +26,7 @@ TEST(Settings, ValuesThatAnEnumerationDoesNotHaveAreRefused) {
     settings.method = static_cast<Method>(77);
     expect_refused(settings, "method");
     settings = {};
-    settings.caster = static_cast<Caster>(9);
+    settings.paper.caster = static_cast<Caster>(9);
     expect_refused(settings, "caster");
     settings = {};
     settings.direction = static_cast<Direction>(-1);
@@ -35,7 +35,7 @@ TEST(Settings, ValuesThatAnEnumerationDoesNotHaveAreRefused) {
     settings.features = static_cast<Features>(2);
     expect_refused(settings, "features");
     settings = {};
-    settings.schedule = static_cast<Schedule>(3);
+    settings.execution.schedule = static_cast<Schedule>(3);
     expect_refused(settings, "schedule");
     const auto box = Shape::make(reference::box_mesh({0.5, 0.5, 0.5}));
     EXPECT_THROW(collide(*box, {}, *box, {}, {.direction = static_cast<Direction>(9)}), InputError);

@@ -111,8 +111,8 @@ TEST(MovingPairs, AreThoseOfTheBodiesWithLeastToCarry) {
     const std::vector<SlotPair> pairs{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {4, 5}};
     std::vector<Contact> contacts(12);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        contacts[i].body_a = i < 4 ? 0 : 4;
-        contacts[i].body_b = 5;
+        contacts[i].body_a = {i < 4 ? 0u : 4u};
+        contacts[i].body_b = {5};
     }
     // 18 in all: {0, 5} weighs 5, {4, 5} 9, the others 1 each.
     const MovingPairs some = choose_moving(pairs, contacts, 0.12);

@@ -73,7 +73,7 @@ struct PointKey {
     /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of edges as Contact::vertex. A
     /// ball's or capsule's: any number that stays.
     int vertex = 0;
-    Feature feature = Feature::vertex;
+    FeatureKind feature = FeatureKind::vertex;
     int other = 0; ///< of edges that of the other body, as Contact::triangle; of other features 0
     friend bool operator==(const PointKey&, const PointKey&) = default;
 };

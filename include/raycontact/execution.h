@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/library_mode.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace raycontact {
+
+/// Which of several devices a pair is on.
+enum class Schedule {
+    balanced, ///< where it came first, unless devices are loaded unevenly for several steps: then pairs move
+    sticky,   ///< where it came first, as long as it is open (paper section 4)
+    counted,  ///< as balanced, but what a unit of load costs is set, not measured, so that a run repeats exactly
+};
+
+/// How a scene is run. Nothing here changes a bit of the result, but for `inexact`. Fixed once a Scene is made.
+struct Execution {
+    /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
+    /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
+    /// where the driver divides the device, is its k-th core alone.
+    std::string devices = "auto";
+    std::uint32_t threads = 0; ///< of the host; 0: one per core
+    Schedule schedule = Schedule::balanced;
+    /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
+    bool inexact = false;
+    friend bool operator==(const Execution&, const Execution&) = default;
+};
+
+/// The word of the command line; throws InputError naming what is known.
+Schedule schedule_from(std::string_view word);
+std::string_view to_string(Schedule);
+
+} // namespace raycontact
