@@ -2,17 +2,20 @@
 // How well the schedules share pairs among 2 to 16 devices, by a simulation: the pairs of a recording, copied up to a
 // million, each with a cost that was measured in a replay. Prints for each schedule the efficiency (all work / devices
 // x the slowest device's, 1 is best) and what moves between devices in a step. `free` cuts each step's list of pairs
-// into equal pieces: what keeping pairs where they are is worth. Usage: raycontact_bench_balance RECORDING [FIRST LAST]
+// into equal pieces: what keeping pairs where they are is worth.
+#include "bench/commands.h"
+#include "bench/options.h"
 #include "schedule/assignment.h"
 #include "schedule/moving_pairs.h"
 
+#include <raycontact/error.h>
 #include <recording/replay.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace rc = raycontact;
 
@@ -156,15 +159,9 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
     return {ideal / slowest, 1000 * moved / opened};
 }
 
-int run(int count, char** words) {
-    if (count != 2 && count != 4) {
-        std::fprintf(stderr, "usage: raycontact_bench_balance RECORDING [FIRST LAST]\n");
-        return 2;
-    }
-    const std::uint32_t first = count == 4 ? std::uint32_t(std::atoi(words[2])) : 0;
-    const std::uint32_t last = count == 4 ? std::uint32_t(std::atoi(words[3])) : 0xffffffffU;
-    const Work work = read_work(words[1], first, last);
-    if (work.steps.empty()) throw std::runtime_error("no steps in that range");
+void run(const std::string& recording, std::uint32_t first, std::uint32_t last) {
+    const Work work = read_work(recording, first, last);
+    if (work.steps.empty()) throw rc::InputError(recording + ": no steps in that range");
     const std::size_t most =
         std::ranges::max(work.steps, {}, [](const Step& s) { return s.pairs.size(); }).pairs.size();
     std::printf("%zu steps, at most %zu pairs; a pair costs %.0f ns and each contact %.0f ns more (standard, one "
@@ -187,16 +184,26 @@ int run(int count, char** words) {
                 }
             }
     }
-    return 0;
 }
 
 } // namespace
 
-int main(int count, char** words) {
-    try {
-        return run(count, words);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_balance: %s\n", error.what());
-        return 1;
-    }
+namespace raycontact::bench {
+
+void add_balance(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("balance", "How well the schedules share pairs among 2 to 16 devices, by simulation");
+    struct Options {
+        std::string recording;
+        std::uint32_t first = 0, last = ~0u;
+    };
+    auto o = std::make_shared<Options>();
+    command->add_option("recording", o->recording, "poses and pairs (run --record)")
+        ->required()
+        ->type_name("RECORDING");
+    add_number(*command, "first", o->first, "first step", 0u, ~0u);
+    add_number(*command, "last", o->last, "and where it ends", 0u, ~0u);
+    command->callback([o] { run(o->recording, o->first, o->last); });
 }
+
+} // namespace raycontact::bench

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `raycontact clash` takes: parts of four shapes on a grid, near enough that neighbours reach into each other, all
 // of different meshes (each a little longer than the last) or placed over and over. Seconds.
-// Usage: raycontact_bench_clash [--parts N] [--triangles N]: 1000 and 10000 unless told.
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <clash/search.h>
 #include <scenes/models/model.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 namespace rc = raycontact;
@@ -61,21 +59,20 @@ void measure(std::size_t count, std::uint32_t triangles, bool different) {
 
 } // namespace
 
-int main(int argc, char** argv) try {
-    std::size_t count = 1000;
-    std::uint32_t triangles = 10000;
-    for (int i = 1; i < argc; i += 2) {
-        const unsigned long value = i + 1 < argc ? std::strtoul(argv[i + 1], nullptr, 10) : 0;
-        if (value > 0 && std::strcmp(argv[i], "--parts") == 0)
-            count = value;
-        else if (value > 0 && std::strcmp(argv[i], "--triangles") == 0)
-            triangles = static_cast<std::uint32_t>(value);
-        else
-            throw std::runtime_error("usage: raycontact_bench_clash [--parts N] [--triangles N]");
-    }
-    for (const bool different : {false, true}) measure(count, triangles, different);
-    return 0;
-} catch (const std::exception& error) {
-    std::fprintf(stderr, "raycontact_bench_clash: %s\n", error.what());
-    return 1;
+namespace raycontact::bench {
+
+void add_clash(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("clash", "What a clash search takes: parts that are all different, or placed over and over");
+    struct Size {
+        std::uint32_t parts = 1000, triangles = 10000;
+    };
+    auto size = std::make_shared<Size>();
+    add_number(*command, "--parts", size->parts, "of the assembly", 1u, 10'000'000u);
+    add_number(*command, "--triangles", size->triangles, "of each part", 1u, 10'000'000u);
+    command->callback([size] {
+        for (const bool different : {false, true}) measure(size->parts, size->triangles, different);
+    });
 }
+
+} // namespace raycontact::bench

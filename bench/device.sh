@@ -6,7 +6,8 @@
 # ${OUT:-bench/results/<machine>}. Needs no arguments, no root and, packed or built, no network. Without a GPU it runs
 # on opencl:0 and says so. Tests are run where build/ has them (scripts/test builds them).
 #
-#   bench/device.sh                     builds first, unless it finds a pack or RAYCONTACT_BINARY=PROGRAM
+#   bench/device.sh                     builds first, unless it finds a pack or RAYCONTACT_BINARY=PROGRAM, which has
+#                                       raycontact-bench beside it
 #   bench/device.sh --pack DIR          builds, and gathers in DIR what a bare machine needs: copy DIR, run DIR/device.sh
 #
 # A pack is found beside this script, or in the folder device-pack beside it. Status: 0 fine, 1 a device failed or its
@@ -30,14 +31,14 @@ die() { printf 'device.sh: %s\n' "$*" >&2; exit 2; }
 
 usage() { sed -n '/^# Steps/,/^# BASIC/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 
-# build: the program at build/bin/raycontact. Says what a machine without packages lacks.
+# build: build/bin/raycontact and raycontact-bench. Says what a machine without packages lacks.
 build() {
     local tool
     local -a missing=()
     for tool in cmake ninja "${CXX:-c++}"; do command -v "$tool" >/dev/null || missing+=("$tool"); done
-    "$here/../scripts/build" >&2 && return
+    "$here/../scripts/bench" >/dev/null && return
     [ ${#missing[@]} = 0 ] || say "missing here: ${missing[*]}"
-    die "the program could not be built: that takes cmake, ninja, a C++20 compiler and the packages of scripts/setup.sh.
+    die "the programs could not be built: that takes cmake, ninja, a C++20 compiler and the packages of scripts/setup.sh.
   Without them or without a network, run \`bench/device.sh --pack DIR\` on a machine that has them, copy DIR here and run
   DIR/device.sh, or name a program with RAYCONTACT_BINARY=PROGRAM"
 }
@@ -70,20 +71,20 @@ pack() {
     # shellcheck disable=SC2064 # its value now
     trap "rm -rf '$work'" EXIT
 
-    say "program, tests and libraries"
+    say "programs, tests and libraries"
     mkdir "$work/libraries" "$work/tests"
-    cp build/bin/raycontact "$work/"
+    cp build/bin/raycontact build/bin/raycontact-bench "$work/"
     if [ -x build/bin/opencl_kernels_test ]; then
         cp build/bin/opencl_*_test "$work/tests/"
     else
         say "build/ has no tests of devices: the pack measures, and checks hashes alone; scripts/test builds them"
     fi
-    for program in "$work/raycontact" "$work"/tests/*; do
+    for program in "$work/raycontact" "$work/raycontact-bench" "$work"/tests/*; do
         [ -x "$program" ] || continue
         strip "$program" 2>/dev/null || true
         while read -r library; do cp -L "$library" "$work/libraries/"; done < <(libraries_of "$program")
     done
-    tar -C "$work" -cf - raycontact tests libraries | xz -3 -T0 >"$pack/program.tar.xz"
+    tar -C "$work" -cf - raycontact raycontact-bench tests libraries | xz -3 -T0 >"$pack/program.tar.xz"
 
     say "a recording, and its hashes on this CPU"
     build/bin/raycontact run avalanche --steps "$recorded_steps" --speculative off --json --record "$pack/avalanche.glb" >/dev/null
@@ -91,7 +92,7 @@ pack() {
     : >"$pack/hashes.txt"
     for range in $default_ranges; do
         rm -rf "$work/golden"
-        build/bin/raycontact bench device --recording "$pack/avalanche.glb" --steps "$range" --devices cpu --runs 1 \
+        build/bin/raycontact-bench device --recording "$pack/avalanche.glb" --steps "$range" --devices cpu --runs 1 \
             --basic-steps "${BASIC_STEPS:-4}" --out "$work/golden" >/dev/null 2>&1
         hashes_of "$(find "$work/golden" -name '*.csv')" >>"$pack/hashes.txt"
     done
@@ -173,7 +174,8 @@ else
     build
     program=$here/../build/bin/raycontact
 fi
-[ -x "$program" ] || die "$program is no program"
+benchmarks=$(dirname "$program")/raycontact-bench
+for file in "$program" "$benchmarks"; do [ -x "$file" ] || die "$file is no program"; done
 if ! "$program" devices >"$work/devices.txt" 2>"$work/error.txt"; then
     cat "$work/error.txt" >&2
     ldd "$program" 2>/dev/null | grep 'not found' >&2 || true
@@ -265,8 +267,8 @@ measure() {
     if [ "$number" != 1 ]; then how+=(--casters bvh); fi
     say "$device, steps $range, $number times"
     rm -rf "$work/out"
-    { echo; echo "bench device ${how[*]}"; } >>"$log"
-    "$program" bench device "${how[@]}" --out "$work/out" >>"$log" 2>&1 || rc=$?
+    { echo; echo "raycontact-bench device ${how[*]}"; } >>"$log"
+    "$benchmarks" device "${how[@]}" --out "$work/out" >>"$log" 2>&1 || rc=$?
     if [ $rc != 0 ]; then
         status=1
         say "FAILED with status $rc: $(tail -n 1 "$log")"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a floor costs in Bullet: 144 bodies of a mesh dropped on a plane, a mesh of 12 triangles, a btBoxShape that is
 // ours, and one that is left to Bullet. Prints medians of the last three seconds of five, in milliseconds.
-// Usage: raycontact_bench_floor [--rounds N] [--slide]: the grounds by turns, N times (3); bodies that slide for ever,
-// without friction.
-#include <bench/peers/files.h>
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
 #include <scenes/models/model.h>
+#include <scenes/peers/clock.h>
 #include <scenes/random.h>
 #include <scenes/stacks/solids.h>
 
@@ -15,14 +16,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace rc = raycontact;
+using rc::peers::median;
 
 namespace {
 
@@ -36,11 +35,6 @@ constexpr const char* names[] = {"plane", "slab", "box", "box (Bullet)"};
 
 double milliseconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 /// Times the detection within each step.
@@ -126,41 +120,38 @@ std::shared_ptr<const rc::Shape> torus(std::uint32_t triangles) {
     return rc::Shape::make(mesh);
 }
 
-} // namespace
-
-int main(int count, char** words) {
-    try {
-        int rounds = 3;
-        bool slide = false;
-        for (int i = 1; i < count; ++i) {
-            if (std::strcmp(words[i], "--slide") == 0)
-                slide = true;
-            else if (i + 1 < count && std::strcmp(words[i], "--rounds") == 0)
-                rounds = std::max(1, std::atoi(words[++i]));
-            else
-                throw std::runtime_error("usage: raycontact_bench_floor [--rounds N] [--slide]");
-        }
-        const std::pair<const char*, std::shared_ptr<const rc::Shape>> meshes[] = {
-            {"box, 12 triangles", rc::Shape::make(rc::scenes::solid_box({0.8, 0.6, 0.4}))},
-            {"tray, 28 triangles", rc::Shape::make(rc::scenes::solid_tray({0.8, 0.6, 0.4}, 0.05))},
-            {"torus, 600 triangles", torus(600)},
-            {"torus, 2400 triangles", torus(2400)}};
-        std::printf("%s\n%d bodies%s; least of %d medians\n", rc::bench::heading(rc::bench::this_machine()).c_str(),
-                    side * side, slide ? ", sliding" : "", rounds);
-        std::printf("%-22s %-13s %9s %12s %9s %9s\n", "bodies", "floor", "step ms", "detection ms", "contacts",
-                    "lowest m");
-        for (const auto& [name, mesh] : meshes) {
-            Times times[std::size(grounds)];
-            for (int round = 0; round < rounds; ++round)
-                for (std::size_t g = 0; g < std::size(grounds); ++g) run(mesh, grounds[g], slide, times[g]);
-            for (std::size_t g = 0; g < std::size(grounds); ++g)
-                std::printf("%-22s %-13s %9.3f %12.3f %9llu %9.3f\n", name, names[g], times[g].step, times[g].detection,
-                            static_cast<unsigned long long>(times[g].contacts), times[g].lowest);
-            std::fflush(stdout);
-        }
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_floor: %s\n", error.what());
-        return 1;
+void run_all(int rounds, bool slide) {
+    const std::pair<const char*, std::shared_ptr<const rc::Shape>> meshes[] = {
+        {"box, 12 triangles", rc::Shape::make(rc::scenes::solid_box({0.8, 0.6, 0.4}))},
+        {"tray, 28 triangles", rc::Shape::make(rc::scenes::solid_tray({0.8, 0.6, 0.4}, 0.05))},
+        {"torus, 600 triangles", torus(600)},
+        {"torus, 2400 triangles", torus(2400)}};
+    std::printf("%s\n%d bodies%s; least of %d medians\n", heading(rc::report::this_machine()).c_str(), side * side,
+                slide ? ", sliding" : "", rounds);
+    std::printf("%-22s %-13s %9s %12s %9s %9s\n", "bodies", "floor", "step ms", "detection ms", "contacts", "lowest m");
+    for (const auto& [name, mesh] : meshes) {
+        Times times[std::size(grounds)];
+        for (int round = 0; round < rounds; ++round)
+            for (std::size_t g = 0; g < std::size(grounds); ++g) run(mesh, grounds[g], slide, times[g]);
+        for (std::size_t g = 0; g < std::size(grounds); ++g)
+            std::printf("%-22s %-13s %9.3f %12.3f %9llu %9.3f\n", name, names[g], times[g].step, times[g].detection,
+                        static_cast<unsigned long long>(times[g].contacts), times[g].lowest);
+        std::fflush(stdout);
     }
 }
+
+} // namespace
+
+namespace raycontact::bench {
+
+void add_floor(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("floor", "What a floor costs in Bullet: a plane, a mesh of 12 triangles, a btBoxShape");
+    auto rounds = std::make_shared<int>(3);
+    auto slide = std::make_shared<bool>(false);
+    add_number(*command, "--rounds", *rounds, "the grounds by turns, so many times", 1, 1000);
+    command->add_flag("--slide", *slide, "bodies that slide for ever, without friction");
+    command->callback([rounds, slide] { run_all(*rounds, *slide); });
+}
+
+} // namespace raycontact::bench

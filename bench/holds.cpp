@@ -2,22 +2,18 @@
 // What holds: scenes that a user expects to stand, hang, turn or stop, in a Bullet world that differs by one line and
 // its solver: RayContact with recommend(), the same with 1 000 iterations, GImpact and, where all that moves is convex,
 // Bullet's own shapes, both with Bullet's own settings.
-// Usage: raycontact_bench_holds [--only PART OF A NAME] [--finder ours|ours-1000|gimpact|convex] [--seconds S]
-// [--patience S] [--recommended] [--speculative on|off] [--iterations N] [--slop METRES] [--hertz N] [--print FROM TO]
-// [--out DIR]: at most S seconds a scene (20); a run ends early once its steps have taken S seconds; Bullet's finders
-// get the recommended solver, too; contacts of the steps FROM to TO are printed.
-#include <bench/peers/files.h>
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <report/page.h>
 #include <report/svg.h>
 #include <scenes/holds/run.h>
 
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <optional>
-#include <stdexcept>
+#include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace rc = raycontact;
@@ -75,7 +71,7 @@ void print_row(const Row& row) {
     std::fflush(stdout);
 }
 
-std::string csv_row(const rc::bench::Machine& machine, const Row& row) {
+std::string csv_row(const rc::report::Machine& machine, const Row& row) {
     const HoldResult& r = row.result;
     std::string figures;
     for (const Figure& figure : r.figures)
@@ -119,91 +115,84 @@ std::string page(const std::vector<Row>& rows, const std::string& heading, const
     return rc::report::make_page(page);
 }
 
-int run_all(const Options& options) {
-    const rc::bench::Machine machine = rc::bench::this_machine();
-    // What cannot be written is known before the work.
-    std::optional<rc::output::OutFolder> folder;
-    const std::string csv_name = rc::bench::result_name(machine, "holds", ".csv");
-    const std::string page_name = rc::bench::result_name(machine, "holds", ".html");
-    if (!options.out.empty()) {
-        folder.emplace(rc::bench::results_folder(options.out, machine));
-        folder->claim(csv_name);
-        folder->claim(page_name);
-    }
-    std::printf("%s\n%-36s %-8s %8s %5s %8s %4s %9s %9s %9s %6s %8s\n", rc::bench::heading(machine).c_str(), "scene",
-                "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep", "ms/step");
+void run_all(const Options& options) {
+    rc::report::Machine machine = rc::report::this_machine();
+    rc::bench::BenchFiles files(options.out, machine, {"holds"}, {".csv", ".html"});
+    std::printf("%s\n%-36s %-8s %8s %5s %8s %4s %9s %9s %9s %6s %8s\n", heading(machine).c_str(), "scene", "finder",
+                "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep", "ms/step");
     std::string csv = std::string(rc::bench::machine_columns)
                       + ",scene,finder,hertz,seconds,holds,deepest_mm,passed,speed_median_mm_s,speed_max_mm_s,"
                         "moved_mm,asleep_s,step_ms,figures,verdict\n";
     const std::vector<Hold> holds = all_holds();
     std::vector<Row> rows;
-    for (const Hold& hold : holds) {
-        if (hold.name.find(options.only) == std::string::npos) continue;
-        for (const Variant& variant : variants) {
-            if (!options.finder.empty() && variant.name != options.finder) continue;
-            if (variant.finder == Finder::convex && !hold.stack.convex()) continue;
-            HoldOptions asked = options.hold;
-            if (variant.iterations > 0) asked.iterations = variant.iterations;
-            rows.push_back({&hold, variant.name, run_hold(hold, variant.finder, asked)});
-            print_row(rows.back());
-            csv += csv_row(machine, rows.back());
+    rc::bench::until_stopped([&] {
+        for (const Hold& hold : holds) {
+            if (hold.name.find(options.only) == std::string::npos) continue;
+            for (const Variant& variant : variants) {
+                if (!options.finder.empty() && variant.name != options.finder) continue;
+                if (variant.finder == Finder::convex && !hold.stack.convex()) continue;
+                rc::bench::end_if_stopped();
+                HoldOptions asked = options.hold;
+                if (variant.iterations > 0) asked.iterations = variant.iterations;
+                rows.push_back({&hold, variant.name, run_hold(hold, variant.finder, asked)});
+                print_row(rows.back());
+                csv += csv_row(machine, rows.back());
+            }
         }
+    });
+    rc::bench::finish(machine);
+    if (files) {
+        files.folder().write(rc::bench::result_name(machine, "holds", ".csv"), csv);
+        files.folder().write(rc::bench::result_name(machine, "holds", ".html"),
+                             page(rows, heading(machine), options.command));
+        files.keep(machine);
     }
-    if (folder) {
-        folder->write(csv_name, csv);
-        folder->write(page_name, page(rows, rc::bench::heading(machine), options.command));
-        for (const auto& file : folder->keep()) std::printf("%s\n", file.c_str());
-    }
-    return 0;
 }
 
-Options parse(int count, char** words) {
-    Options options;
-    options.command = "raycontact_bench_holds";
-    for (int i = 1; i < count; ++i) options.command += std::string(" ") + words[i];
-    for (int i = 1; i < count; ++i) {
-        const std::string word = words[i];
-        if (word == "--recommended") {
-            options.hold.recommended_for_all = true;
-            continue;
-        }
-        if (i + 1 == count) throw std::runtime_error(word + ": unknown, or without a value");
-        const std::string value = words[++i];
-        if (word == "--seconds")
-            options.hold.seconds = std::atof(value.c_str());
-        else if (word == "--patience")
-            options.hold.patience = std::atof(value.c_str());
-        else if (word == "--iterations")
-            options.hold.iterations = std::atoi(value.c_str());
-        else if (word == "--slop")
-            options.hold.slop = std::atof(value.c_str());
-        else if (word == "--hertz")
-            options.hold.hertz = std::atof(value.c_str());
-        else if (word == "--speculative")
-            options.hold.speculative = value != "off";
-        else if (word == "--print" && i + 1 < count) {
-            options.hold.print_from = std::atoi(value.c_str());
-            options.hold.print_to = std::atoi(words[++i]);
-        } else if (word == "--only")
-            options.only = value;
-        else if (word == "--finder")
-            options.finder = value;
-        else if (word == "--out")
-            options.out = value;
-        else
-            throw std::runtime_error(word + ": unknown");
+/// As it was typed, but for the order of the options.
+std::string command_line(const CLI::App& command) {
+    std::string line = "raycontact-bench " + command.get_name();
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0) continue;
+        line += " " + option->get_name();
+        for (const std::string& word : option->results())
+            if (option->get_expected_min() > 0) line += " " + word;
     }
-    if (!(options.hold.seconds > 0)) throw std::runtime_error("--seconds: not above 0");
-    return options;
+    return line;
 }
 
 } // namespace
 
-int main(int count, char** words) {
-    try {
-        return run_all(parse(count, words));
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_holds: %s\n", error.what());
-        return 1;
-    }
+namespace raycontact::bench {
+
+void add_holds(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "holds", "What a user expects to stand, hang, turn or stop, beside plain Bullet, with a verdict for each");
+    auto o = std::make_shared<Options>();
+    scenes::HoldOptions& hold = o->hold;
+    add_world_options(*command, hold.seconds, o->only, o->finder, "ours, ours-1000, gimpact or convex");
+    add_number(*command, "--patience", hold.patience, "of the computer's time after which a run ends early", 0.0, 1e9)
+        ->type_name("S");
+    command->add_flag("--recommended", hold.recommended_for_all, "Bullet's finders get the recommended solver, too");
+    command
+        ->add_option_function<std::string>(
+            "--speculative", [&hold](const std::string& word) { hold.speculative = word != "off"; },
+            "contacts before anything touches")
+        ->type_name("on|off")
+        ->check(CLI::IsMember({"on", "off"}));
+    add_number(*command, "--iterations", hold.iterations, "of the solver, 0: as recommended", 0, 100'000);
+    add_number(*command, "--slop", hold.slop, "that the solver leaves; without: the scene's", 0.0, 1.0);
+    add_number(*command, "--hertz", hold.hertz, "steps a second, 0: the scene's", 0.0, 1e6)->type_name("HZ");
+    command
+        ->add_option_function<std::pair<int, int>>(
+            "--print", [&hold](const std::pair<int, int>& steps) { std::tie(hold.print_from, hold.print_to) = steps; },
+            "print the contacts of these steps")
+        ->type_name("FROM TO");
+    add_out(*command, "--out", o->out, "write DIR/<machine>/holds-<date>.csv and .html")->type_name("DIR");
+    command->callback([o, command] {
+        o->command = command_line(*command);
+        run_all(*o);
+    });
 }
+
+} // namespace raycontact::bench

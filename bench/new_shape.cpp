@@ -3,14 +3,16 @@
 // than the next the dispatch takes that meets it, in a world that runs and in one that begins with it, one query of two
 // copies, the same with their files read, and what is made beside later steps.
 // Milliseconds, medians, by turns.
-// Usage: raycontact_bench_new_shape [--rounds N]: 5 rounds unless told.
-// raycontact_bench_new_shape --floor N [--ahead]: a ball of about N triangles, static, that has been in a running world
-// for a while, meets its first body: how long that step takes, with --ahead after add_body(), and the memory. --sheet
-// N: the same for open ground.
+// With --floor or --sheet: a static mesh of about N triangles that has been in a running world for a while meets its
+// first body: how long that step takes, with --ahead after add_body(), and the memory.
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
 #include <raycontact/collide.h>
 #include <scenes/models/model.h>
+#include <scenes/peers/clock.h>
 
 #include <btBulletDynamicsCommon.h>
 
@@ -18,17 +20,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace rc = raycontact;
+using rc::peers::median;
 
 namespace {
 
@@ -37,11 +38,6 @@ double milliseconds_of(Work&& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 /// A mesh as Bullet takes it.
@@ -134,7 +130,7 @@ void measure(std::uint32_t triangles, int rounds) {
     BulletMesh bullet(mesh), other(rc::scenes::scene_model("torus", 200).mesh);
     btBvhTriangleMeshShape old(&other.array, true);
     const std::filesystem::path file =
-        std::filesystem::temp_directory_path() / ("raycontact_bench_" + std::to_string(triangles) + ".obj");
+        std::filesystem::temp_directory_path() / ("raycontact-bench-" + std::to_string(triangles) + ".obj");
     write_obj(mesh, file);
     std::vector<double> own, make, wait, begin, prepare, query, read;
     for (int i = 0; i < rounds; ++i) {
@@ -229,27 +225,40 @@ void measure_floor(const rc::Mesh& given, bool ahead) {
     world.removeRigidBody(&floor);
 }
 
-} // namespace
-
-int main(int argc, char** argv) try {
-    int rounds = 5;
-    if (argc == 3 && std::strcmp(argv[1], "--rounds") == 0)
-        rounds = std::max(1, std::atoi(argv[2]));
-    else if (argc >= 3 && (std::strcmp(argv[1], "--floor") == 0 || std::strcmp(argv[1], "--sheet") == 0)) {
-        const auto triangles = static_cast<std::uint32_t>(std::atoi(argv[2]));
-        const bool open = std::strcmp(argv[1], "--sheet") == 0;
-        measure_floor(open ? sheet(triangles) : rc::scenes::scene_model("sphere", triangles).mesh,
-                      argc == 4 && std::strcmp(argv[3], "--ahead") == 0);
-        return 0;
-    } else if (argc > 1)
-        throw std::runtime_error(
-            "usage: raycontact_bench_new_shape [--rounds N | --floor N [--ahead] | --sheet N [--ahead]]");
+void measure_all(int rounds) {
     std::printf("triangles  Bullet BVH  Shape::make       a world waits    a new one waits  two, a query  files read  "
                 "prepare()  "
                 "(ms)\n");
     for (const std::uint32_t triangles : {200u, 902u, 4000u, 20000u, 82000u, 327680u}) measure(triangles, rounds);
-    return 0;
-} catch (const std::exception& error) {
-    std::fprintf(stderr, "raycontact_bench_new_shape: %s\n", error.what());
-    return 1;
 }
+
+} // namespace
+
+namespace raycontact::bench {
+
+void add_new_shape(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "new-shape", "What it takes to begin with a new mesh: Bullet's tree, a shape, the first dispatch, a query");
+    struct Options {
+        int rounds = 5;
+        std::optional<std::uint32_t> floor, sheet;
+        bool ahead = false;
+    };
+    auto o = std::make_shared<Options>();
+    add_number(*command, "--rounds", o->rounds, "by turns; figures are medians", 1, 1000);
+    CLI::Option* floor =
+        add_number(*command, "--floor", o->floor, "instead, a static ball of about N triangles meets its first body",
+                   1u, 10'000'000u);
+    add_number(*command, "--sheet", o->sheet, "the same for open ground", 1u, 10'000'000u)->excludes(floor);
+    command->add_flag("--ahead", o->ahead, "with --floor or --sheet: after add_body()");
+    command->callback([o] {
+        if (o->sheet)
+            measure_floor(sheet(*o->sheet), o->ahead);
+        else if (o->floor)
+            measure_floor(scenes::scene_model("sphere", *o->floor).mesh, o->ahead);
+        else
+            measure_all(o->rounds);
+    });
+}
+
+} // namespace raycontact::bench

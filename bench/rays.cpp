@@ -2,8 +2,9 @@
 // The same rays through our casters, for each instruction set, and through Embree 3 (rtcIntersect1, one ray at a time),
 // one thread, in alternated runs. Prints nanoseconds a ray, triangle tests a second of `basic`, and the hash of the
 // hits.
+#include "bench/commands.h"
+#include "bench/options.h"
 #include "bench/peers/embree_scene.h"
-
 #include "device/cpu/device.h"
 #include "device/cpu/kernel_table.h"
 #include "device/forwarding.h"
@@ -15,14 +16,15 @@
 
 #include <raycontact/error.h>
 #include <raycontact/shape.h>
+#include <scenes/peers/clock.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <xxhash.h>
 
 namespace rc = raycontact;
 namespace rk = raycontact::kernels;
+using rc::peers::median;
 
 namespace {
 
@@ -56,19 +58,9 @@ std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::Dire
 // Of processor time: the work runs on this one thread, and other jobs on the machine then count less.
 template <typename Work>
 double milliseconds(Work&& work) {
-    const auto now = [] {
-        timespec time{};
-        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-        return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-    };
-    const double start = now();
+    const double start = rc::peers::now().cpu;
     work();
-    return now() - start;
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
+    return 1e-3 * (rc::peers::now().cpu - start);
 }
 
 // Passes everything on to a device that works on this thread, and takes the time in which it casts rays.
@@ -151,16 +143,8 @@ private:
     rc::RayBatch batch_;
 };
 
-} // namespace
-
-int main(int argc, char** argv) try {
-    if (argc < 2) {
-        std::fprintf(stderr, "usage: raycontact_bench_rays MESH [PAIRS [RUNS]]\n");
-        return 2;
-    }
-    const auto shape = rc::Shape::make(rc::load_mesh(argv[1]));
-    const std::size_t pair_count = argc > 2 ? std::stoul(argv[2]) : 2000;
-    const int runs = argc > 3 ? std::stoi(argv[3]) : 9;
+void compare(const std::string& file, std::size_t pair_count, int runs) {
+    const auto shape = rc::Shape::make(rc::load_mesh(file));
     const std::vector<rc::PlacedBody> bodies = random_pairs(*shape, pair_count);
     std::vector<rc::SlotPair> pairs;
     for (rc::BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
@@ -197,8 +181,25 @@ int main(int argc, char** argv) try {
                     1e6 * median(c->bvh_ms) / count / theirs, count * triangles / median(c->basic_ms) / 1e3,
                     static_cast<unsigned long long>(c->hash), c->hash == c->basic_hash ? "" : "  basic differs!");
     std::printf("%-10s %12s %10.1f %10.2f   (%zu contacts)\n", "embree", "", theirs, 1.0, embree_contacts);
-    return 0;
-} catch (const std::exception& error) {
-    std::fprintf(stderr, "raycontact_bench_rays: %s\n", error.what());
-    return dynamic_cast<const rc::InputError*>(&error) ? 2 : 1;
 }
+
+} // namespace
+
+namespace raycontact::bench {
+
+void add_rays(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("rays", "Our casters, for each instruction set, and Embree on the same rays");
+    struct Options {
+        std::string mesh;
+        std::uint32_t pairs = 2000;
+        int runs = 9;
+    };
+    auto o = std::make_shared<Options>();
+    command->add_option("mesh", o->mesh, "a mesh file")->required()->type_name("MESH");
+    add_number(*command, "pairs", o->pairs, "of bodies that overlap at random", 1u, 1'000'000u);
+    add_number(*command, "runs", o->runs, "by turns; figures are medians", 1, 1000);
+    command->callback([o] { compare(o->mesh, o->pairs, o->runs); });
+}
+
+} // namespace raycontact::bench

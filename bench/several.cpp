@@ -3,19 +3,22 @@
 // the list. Prints, for each method and schedule, medians over the runs of three ratios, one device over all: `device`,
 // the time of kernels (in each step that of the device that takes longest), `part`, the same with the host's share of
 // each device's work, and `narrow`, the whole narrow phase by the wall, with the merging of contacts.
-// Usage: raycontact_bench_several RECORDING DEVICES [RUNS [METHOD...]]
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <raycontact/device.h>
 #include <recording/replay.h>
+#include <scenes/peers/clock.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <exception>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace rc = raycontact;
+using rc::peers::median;
 
 namespace {
 
@@ -50,11 +53,6 @@ Times replay(const std::string& file, const rc::Settings& settings) {
     return times;
 }
 
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
-
 void compare(const std::string& file, const std::string& devices, rc::Method method, rc::Schedule schedule, int runs) {
     rc::Settings alone, shared;
     alone.features = shared.features = rc::Features::vertices;
@@ -82,32 +80,40 @@ void compare(const std::string& file, const std::string& devices, rc::Method met
     std::fflush(stdout);
 }
 
-int run(int count, char** words) {
-    if (count < 3) {
-        std::fprintf(stderr, "usage: raycontact_bench_several RECORDING DEVICES [RUNS [METHOD...]]\n");
-        return 2;
-    }
-    const int runs = count > 3 ? std::max(1, std::atoi(words[3])) : 5;
-    std::vector<rc::Method> methods = {rc::Method::standard, rc::Method::certified, rc::Method::iterative,
-                                       rc::Method::predictive};
-    if (count > 4) methods.clear();
-    for (int i = 4; i < count; ++i) methods.push_back(rc::method_from(words[i]));
-    std::printf("%s, %d runs by turns, one device over all\n", words[2], runs);
+struct Options {
+    std::string recording, devices;
+    int runs = 5;
+    std::vector<std::string> methods;
+};
+
+void run(const Options& options) {
+    std::vector<rc::Method> methods;
+    for (const std::string& word : options.methods) methods.push_back(rc::method_from(word));
+    if (methods.empty())
+        methods = {rc::Method::standard, rc::Method::certified, rc::Method::iterative, rc::Method::predictive};
+    std::printf("%s, %d runs by turns, one device over all\n", options.devices.c_str(), options.runs);
     std::printf("%-11s %-9s %8s %8s %8s   %s %6s %8s %11s %9s\n", "method", "schedule", "device", "part", "narrow",
                 "least..most", "one ms", "all ms", "moved/1000", "kB/step");
     for (const rc::Method method : methods)
         for (const rc::Schedule schedule : {rc::Schedule::sticky, rc::Schedule::balanced})
-            compare(words[1], words[2], method, schedule, runs);
-    return 0;
+            compare(options.recording, options.devices, method, schedule, options.runs);
 }
 
 } // namespace
 
-int main(int count, char** words) {
-    try {
-        return run(count, words);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_several: %s\n", error.what());
-        return 1;
-    }
+namespace raycontact::bench {
+
+void add_several(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("several", "What several devices gain over the first of them");
+    auto o = std::make_shared<Options>();
+    command->add_option("recording", o->recording, "poses and pairs (run --record)")
+        ->required()
+        ->type_name("RECORDING");
+    command->add_option("devices", o->devices, "a list, as cpu/0,cpu/1")->required()->type_name("DEVICES");
+    add_number(*command, "runs", o->runs, "by turns; figures are medians", 1, 1000);
+    command->add_option("methods", o->methods, "standard certified iterative predictive; without: all")
+        ->type_name("METHOD");
+    command->callback([o] { run(*o); });
 }
+
+} // namespace raycontact::bench

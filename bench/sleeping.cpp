@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a sleeping world costs in Bullet, which asks for the box of every body in every step: 1 000 bodies of one mesh
 // that sleep on a floor, each shape that a mesh can have. Prints the medians of steps in microseconds, the least of all
-// rounds, by turns. Usage: raycontact_bench_sleeping [--rounds N]: 5 unless told.
-#include <bench/peers/files.h>
+// rounds, by turns.
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
 #include <scenes/models/model.h>
+#include <scenes/peers/clock.h>
 
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletDynamicsCommon.h>
@@ -13,9 +16,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <memory>
 #include <vector>
 
@@ -63,41 +63,41 @@ double run(Kind kind, const std::shared_ptr<const rc::Shape>& mesh, btTriangleMe
         times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
     }
     for (const auto& body : all) world.removeRigidBody(body.get());
-    std::nth_element(times.begin(), times.begin() + steps / 2, times.end());
-    return times[steps / 2];
+    return rc::peers::median(times);
+}
+
+void run_all(int rounds) {
+    std::printf("%s\n%d sleeping bodies; least of %d medians, microseconds a step\n",
+                heading(rc::report::this_machine()).c_str(), bodies, rounds);
+    std::printf("%9s  %10s %10s %10s\n", "triangles", "MeshShape", "and a box", "GImpact");
+    for (const std::uint32_t triangles : {600u, 2000u, 20000u}) {
+        const rc::Mesh mesh = rc::scenes::scene_model("torus", triangles).mesh;
+        btTriangleMesh for_gimpact;
+        const auto corner = [&](std::uint32_t v) {
+            const rc::Vec3& p = mesh.vertices[v];
+            return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
+        };
+        for (const auto& [a, b, c] : mesh.triangles) for_gimpact.addTriangle(corner(a), corner(b), corner(c));
+        const auto shape = rc::Shape::make(mesh);
+        double least[std::size(kinds)] = {1e30, 1e30, 1e30};
+        for (int round = 0; round < rounds; ++round)
+            for (std::size_t k = 0; k < std::size(kinds); ++k)
+                least[k] = std::min(least[k], run(kinds[k], shape, for_gimpact));
+        std::printf("%9zu  %10.0f %10.0f %10.0f\n", mesh.triangles.size(), least[0], least[1], least[2]);
+        std::fflush(stdout);
+    }
 }
 
 } // namespace
 
-int main(int count, char** words) {
-    try {
-        int rounds = 5;
-        if (count == 3 && std::strcmp(words[1], "--rounds") == 0)
-            rounds = std::max(1, std::atoi(words[2]));
-        else if (count > 1)
-            throw std::runtime_error("usage: raycontact_bench_sleeping [--rounds N]");
-        std::printf("%s\n%d sleeping bodies; least of %d medians, microseconds a step\n",
-                    rc::bench::heading(rc::bench::this_machine()).c_str(), bodies, rounds);
-        std::printf("%9s  %10s %10s %10s\n", "triangles", "MeshShape", "and a box", "GImpact");
-        for (const std::uint32_t triangles : {600u, 2000u, 20000u}) {
-            const rc::Mesh mesh = rc::scenes::scene_model("torus", triangles).mesh;
-            btTriangleMesh for_gimpact;
-            const auto corner = [&](std::uint32_t v) {
-                const rc::Vec3& p = mesh.vertices[v];
-                return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
-            };
-            for (const auto& [a, b, c] : mesh.triangles) for_gimpact.addTriangle(corner(a), corner(b), corner(c));
-            const auto shape = rc::Shape::make(mesh);
-            double least[std::size(kinds)] = {1e30, 1e30, 1e30};
-            for (int round = 0; round < rounds; ++round)
-                for (std::size_t k = 0; k < std::size(kinds); ++k)
-                    least[k] = std::min(least[k], run(kinds[k], shape, for_gimpact));
-            std::printf("%9zu  %10.0f %10.0f %10.0f\n", mesh.triangles.size(), least[0], least[1], least[2]);
-            std::fflush(stdout);
-        }
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_sleeping: %s\n", error.what());
-        return 1;
-    }
+namespace raycontact::bench {
+
+void add_sleeping(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("sleeping", "What a sleeping world costs in Bullet: MeshShape with either bounds, GImpact");
+    auto rounds = std::make_shared<int>(5);
+    add_number(*command, "--rounds", *rounds, "by turns; the least counts", 1, 1000);
+    command->callback([rounds] { run_all(*rounds); });
 }
+
+} // namespace raycontact::bench

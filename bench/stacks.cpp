@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stacks of coarse meshes in a Bullet world that differs by one line: RayContact with edges and with vertices alone,
 // GImpact, and btBoxShape (btConvexHullShape for wedges) where all bodies are convex. Prints how far each has come from
-// where it was put. Usage: raycontact_bench_stacks [--seconds S] [--only PART OF A NAME] [--ground G] [--finder F]
-// [--out DIR] [--watch] [--iterations N] [--slop METRES] [--two]
-#include <bench/peers/files.h>
+// where it was put.
+#include "bench/commands.h"
+#include "bench/options.h"
+
 #include <scenes/stacks/stack_world.h>
 #include <scenes/stacks/verdict.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
-#include <optional>
-#include <stdexcept>
+#include <memory>
 #include <string>
 
 namespace rc = raycontact;
@@ -77,96 +74,68 @@ std::string cell(const Stack& stack, const Row& row) {
     return text;
 }
 
-int run_all(const Options& options) {
-    const rc::bench::Machine machine = rc::bench::this_machine();
-    // What cannot be written is known before the work.
-    std::optional<rc::output::OutFolder> folder;
-    const std::string name = rc::bench::result_name(machine, "stacks", ".csv");
-    if (!options.out.empty()) {
-        folder.emplace(rc::bench::results_folder(options.out, machine));
-        folder->claim(name);
-    }
+void run_all(const Options& options) {
+    rc::report::Machine machine = rc::report::this_machine();
+    rc::bench::BenchFiles files(options.out, machine, {"stacks"}, {".csv"});
     std::printf("%s\n%g s; drift in parts of a body's size, turn in degrees; of plates: sunk, overlap\n",
-                rc::bench::heading(machine).c_str(), options.seconds);
+                heading(machine).c_str(), options.seconds);
     std::printf("%-14s %-6s", "stack", "ground");
     for (const Finder finder : finders) std::printf(" %-24s", std::string(to_string(finder)).c_str());
     std::printf("\n");
     std::string csv = std::string(rc::bench::machine_columns)
                       + ",stack,ground,finder,seconds,drift,turn_degrees,sunk,overlap,fell,step_ms\n";
-    for (const Stack& stack : all_stacks()) {
-        if (stack.name.find(options.only) == std::string::npos) continue;
-        for (const Ground ground : grounds) {
-            if (!options.ground.empty() && to_string(ground) != options.ground) continue;
-            std::printf("%-14s %-6s", stack.name.c_str(), std::string(to_string(ground)).c_str());
-            double allowed = drift_limit;
-            for (const Finder finder : finders) {
-                Row row;
-                if ((options.finder.empty() || to_string(finder) == options.finder)
-                    && (finder != Finder::convex || stack.convex())) {
-                    row = run(stack, ground, finder, options, allowed);
-                    if (finder == Finder::convex) allowed = std::max(allowed, 2 * row.verdict.drift);
-                    char line[256];
-                    std::snprintf(line, sizeof line, ",%s,%s,%s,%g,%.6f,%.4f,%.6f,%.6f,%d,%.4f\n", stack.name.c_str(),
-                                  std::string(to_string(ground)).c_str(), std::string(to_string(finder)).c_str(),
-                                  options.seconds, row.verdict.drift, row.verdict.turn, row.verdict.sunk,
-                                  row.verdict.overlap, row.fell ? 1 : 0, row.ms);
-                    csv += rc::bench::machine_fields(machine) + line;
+    rc::bench::until_stopped([&] {
+        for (const Stack& stack : all_stacks()) {
+            if (stack.name.find(options.only) == std::string::npos) continue;
+            for (const Ground ground : grounds) {
+                if (!options.ground.empty() && to_string(ground) != options.ground) continue;
+                std::printf("%-14s %-6s", stack.name.c_str(), std::string(to_string(ground)).c_str());
+                double allowed = drift_limit;
+                for (const Finder finder : finders) {
+                    rc::bench::end_if_stopped();
+                    Row row;
+                    if ((options.finder.empty() || to_string(finder) == options.finder)
+                        && (finder != Finder::convex || stack.convex())) {
+                        row = run(stack, ground, finder, options, allowed);
+                        if (finder == Finder::convex) allowed = std::max(allowed, 2 * row.verdict.drift);
+                        char line[256];
+                        std::snprintf(line, sizeof line, ",%s,%s,%s,%g,%.6f,%.4f,%.6f,%.6f,%d,%.4f\n",
+                                      stack.name.c_str(), std::string(to_string(ground)).c_str(),
+                                      std::string(to_string(finder)).c_str(), options.seconds, row.verdict.drift,
+                                      row.verdict.turn, row.verdict.sunk, row.verdict.overlap, row.fell ? 1 : 0,
+                                      row.ms);
+                        csv += rc::bench::machine_fields(machine) + line;
+                    }
+                    std::printf(" %-24s", cell(stack, row).c_str());
+                    std::fflush(stdout);
                 }
-                std::printf(" %-24s", cell(stack, row).c_str());
-                std::fflush(stdout);
+                std::printf("\n");
             }
-            std::printf("\n");
         }
+    });
+    rc::bench::finish(machine);
+    if (files) {
+        files.folder().write(rc::bench::result_name(machine, "stacks", ".csv"), csv);
+        files.keep(machine);
     }
-    if (folder) {
-        folder->write(name, csv);
-        for (const auto& file : folder->keep()) std::printf("%s\n", file.c_str());
-    }
-    return 0;
-}
-
-Options parse(int count, char** words) {
-    Options options;
-    for (int i = 1; i < count; ++i) {
-        const std::string word = words[i];
-        if (word == "--watch") {
-            options.watch = true;
-            continue;
-        }
-        if (word == "--two") {
-            options.solver.two_friction_directions = true;
-            continue;
-        }
-        if (i + 1 == count) throw std::runtime_error(word + ": unknown, or without a value");
-        const std::string value = words[++i];
-        if (word == "--seconds")
-            options.seconds = std::atof(value.c_str());
-        else if (word == "--iterations")
-            options.solver.iterations = std::atoi(value.c_str());
-        else if (word == "--slop")
-            options.solver.slop = std::atof(value.c_str());
-        else if (word == "--only")
-            options.only = value;
-        else if (word == "--ground")
-            options.ground = value;
-        else if (word == "--finder")
-            options.finder = value;
-        else if (word == "--out")
-            options.out = value;
-        else
-            throw std::runtime_error(word + ": unknown");
-    }
-    if (!(options.seconds > 0)) throw std::runtime_error("--seconds: not above 0");
-    return options;
 }
 
 } // namespace
 
-int main(int count, char** words) {
-    try {
-        return run_all(parse(count, words));
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "raycontact_bench_stacks: %s\n", error.what());
-        return 1;
-    }
+namespace raycontact::bench {
+
+void add_stacks(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "stacks", "Which stacks of coarse meshes stand in Bullet: edges, vertices, GImpact, Bullet's own boxes");
+    auto o = std::make_shared<Options>();
+    add_world_options(*command, o->seconds, o->only, o->finder, "convex, edges, vertices or gimpact");
+    command->add_option("--ground", o->ground, "this one alone: plane, slab, box or quad")->type_name("WORD");
+    add_number(*command, "--iterations", o->solver.iterations, "of the solver", 1, 100'000);
+    add_number(*command, "--slop", o->solver.slop, "that the solver leaves", 0.0, 1.0);
+    command->add_flag("--two", o->solver.two_friction_directions, "two directions of friction");
+    command->add_flag("--watch", o->watch, "print the contacts of the first steps, and of that in which a stack falls");
+    add_out(*command, "--out", o->out, "write DIR/<machine>/stacks-<date>.csv")->type_name("DIR");
+    command->callback([o] { run_all(*o); });
 }
+
+} // namespace raycontact::bench

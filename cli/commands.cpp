@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
-#include "cli/bench.h"
 #include "cli/clash.h"
 #include "cli/collide.h"
 #include "cli/devices.h"
@@ -22,5 +21,4 @@ void add_commands(CLI::App& app) {
     add_replay(app);
     add_view(app);
     add_reproduce(app);
-    add_bench(app);
 }

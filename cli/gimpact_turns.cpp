@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/gimpact_turns.h"
 
-#include <bench/peers/clock.h>
-#include <bench/peers/peer.h>
 #include <report/svg.h>
+#include <scenes/peers/clock.h>
+#include <scenes/peers/peer.h>
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 namespace {
 
 using namespace raycontact;
-using namespace raycontact::bench;
+using namespace raycontact::peers;
 
 constexpr double seconds_a_pass = 0.1; ///< of GImpact over a frame's pairs; meshes of a user's own can be large
 constexpr std::size_t turns = 3;
@@ -112,7 +112,7 @@ report::Comparison compare_with_gimpact(const scenes::RunLog& log) {
         "Both found the contacts of {} pairs at the poses of step {}, by turns on one thread of this machine: median "
         "of "
         "{} turns a step, poses set, contacts read. The two answer different questions, so their contacts cannot be "
-        "compared one by one. `raycontact bench peers` has more works and peers.",
+        "compared one by one. `raycontact-bench peers` has more works and peers.",
         sums.pairs, steps, turns);
     return comparison;
 }

@@ -95,7 +95,7 @@ void check_meshes(const MeshOptions& options) {
     }
     if (complaints.empty()) return;
     std::cout.flush();
-    for (std::size_t i = 0; i + 1 < complaints.size(); ++i) complain(complaints[i]);
+    for (std::size_t i = 0; i + 1 < complaints.size(); ++i) complain("raycontact", complaints[i]);
     throw InputError(complaints.back());
 }
 

@@ -5,7 +5,7 @@
 
 #include <clash/coloured.h>
 #include <output/out_folder.h>
-#include <scenes/models/fasteners.h>
+#include <scenes/models/machined.h>
 #include <scenes/models/model.h>
 #include <scenes/stacks/solids.h>
 
@@ -56,17 +56,29 @@ std::string stl(const Mesh& mesh) {
     return bytes;
 }
 
+// M12 with a coarse thread of 3 mm, 40 mm long with its head.
+const scenes::Thread thread{
+    .outer = 0.006, .pitch = 0.003, .length = 0.0364, .nut = 0.009, .across = 0.018, .around = 24};
+
+/// Five turns up the bolt's thread.
+Mesh nut_in_place() {
+    Mesh nut = scenes::threaded_nut(thread);
+    for (Vec3& v : nut.vertices) v.z += 5 * thread.pitch;
+    return nut;
+}
+
 /// A bolt with two nuts, of which the second is 0.75 mm in the first.
 std::string assembly() {
     std::vector<clash::Part> parts(3);
-    const auto nut = std::make_shared<const Mesh>(scenes::nut());
+    const auto nut = std::make_shared<const Mesh>(nut_in_place());
     parts[0].name = "bolt";
-    parts[0].mesh = std::make_shared<const Mesh>(scenes::bolt());
+    parts[0].mesh = std::make_shared<const Mesh>(scenes::threaded_bolt(thread));
     parts[1].name = "nut";
     parts[1].mesh = nut;
     parts[2].name = "lock nut";
     parts[2].mesh = nut;
-    constexpr double up = 0.00825, turn = up / 0.003; // along its thread: as many turns as pitches of 3 mm
+    constexpr double up = 0.00825;
+    const double turn = up / thread.pitch; // along its thread: as many turns as pitches
     const double half = 3.14159265358979323846 * turn;
     parts[2].pose = pose_from_quaternion({0, 0, up}, std::cos(half), 0, 0, std::sin(half));
     return clash::coloured_glb(parts, {});
@@ -79,7 +91,7 @@ struct Sample {
 std::vector<Sample> all_samples() {
     const Mesh hare = scenes::stood_up(scenes::scene_model("hare", 2000).mesh);
     const Mesh gear = scenes::scene_model("gear", 1200).mesh;
-    const Mesh box = scenes::solid_box({1, 1, 1}), bolt = scenes::bolt(), nut = scenes::nut();
+    const Mesh box = scenes::solid_box({1, 1, 1}), bolt = scenes::threaded_bolt(thread), nut = nut_in_place();
     const auto with_count = [](const std::string& what, const Mesh& mesh) {
         return fmt::format("{}, {} triangles", what, mesh.triangles.size());
     };

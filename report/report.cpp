@@ -203,15 +203,4 @@ void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Re
     folder.write(page_name, make_page(page));
 }
 
-std::string picture_png(const scenes::RunLog& log, std::size_t frame, std::uint32_t width, std::uint32_t height) {
-    check(log);
-    if (frame >= log.frames.size())
-        throw InputError("picture: frame " + std::to_string(frame) + " asked for; the run has "
-                         + std::to_string(log.frames.size()));
-    if (width == 0 || height == 0 || width > 16384 || height > 16384)
-        throw InputError("picture: " + std::to_string(width) + " x " + std::to_string(height)
-                         + " asked for; 1 to 16384 pixels a side");
-    return encode_png(Renderer(log).render(log.frames[frame], width, height));
-}
-
 } // namespace raycontact::report

@@ -34,7 +34,4 @@ std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options);
 /// Throws InputError for a log without steps or frames, and as OutFolder::write does.
 void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options = {});
 
-/// The bytes of a PNG file of one of the log's frames. Throws InputError when there is no such frame or no area.
-std::string picture_png(const scenes::RunLog& log, std::size_t frame, std::uint32_t width, std::uint32_t height);
-
 } // namespace raycontact::report

@@ -14,10 +14,6 @@ std::string Plan::warning() const {
                        orientations, depths);
 }
 
-Plan full_plan() {
-    return {};
-}
-
 Plan quick_plan() {
     Plan plan;
     plan.name = "quick";

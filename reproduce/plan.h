@@ -48,7 +48,6 @@ struct Plan {
     std::string warning() const;
 };
 
-Plan full_plan();
 /// Aims at three minutes on two cores.
 Plan quick_plan();
 /// For tests: every experiment, a few bodies and steps.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/reproduce.h>
 
-#include <bench/peers/files.h>
 #include <raycontact/error.h>
+#include <report/machine.h>
 #include <reproduce/experiments.h>
 #include <reproduce/page.h>
 #include <reproduce/write_file.h>
@@ -38,7 +38,7 @@ void run(const Workshop& shop, const Experiment& experiment, const Options& opti
             options.progress(static_cast<std::uint32_t>(before + done));
         });
         shop.cache().keep(part->name, part->key,
-                          {{"value", result}, {"machine", bench::heading(bench::this_machine())}});
+                          {{"value", result}, {"machine", report::heading(report::this_machine())}});
         before += part->cost;
         options.progress(static_cast<std::uint32_t>(before));
     }

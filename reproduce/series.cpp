@@ -56,15 +56,6 @@ report::Line percent_line(std::string name, const Series& part, const Series& wh
     });
 }
 
-report::Line level(const report::Plot& plot, std::string name, double value) {
-    report::Line line{std::move(name), {}, 9, true};
-    if (!plot.lines.empty() && !plot.lines.front().points.empty()) {
-        line.points.emplace_back(plot.lines.front().points.front().first, value);
-        line.points.emplace_back(plot.lines.front().points.back().first, value);
-    }
-    return line;
-}
-
 double share(double part, double whole) {
     return whole > 0 ? 100 * part / whole : 0;
 }

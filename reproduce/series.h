@@ -19,8 +19,6 @@ double median(Series values); ///< the upper one of two in the middle; 0 of none
 report::Line line(std::string name, const Series& values);
 /// 100 x part / whole, window by window.
 report::Line percent_line(std::string name, const Series& part, const Series& whole);
-/// A dashed line all along a plot, at a number that the paper states.
-report::Line level(const report::Plot& plot, std::string name, double value);
 
 /// Of the whole, in percent; 0 of nothing.
 double share(double part, double whole);

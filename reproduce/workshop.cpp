@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/workshop.h>
 
-#include <bench/peers/machine.h>
 #include <raycontact/device.h>
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <recording/replay.h>
+#include <report/machine.h>
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ std::string name_of(const char* what, const SimulationOptions& options) {
 } // namespace
 
 Workshop::Workshop(const Plan& plan, const std::filesystem::path& cache_folder) : plan_(plan), cache_(cache_folder) {
-    const bench::Machine machine = bench::this_machine();
+    const report::Machine machine = report::this_machine();
     here_ = {{"commit", machine.commit}, {"compiler", machine.compiler}, {"cpu", machine.cpu}};
     auto devices = Json::array();
     for (const DeviceInfo& device : list_devices())

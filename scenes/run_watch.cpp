@@ -41,7 +41,6 @@ void RunWatch::add_step(double step_ms, const Scene& scene, std::span<const Pose
     depths_.add(row.step, found);
     contacts_ += s.contacts;
     rays_ += s.details.rays;
-    rays_cast_ += s.details.rays_cast;
     ray_length_ += s.details.ray_length;
     pairs_max_ = std::max(pairs_max_, s.pairs);
     for (const Contact& c : found) row.penetration_max = std::max(row.penetration_max, static_cast<double>(c.depth));

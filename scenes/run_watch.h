@@ -31,7 +31,6 @@ public:
     std::string hash() const { return hash_.hex(); }
     std::uint64_t contacts() const { return contacts_; }
     std::uint64_t rays() const { return rays_; }
-    std::uint64_t rays_cast() const { return rays_cast_; }
     std::uint64_t pairs_max() const { return pairs_max_; }
     double ray_length() const { return ray_length_; } ///< metres
 
@@ -45,7 +44,7 @@ private:
     RunLog log_;
     ContactHash hash_;
     DepthWatch depths_;
-    std::uint64_t contacts_ = 0, rays_ = 0, rays_cast_ = 0, pairs_max_ = 0;
+    std::uint64_t contacts_ = 0, rays_ = 0, pairs_max_ = 0;
     double ray_length_ = 0;
     std::vector<Vec3> positions_; ///< of the bodies at the end of the last step
 };

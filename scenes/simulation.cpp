@@ -214,9 +214,6 @@ const StepStats& Simulation::stats() const {
 const Scene& Simulation::scene() const {
     return state_->dispatcher.scene();
 }
-const bullet::DispatcherStats& Simulation::manifold_stats() const {
-    return state_->dispatcher.stats();
-}
 Pose Simulation::pose(std::uint32_t body) const {
     return state_->poses.at(body);
 }
@@ -237,9 +234,6 @@ std::uint64_t Simulation::contacts_total() const {
 }
 std::uint64_t Simulation::rays_total() const {
     return state_->watch.rays();
-}
-std::uint64_t Simulation::rays_cast_total() const {
-    return state_->watch.rays_cast();
 }
 double Simulation::ray_length_total() const {
     return state_->watch.ray_length();

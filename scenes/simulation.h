@@ -33,14 +33,12 @@ public:
     std::span<const Contact> contacts() const; ///< of the last step; a body's slot is its place in the description
     const StepStats& stats() const;            ///< of the last step
     const Scene& scene() const;                ///< poses and pairs of the last step, as contacts() came from them
-    const bullet::DispatcherStats& manifold_stats() const;
     Pose pose(std::uint32_t body) const; ///< of a body that has come, by its place in the description
     std::uint32_t body_count() const;    ///< of bodies that move and come within the planned steps
     Health health() const;
     std::string hash() const; ///< ContactHash of all steps so far
     std::uint64_t contacts_total() const;
     std::uint64_t rays_total() const;
-    std::uint64_t rays_cast_total() const; ///< of these, cast; of the rest it is known how they end
     double ray_length_total() const;
     std::uint64_t pairs_max() const;
     /// Everything a report needs but the summary.

@@ -14,7 +14,7 @@ packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev l
     assimp-testmodels # mesh files of other programs
     python3-pip # brings the CUDA compiler that the kernels are checked with
     chromium python3) # open the pages
-packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact bench peers`, both optional
+packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact-bench peers`, both optional
 packages_all=(clang clang-tidy oclgrind valgrind)
 
 say() { printf '== %s\n' "$*" >&2; }

@@ -3,13 +3,15 @@
 
 #include "device/launch.h"
 
-#include <bench/peers/clock.h>
+#include <scenes/peers/clock.h>
 
 #include <chrono>
 #include <cstddef>
 #include <vector>
 
 namespace raycontact::bench {
+
+using peers::median;
 
 namespace {
 

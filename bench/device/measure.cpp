@@ -4,8 +4,8 @@
 #include "bench/device/replayer.h"
 #include "bench/device/timing_device.h"
 
-#include <bench/peers/clock.h>
 #include <bench/peers/stopped.h>
+#include <scenes/peers/clock.h>
 
 #include <algorithm>
 #include <numeric>

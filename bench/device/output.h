@@ -3,8 +3,7 @@
 
 #include "bench/device/measure.h"
 
-#include <bench/peers/machine.h>
-#include <output/out_folder.h>
+#include <bench/peers/files.h>
 
 #include <string>
 

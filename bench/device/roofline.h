@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/machine.h>
+#include <bench/peers/files.h>
 #include <bench/peers/work.h>
 
 #include <raycontact/settings.h>

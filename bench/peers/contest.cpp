@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/contest.h>
 
-#include <bench/peers/clock.h>
 #include <bench/peers/reference.h>
 #include <bench/peers/sums.h>
 #include <raycontact/contact.h>
+#include <scenes/peers/clock.h>
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/peer.h>
+#include <bench/peers/entrants.h>
 #include <recording/replay.h>
 
 #include <array>

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <bench/peers/contest.h>
-#include <bench/peers/machine.h>
+#include <bench/peers/files.h>
 #include <bench/peers/notes.h>
-#include <output/out_folder.h>
 
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/embree_scene.h>
-#include <bench/peers/peer.h>
+#include <bench/peers/entrants.h>
 
 #include "pairs/directed_pairs.h"
 #include "shape/shape_data.h"

@@ -6,11 +6,6 @@
 
 namespace raycontact::bench {
 
-std::string heading(const Machine& m) {
-    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}{}\n", m.date, m.cpu, m.cores,
-                       m.governor, m.load, m.compiler, m.commit, m.cut_short ? "; cut short" : "");
-}
-
 nlohmann::ordered_json machine_json(const Machine& m) {
     return {{"date", m.date},         {"commit", m.commit},     {"cpu", m.cpu},   {"cores", m.cores},
             {"compiler", m.compiler}, {"governor", m.governor}, {"load", m.load}, {"cut_short", m.cut_short}};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/machine.h>
 #include <output/out_folder.h>
+#include <report/machine.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -12,8 +12,9 @@
 // What every table, CSV and JSON of the benchmarks begins with.
 namespace raycontact::bench {
 
-/// One line for a person.
-std::string heading(const Machine& machine);
+using report::Machine;
+using report::this_machine;
+
 nlohmann::ordered_json machine_json(const Machine& machine);
 /// The first columns of every CSV.
 inline constexpr const char* machine_columns = "date,commit,cpu,cores,compiler,governor,load";

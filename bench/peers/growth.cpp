@@ -2,11 +2,11 @@
 #include <bench/peers/growth.h>
 
 #include <bench/peers/approaching.h>
-#include <bench/peers/clock.h>
 #include <bench/peers/rolling.h>
 #include <bench/peers/stopped.h>
 #include <bench/peers/work.h>
 #include <scenes/models/model.h>
+#include <scenes/peers/clock.h>
 
 #include <algorithm>
 #include <cmath>

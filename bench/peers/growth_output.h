@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bench/peers/files.h>
 #include <bench/peers/growth.h>
-#include <bench/peers/machine.h>
-#include <output/out_folder.h>
 
 #include <span>
 #include <string>

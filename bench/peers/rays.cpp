@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/embree_scene.h>
-#include <bench/peers/peer.h>
+#include <bench/peers/entrants.h>
 
 #include "device/device.h"
 #include "executor/float_environment.h"

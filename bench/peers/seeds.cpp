@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/seeds.h>
 
-#include <bench/peers/clock.h>
 #include <bench/peers/stopped.h>
 #include <bench/peers/sums.h>
 #include <scenes/avalanche.h>
+#include <scenes/peers/clock.h>
 #include <scenes/simulation.h>
 
 #include <algorithm>
 #include <memory>
 
 namespace raycontact::bench {
+
+using peers::median;
 
 namespace {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/machine.h>
+#include <bench/peers/files.h>
 #include <bench/peers/notes.h>
 #include <bench/peers/seeds.h>
 #include <bench/peers/thresholds.h>
-#include <output/out_folder.h>
 
 #include <span>
 #include <string>

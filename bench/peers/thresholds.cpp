@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/thresholds.h>
 
-#include <bench/peers/clock.h>
 #include <bench/peers/reference.h>
 #include <bench/peers/sums.h>
+#include <scenes/peers/clock.h>
 
 #include <cmath>
 

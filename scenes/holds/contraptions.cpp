@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/meshes.h>
 #include <scenes/holds/scenes.h>
+#include <scenes/models/machined.h>
 #include <scenes/models/model.h>
 
 #include <btBulletDynamicsCommon.h>

@@ -47,15 +47,19 @@ TEST(Readme, EachShellLineRuns) {
     std::filesystem::create_directory_symlink(source / "docs", folder.path() / "docs");
     const bool all = std::getenv("RAYCONTACT_MINUTES") != nullptr;
     std::size_t ran = 0;
-    for (const std::string& line : shell_lines(source / "README.md")) {
+    for (std::string line : shell_lines(source / "README.md")) {
+#ifdef RAYCONTACT_WITH_BENCH
+        if (constexpr std::string_view script = "scripts/bench "; line.starts_with(script))
+            line.replace(0, script.size(), "build/bin/raycontact-bench ");
+#endif
         if (builds(line) || (takes_minutes(line) && !all)) continue;
-        ASSERT_TRUE(line.starts_with("build/bin/raycontact ")) << "neither ours nor a build: " << line;
+        ASSERT_TRUE(line.starts_with("build/bin/raycontact")) << "neither ours nor a build: " << line;
         std::cerr << line << '\n';
         const auto result = StartedProgram({}, folder.path(), {}, {"/bin/sh", "-c", line}).wait();
         EXPECT_EQ(result.status, 0) << line << '\n' << result.err;
         ++ran;
     }
-    EXPECT_GE(ran, 18u);
+    EXPECT_GE(ran, 16u);
 }
 
 } // namespace

@@ -23,16 +23,6 @@ TEST_F(Usage, HelpEverywhere) {
         EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(help.err, "") << command;
     }
-    EXPECT_NE(whole.out.find("\n  bench "), std::string::npos);
-    const auto bench = run({"bench", "--help"});
-    EXPECT_EQ(bench.status, 0);
-    for (const char* command : {"peers", "growth"}) {
-        EXPECT_NE(bench.out.find(std::string("\n  ") + command + " "), std::string::npos) << command;
-        const auto help = run({"bench", command, "--help"});
-        EXPECT_EQ(help.status, 0) << command;
-        EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
-        EXPECT_EQ(help.err, "") << command;
-    }
     for (const char* command : {"collide", "run", "replay"}) {
         const auto help = run({command, "--help"});
         for (const char* option :
@@ -51,14 +41,9 @@ TEST_F(Usage, Version) {
 }
 
 TEST_F(Usage, BadUsageIsStatusTwoAndOneLine) {
-    for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "reproduce", "bench"}) {
+    for (const char* command : {"subcommand", "devices", "mesh", "collide", "run", "replay", "reproduce"}) {
         expect_refused(run({}), command);
     }
-    expect_refused(run({"bench"}), "peers, growth, sweep, device or roofline");
-    expect_refused(run({"bench", "peer"}), "peer");
-    expect_refused(run({"bench", "peers", "--only", "nobody"}), "nobody");
-    expect_refused(run({"bench", "peers", "--works", "nothing"}), "nothing");
-    expect_refused(run({"bench", "growth", "--steps", "0"}), "--steps");
     expect_refused(run({"colide"}), "colide");
     expect_refused(run({"--jsn"}), "--jsn");
     expect_refused(run({"devices", "extra"}), "extra");
@@ -127,8 +112,7 @@ TEST_F(Usage, NumbersAreDecimalAndInTheirRange) {
         expect_refused(run({"run", "--mesh", "cube.obj", std::string("--size=") + value}), "--size");
     for (const std::vector<std::string>& words : {std::vector<std::string>{"collide", "cube.obj", "cube.obj"},
                                                   {"run", "avalanche"},
-                                                  {"replay", "missing.glb"},
-                                                  {"bench", "growth"}}) {
+                                                  {"replay", "missing.glb"}}) {
         auto all = words;
         all.emplace_back("--threads=-1");
         expect_refused(run(all), "--threads");
@@ -147,9 +131,7 @@ TEST_F(Usage, EmptyNamesAreRefused) {
     for (const std::vector<std::string>& words : {std::vector<std::string>{"run", "avalanche"},
                                                   {"replay", "missing.glb"},
                                                   {"view", "missing.glb"},
-                                                  {"reproduce"},
-                                                  {"bench", "growth"},
-                                                  {"bench", "device"}}) {
+                                                  {"reproduce"}}) {
         auto all = words;
         all.insert(all.end(), {"--out", ""});
         expect_refused(run(all), "--out");
@@ -168,7 +150,11 @@ TEST_F(Usage, TooLittleMemoryIsOneLine) {
             run_limited("-v " + std::to_string(1024 * megabytes),
                         {"run", "avalanche", "--bodies", "64", "--steps", "2", "--json"}, folder_.path());
         enough = result.status == 0;
-        if (enough || (!begun && result.err.find("error while loading shared libraries") != std::string::npos))
+        if (enough) continue;
+        // A library's own static objects can fail before main(), too.
+        if (!begun
+            && (result.err.find("error while loading shared libraries") != std::string::npos
+                || result.err.starts_with("terminate called after throwing an instance of 'std::bad_alloc'")))
             continue;
         begun = true;
         EXPECT_EQ(result.status, 1) << megabytes << " MB: " << result.err;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bench/peers/peer.h>
+#include <scenes/peers/peer.h>
 
 #include <raycontact/settings.h>
 
-namespace raycontact::bench {
+namespace raycontact::peers {
 
 namespace {
 
@@ -48,4 +48,4 @@ Entrant ours(std::string name, Method method, Caster caster, Features features) 
     return entrant;
 }
 
-} // namespace raycontact::bench
+} // namespace raycontact::peers

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/work.h>
+#include <scenes/peers/work.h>
 
 #include <cstdint>
 #include <functional>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace raycontact::bench {
+namespace raycontact::peers {
 
 /// What one step of a peer gave. The sum is of what a caller reads of each contact, so that reading it costs its price.
 struct Found {
@@ -47,21 +47,7 @@ struct Entrant {
     std::string why_not;                                    ///< what to install, where it was not built
 };
 
-/// All there are, ours first.
-std::vector<Entrant> entrants();
-
-/// Which steps of a work an entrant is given: all, or one in the middle of every `stride`.
-std::uint32_t stride(const Entrant& entrant, const Work& work);
-bool is_given(const Entrant& entrant, const Work& work, std::size_t step);
-
-// One a file; those of libraries that CMake did not find are answered by entrants() itself.
 Entrant ours(std::string name, Method method, Caster caster, Features features = Features::vertices);
 Entrant gimpact();
-Entrant fcl();
-Entrant ode();
-Entrant embree();
-Entrant rays_of_ours();
-Entrant spared_rays_of_ours();
-Entrant rays_of_embree();
 
-} // namespace raycontact::bench
+} // namespace raycontact::peers

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/bench_device.h"
-
-#include "cli/bench_options.h"
+// device and roofline: steps and kernels of each device, and what a ray must cost.
+#include "bench/commands.h"
+#include "bench/options.h"
 
 #include <bench/device/measure.h>
 #include <bench/device/output.h>
 #include <bench/device/roofline.h>
-#include <bench/peers/machine.h>
 #include <bench/peers/work.h>
 #include <raycontact/error.h>
 
@@ -19,10 +18,9 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace raycontact::bench {
 
-using namespace raycontact;
-using namespace raycontact::bench;
+namespace {
 
 struct WorkCommand {
     std::string recording, range = "200:260";
@@ -130,9 +128,11 @@ void bench_roofline(RooflineCommand command) {
     }
 }
 
-void add_device(CLI::App& bench) {
+} // namespace
+
+void add_device(CLI::App& app) {
     CLI::App* command =
-        bench.add_subcommand("device", "Whole steps and single kernels on each device, beside the CPU's contacts");
+        app.add_subcommand("device", "Whole steps and single kernels on each device, beside the CPU's contacts");
     auto c = std::make_shared<DeviceCommand>();
     add_work_options(*command, c->work);
     command->add_option("--devices", c->devices, "each measured alone: all (every GPU, or the CPU), or a list")
@@ -155,9 +155,9 @@ void add_device(CLI::App& bench) {
     command->callback([c] { bench_device(*c); });
 }
 
-void add_roofline(CLI::App& bench) {
+void add_roofline(CLI::App& app) {
     CLI::App* command =
-        bench.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
+        app.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
     auto c = std::make_shared<RooflineCommand>();
     add_work_options(*command, c->work);
     command->add_option("--methods", c->methods, "standard,iterative,predictive; without: all")
@@ -173,9 +173,4 @@ void add_roofline(CLI::App& bench) {
     command->callback([c] { bench_roofline(*c); });
 }
 
-} // namespace
-
-void add_bench_device(CLI::App& bench) {
-    add_device(bench);
-    add_roofline(bench);
-}
+} // namespace raycontact::bench

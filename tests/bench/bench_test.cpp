@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `raycontact bench` from outside: keys, files, exit status.
+// raycontact-bench from outside: keys, files, exit status.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -31,8 +31,7 @@ struct Ran {
 };
 
 Ran run(const std::string& arguments, bool with_stderr = false) {
-    const std::string command =
-        "\"" RAYCONTACT_PROGRAM_FILE "\" bench " + arguments + (with_stderr ? " 2>&1" : " 2>/dev/null");
+    const std::string command = "\"" RAYCONTACT_BENCH_FILE "\" " + arguments + (with_stderr ? " 2>&1" : " 2>/dev/null");
     Ran ran;
     FILE* pipe = popen(command.c_str(), "r");
     if (!pipe) return ran;
@@ -164,14 +163,39 @@ TEST(BenchPeers, AvalancheAndItsRecordingAreTheSameWork) {
 }
 
 TEST(BenchPeers, BadUsage) {
-    for (const char* arguments : {"", "peers --only nobody", "peers --works nothing", "peers --mesh /no/such.obj",
-                                  "peers --works avalanche --recording /no/such.glb", "peers --runs 0",
-                                  "growth --pairs 0", "growth --only nothing", "sweep --only nothing",
-                                  "sweep /no/such.glb", "sweep /no/such.glb --only seeds", "sweep --values 0"}) {
+    for (const char* arguments :
+         {"", "peers --only nobody", "peers --works nothing", "peers --mesh /no/such.obj",
+          "peers --works avalanche --recording /no/such.glb", "peers --runs 0", "growth --pairs 0", "growth --steps 0",
+          "growth --threads=-1", "growth --only nothing", "growth --out ''", "device --out ''", "peer",
+          "sweep --only nothing", "sweep /no/such.glb", "sweep /no/such.glb --only seeds", "sweep --values 0"}) {
         const Ran ran = run(arguments, true);
         EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
         EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << arguments << ": " << ran.out;
     }
+}
+
+TEST(Bench, HelpNamesEveryBenchmark) {
+    const Ran whole = run("--help", true);
+    EXPECT_EQ(whole.status, 0);
+    for (const std::string name : {"peers", "growth", "sweep", "device", "roofline", "several", "balance", "rays",
+                                   "stacks", "holds", "clash", "new-shape", "sleeping", "floor"}) {
+        EXPECT_NE(whole.out.find("\n  " + name + " "), std::string::npos) << name;
+        EXPECT_EQ(run(name + " --help", true).status, 0) << name;
+        EXPECT_EQ(run(name + " --no-such-option", true).status, 2) << name;
+    }
+}
+
+TEST(Bench, WorldsAreWritten) {
+    const Folder folder;
+    const std::string out = " --out \"" + folder.path.string() + "\"";
+    ASSERT_EQ(run("stacks --seconds 0.1 --only table --ground plane --finder edges" + out).status, 0);
+    EXPECT_FALSE(table_of(content(file_with(folder.path, "stacks-", ".csv"))).empty());
+    ASSERT_EQ(
+        run("holds --seconds 0.1 --only 'column of cubes' --finder ours --speculative off --print 1 2" + out).status,
+        0);
+    EXPECT_EQ(table_of(content(file_with(folder.path, "holds-", ".csv"))).size(), 1u);
+    const std::string page = content(file_with(folder.path, "holds-", ".html"));
+    EXPECT_NE(page.find("--speculative off --print 1 2 --out"), std::string::npos);
 }
 
 TEST(BenchGrowth, EveryPart) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/meshes.h>
+#include <scenes/models/machined.h>
 
 #include <raycontact/mass.h>
 #include <scenes/models/trigonometry.h>

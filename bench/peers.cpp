@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/bench.h"
-
-#include "cli/bench_device.h"
-#include "cli/bench_options.h"
+// peers, growth and sweep: what contacts cost elsewhere, at other sizes and with other thresholds.
+#include "bench/commands.h"
+#include "bench/options.h"
 
 #include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
 #include <bench/peers/contest_output.h>
+#include <bench/peers/entrants.h>
 #include <bench/peers/growth.h>
 #include <bench/peers/growth_output.h>
-#include <bench/peers/machine.h>
 #include <bench/peers/seeds.h>
 #include <bench/peers/swarm.h>
 #include <bench/peers/sweep_output.h>
@@ -25,11 +24,9 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace raycontact::bench {
 
-using namespace raycontact::bench;
-using raycontact::InputError;
-using raycontact::Method;
+namespace {
 
 struct PeersOptions {
     std::string out, mesh, recording;
@@ -108,8 +105,7 @@ using MakeWork = std::function<Work()>;
 /// Name and maker of each work; made one at a time, they are large.
 std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& options) {
     std::vector<std::pair<std::string, MakeWork>> works;
-    const auto approach = [&](std::string name, const std::shared_ptr<const raycontact::Shape>& shape,
-                              std::string source) {
+    const auto approach = [&](std::string name, const std::shared_ptr<const Shape>& shape, std::string source) {
         return approaching_pairs(std::move(name), shape, std::move(source), options.approach);
     };
     if (!options.mesh.empty()) {
@@ -249,8 +245,10 @@ void bench_sweep(const SweepCommand& command) {
     if (wrong) throw std::runtime_error("certified gave other contacts than standard; this must not be");
 }
 
-void add_peers(CLI::App& bench) {
-    CLI::App* command = bench.add_subcommand(
+} // namespace
+
+void add_peers(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
         "peers", "The same poses and pairs through ours, Bullet GImpact, FCL, ODE and Embree, one thread each");
     auto o = std::make_shared<PeersOptions>();
     add_out(*command, "--out", o->out, "write DIR/<machine>/peers-<date>.csv and .svg")->type_name("DIR");
@@ -282,9 +280,9 @@ void add_peers(CLI::App& bench) {
     command->callback([o] { bench_peers(*o); });
 }
 
-void add_growth(CLI::App& bench) {
+void add_growth(CLI::App& app) {
     CLI::App* command =
-        bench.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
+        app.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
     auto c = std::make_shared<GrowthCommand>();
     add_out(*command, "--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
     command->add_option("--only", c->options.parts, "parts: triangles,contacts,creeping,still,displacement,bodies")
@@ -301,8 +299,8 @@ void add_growth(CLI::App& bench) {
     command->callback([c] { bench_growth(*c); });
 }
 
-void add_sweep(CLI::App& bench) {
-    CLI::App* command = bench.add_subcommand(
+void add_sweep(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
         "sweep", "Every displacement threshold, and the library's choice: time, and rays that are wrong");
     auto c = std::make_shared<SweepCommand>();
     command
@@ -325,18 +323,4 @@ void add_sweep(CLI::App& bench) {
     command->callback([c] { bench_sweep(*c); });
 }
 
-} // namespace
-
-void add_bench(CLI::App& app) {
-    CLI::App* bench = app.add_subcommand("bench", "What contacts cost: against other libraries, and at other sizes");
-    bench->require_subcommand(0, 1); // none is refused below, with the names to choose from
-    bench->callback([bench] {
-        if (bench->get_subcommands().empty())
-            throw InputError("bench: a subcommand is required: peers, growth, sweep, device or roofline (see "
-                             "raycontact bench --help)");
-    });
-    add_peers(*bench);
-    add_growth(*bench);
-    add_sweep(*bench);
-    add_bench_device(*bench);
-}
+} // namespace raycontact::bench

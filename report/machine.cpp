@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bench/peers/machine.h>
+#include <report/machine.h>
 
 #include <commit.h>
+#include <fmt/format.h>
 
 #include <cctype>
 #include <cstdlib>
@@ -9,7 +10,7 @@
 #include <fstream>
 #include <thread>
 
-namespace raycontact::bench {
+namespace raycontact::report {
 
 namespace {
 
@@ -69,4 +70,9 @@ Machine this_machine() {
     return machine;
 }
 
-} // namespace raycontact::bench
+std::string heading(const Machine& m) {
+    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}{}\n", m.date, m.cpu, m.cores,
+                       m.governor, m.load, m.compiler, m.commit, m.cut_short ? "; cut short" : "");
+}
+
+} // namespace raycontact::report

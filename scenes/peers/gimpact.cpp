@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bench/peers/peer.h>
+#include <scenes/peers/peer.h>
 
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
@@ -7,7 +7,7 @@
 
 #include <map>
 
-namespace raycontact::bench {
+namespace raycontact::peers {
 
 namespace {
 
@@ -109,4 +109,4 @@ Entrant gimpact() {
     return entrant;
 }
 
-} // namespace raycontact::bench
+} // namespace raycontact::peers

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace raycontact::bench {
+namespace raycontact::report {
 
 /// Where, when and from what a figure was measured: no figure is worth anything without.
 struct Machine {
@@ -22,4 +22,7 @@ struct Machine {
 /// As it is now.
 Machine this_machine();
 
-} // namespace raycontact::bench
+/// One line for a person.
+std::string heading(const Machine& machine);
+
+} // namespace raycontact::report

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <vector>
 
-namespace raycontact::bench {
+namespace raycontact::peers {
 
 /// Microseconds. `cpu` is of the whole process, which works on one thread.
 struct Times {
@@ -30,4 +30,4 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-} // namespace raycontact::bench
+} // namespace raycontact::peers

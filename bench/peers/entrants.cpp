@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bench/peers/peer.h>
+#include <bench/peers/entrants.h>
 
 #include <algorithm>
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+// The subcommands of raycontact-bench. Each but the first five is in a file of its name.
+namespace raycontact::bench {
+
+void add_peers(CLI::App& app);
+void add_growth(CLI::App& app);
+void add_sweep(CLI::App& app);
+void add_device(CLI::App& app);
+void add_roofline(CLI::App& app);
+void add_several(CLI::App& app);
+void add_balance(CLI::App& app);
+void add_rays(CLI::App& app);
+void add_stacks(CLI::App& app);
+void add_holds(CLI::App& app);
+void add_clash(CLI::App& app);
+void add_new_shape(CLI::App& app);
+void add_sleeping(CLI::App& app);
+void add_floor(CLI::App& app);
+
+} // namespace raycontact::bench

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/commands.h"
+
+#include <cli/program.h>
+
+namespace {
+
+void add_benchmarks(CLI::App& app) {
+    using namespace raycontact::bench;
+    for (const auto add : {add_peers, add_growth, add_sweep, add_device, add_roofline, add_several, add_balance,
+                           add_rays, add_stacks, add_holds, add_clash, add_new_shape, add_sleeping, add_floor})
+        add(app);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const Program program{"raycontact-bench",
+                          "What contacts cost: against other libraries, at other sizes, in worlds of Bullet's.\n"
+                          "NAME --help lists the options of one benchmark; bench/README.md says what each measures.\n",
+                          "Exit status: 0 fine, 1 a benchmark failed or found what must not be, 2 bad usage or input.",
+                          add_benchmarks};
+    return run_program(program, argc, argv);
+}
