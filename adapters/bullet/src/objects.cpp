@@ -8,6 +8,8 @@
 #include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btTransformUtil.h>
 
+#include <algorithm>
+
 namespace raycontact::bullet {
 
 namespace {
@@ -23,6 +25,18 @@ btScalar longest_way(const Shape& shape, const btTransform& from, const btTransf
     btScalar turn = 0;
     for (int i = 0; i < 3; ++i) turn += (to.getBasis()[i] - from.getBasis()[i]).length2();
     return (to.getOrigin() - from.getOrigin()).length() + btSqrt(turn) * btScalar(shape.radius());
+}
+
+bool is_finite(const btTransform& t) {
+    btScalar sum = 0; // of zeros, or of what is no number
+    for (int i = 0; i < 3; ++i) sum += t.getBasis()[i].dot(btVector3(0, 0, 0)) + t.getOrigin()[i] * btScalar(0);
+    return sum == 0;
+}
+
+/// Why an object cannot take part as a whole; empty: it can. Bullet's next transform is made of the velocities.
+std::string fault_in_motion(const btCollisionObject& object) {
+    if (is_finite(object.getInterpolationWorldTransform())) return {};
+    return "its velocity is not finite; set velocity and transform, and activate it: Bullet may have disabled it";
 }
 
 /// What a new stretch is compared with; that of a plane is not rounded.
@@ -109,12 +123,38 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     } catch (const InputError& error) {
         record.fault = error.what();
     }
+    if (!record.misplaced()) record.fault = fault_in_motion(object);
     record.pose = whole.pose;
     for (Leaf& leaf : record.leaves)
         if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
     std::vector<Fault> faults = faults_of(object, record);
     if (!faults.empty()) mended_.left_out.push_back(&object);
     faults_.set(object, std::move(faults));
+}
+
+void Objects::report_lost(const btCollisionObject& object, std::uint64_t dispatch) {
+    if (is_finite(object.getWorldTransform()) && is_finite(object.getInterpolationWorldTransform())) return;
+    if (Object* record = find(object)) {
+        refresh(object, *record, dispatch);
+        return;
+    }
+    if (std::ranges::find(lost_, &object) != lost_.end()) return;
+    std::string text = fault_in_motion(object);
+    try {
+        place(object.getWorldTransform());
+    } catch (const InputError& error) {
+        text = error.what();
+    }
+    faults_.set(object, {fault_of(object, 0, text)});
+    mended_.left_out.push_back(&object);
+    lost_.push_back(&object);
+}
+
+void Objects::forget_mended() {
+    for (const btCollisionObject* object : lost_before_)
+        if (std::ranges::find(lost_, object) == lost_.end() && !records_.contains(object)) faults_.forget(object);
+    lost_before_.swap(lost_);
+    lost_.clear();
 }
 
 std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Object& record) {
@@ -179,15 +219,23 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
 }
 
-// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object, and
-// of one whose speed is beyond all bounds.
+// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of what Bullet gives no
+// velocity, and of one whose speed is beyond all bounds.
 void Objects::expect(const btCollisionObject& object, Object& record) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    if (body == nullptr || body->isStaticOrKinematicObject()) return;
-    const btVector3 velocity =
-        body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+    if (body == nullptr) return;
     btTransform then;
-    btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
+    if (body->isKinematicObject()) { // one without mass is static, too
+        const auto next = kinematics_.next_of(object);
+        if (!next) return;
+        then = *next;
+    } else if (body->isStaticObject()) {
+        return;
+    } else {
+        const btVector3 velocity =
+            body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+        btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
+    }
     for (Leaf& leaf : record.leaves) {
         if ((leaf.body == Leaf::no_body && leaf.kind != Kind::round) || leaf.left_out()) continue;
         try {

@@ -3,6 +3,7 @@
 
 #include <convert.h>
 #include <faults.h>
+#include <kinematics.h>
 #include <placement.h>
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/scene.h>
@@ -112,8 +113,16 @@ public:
     void refresh_pinned(std::uint64_t dispatch);
 
     /// From now on refresh() also tells the scene where objects will be after so many seconds; 0: not.
-    void look_ahead(btScalar seconds) { ahead_ = seconds; }
+    void look_ahead(btScalar seconds, std::uint64_t dispatch) {
+        ahead_ = seconds;
+        kinematics_.begin(dispatch, seconds);
+    }
 
+    /// Leaves an object out if its transform, or Bullet's next one, is not finite: Bullet disables it without a word,
+    /// so no pair asks for it any more.
+    void report_lost(const btCollisionObject& object, std::uint64_t dispatch);
+    /// Last in a dispatch.
+    void forget_mended();
     /// What leaves the object, or some of its leaves, out.
     static std::vector<Fault> faults_of(const btCollisionObject& object, const Object& record);
     /// Call it once a dispatch.
@@ -125,6 +134,7 @@ public:
     ShapeCache& shapes() { return shapes_; }
     Faults& faults() { return faults_; }
     Mended& mended() { return mended_; }
+    Kinematics& kinematics() { return kinematics_; }
 
 private:
     Kind kind_for_us(const btCollisionShape& shape) const;
@@ -141,8 +151,10 @@ private:
     ShapeCache shapes_;
     Faults faults_;
     Mended mended_;
+    Kinematics kinematics_;
     std::unordered_map<const btCollisionObject*, Object> records_;
     std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
+    std::vector<const btCollisionObject*> lost_, lost_before_; ///< without a record, of this dispatch and of the last
     std::uint64_t versions_ = 0;
     btScalar ahead_ = 0;
 };

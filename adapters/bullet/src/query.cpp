@@ -107,7 +107,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
     }
     if (a.leaf.left_out() || b.leaf.left_out()) return;
     const bool convex = a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex;
-    switch (work_for(a.leaf, b.leaf)) {
+    switch (work_for(a.leaf, b.leaf, convex_)) {
     case Work::plane:
         run_plane(a, b, result);
         break;
@@ -152,7 +152,7 @@ void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& resu
     const Placed& mesh = a_is_mesh ? a : b;
     const Placed& ball = a_is_mesh ? b : a;
     std::vector<RoundContact> found;
-    round_contacts(mesh.leaf.converted, mesh.leaf.pose, round_of(*ball.leaf.shape), ball.leaf.pose,
+    round_contacts(mesh.leaf.converted, mesh.leaf.pose, round_before(mesh.leaf, ball.leaf, convex_), ball.leaf.pose,
                    result.m_closestPointDistanceThreshold, found);
     for (const RoundContact& c : found) {
         const int triangle = static_cast<int>(mesh.leaf.converted.shape->triangle_index()[c.triangle]);

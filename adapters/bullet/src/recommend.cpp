@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/recommend.h>
 
+#include <raycontact/bullet/dispatcher.h>
 #include <raycontact/error.h>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -14,6 +15,7 @@ void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
         throw InputError("SolverSettings::slop must be finite and not negative");
     if (!(settings.erp >= 0 && settings.erp <= 1)) throw InputError("SolverSettings::erp must be from 0 to 1");
     if (settings.iterations < 1) throw InputError("SolverSettings::iterations must be at least 1");
+    if (auto* ours = dynamic_cast<CollisionDispatcher*>(world.getDispatcher())) ours->attach(world);
     btContactSolverInfo& info = world.getSolverInfo();
     info.m_linearSlop = btScalar(settings.slop);
     info.m_erp2 = btScalar(settings.erp);
