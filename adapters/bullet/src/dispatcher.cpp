@@ -161,7 +161,8 @@ struct CollisionDispatcher::State {
     bool apart(const Leaf& a, const Leaf& b) const;
     std::optional<HalfSpace> face_between(const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
-    void count_one_sided(const btCollisionObject& object, int child, const Leaf& mesh, const Leaf& other);
+    void note_open(const PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    void tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh);
     void add_cast(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void wake(const PairState& pair);
@@ -424,8 +425,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             switch (work_for(la, lb, convex)) {
             case Work::batch: {
                 if (several && apart(la, lb)) break;
-                count_one_sided(*state.object0, i, la, lb);
-                count_one_sided(*state.object1, j, lb, la);
+                note_open(state, i, j, la, lb);
                 if (const auto face = face_between(la, lb)) {
                     add_plane(state, i, j, la, lb, *face);
                     break;
@@ -567,15 +567,22 @@ void CollisionDispatcher::State::add_cast(PairState& state, int leaf0, int leaf1
     state.candidates.push_back(candidate);
 }
 
-// Told once for each mesh: most levels have one, and many objects may share it.
-void CollisionDispatcher::State::count_one_sided(const btCollisionObject& object, int child, const Leaf& mesh,
-                                                 const Leaf& other) {
-    if (mesh.kind != Kind::mesh || mesh.converted.shape->has_inside()) return;
+void CollisionDispatcher::State::note_open(const PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+    const auto is_open = [](const Leaf& leaf) {
+        return leaf.kind == Kind::mesh && !leaf.converted.shape->has_inside();
+    };
+    if (!is_open(a) && !is_open(b)) return;
     ++stats.one_sided_pairs;
-    const std::shared_ptr<const Shape>& shape = mesh.converted.shape;
-    std::weak_ptr<const Shape>& known = told_one_sided[shape.get()];
-    if (!known.expired() || other.kind == Kind::field) return;
-    known = shape;
+    if (is_open(a) && b.kind != Kind::field) tell_one_sided(*state.object0, leaf0, a);
+    if (is_open(b) && a.kind != Kind::field) tell_one_sided(*state.object1, leaf1, b);
+}
+
+// Once for each mesh: many objects may share it. What moves and is open mostly lies on what is closed.
+void CollisionDispatcher::State::tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh) {
+    if (!mesh.is_fixed) return;
+    std::weak_ptr<const Shape>& known = told_one_sided[mesh.converted.shape.get()];
+    if (!known.expired()) return;
+    known = mesh.converted.shape;
     std::erase_if(told_one_sided, [](const auto& one) { return one.second.expired(); });
     objects.faults().add(hint_of(object, child,
                                  "its mesh is open, so it stops other meshes at the front of its faces alone and lets "

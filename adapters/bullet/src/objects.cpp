@@ -33,10 +33,23 @@ bool is_finite(const btTransform& t) {
     return sum == 0;
 }
 
-/// Why an object cannot take part as a whole; empty: it can. Bullet's next transform is made of the velocities.
-std::string fault_in_motion(const btCollisionObject& object) {
-    if (is_finite(object.getInterpolationWorldTransform())) return {};
-    return "its velocity is not finite; set velocity and transform, and activate it: Bullet may have disabled it";
+bool is_finite(const btVector3& v) {
+    return v.dot(btVector3(0, 0, 0)) == 0;
+}
+
+bool has_velocity(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body == nullptr || (is_finite(body->getLinearVelocity()) && is_finite(body->getAngularVelocity()));
+}
+
+/// Why an object cannot take part as a whole; empty: it can. A velocity comes first: the transform is then its doing.
+std::string fault_of_whole(const btCollisionObject& object, std::string fault_of_transform) {
+    const bool moves = has_velocity(object);
+    if (moves && !fault_of_transform.empty()) return fault_of_transform;
+    if (moves && is_finite(object.getInterpolationWorldTransform())) return {};
+    return "its velocity is not finite, or beyond all bounds; set velocity and transform, and activate it, since "
+           "Bullet "
+           "disables such objects";
 }
 
 /// What a new stretch is compared with; that of a plane is not rounded.
@@ -123,7 +136,7 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     } catch (const InputError& error) {
         record.fault = error.what();
     }
-    if (!record.misplaced()) record.fault = fault_in_motion(object);
+    record.fault = fault_of_whole(object, std::move(record.fault));
     record.pose = whole.pose;
     for (Leaf& leaf : record.leaves)
         if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
@@ -133,19 +146,21 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
 }
 
 void Objects::report_lost(const btCollisionObject& object, std::uint64_t dispatch) {
-    if (is_finite(object.getWorldTransform()) && is_finite(object.getInterpolationWorldTransform())) return;
+    if (is_finite(object.getWorldTransform()) && is_finite(object.getInterpolationWorldTransform())
+        && has_velocity(object))
+        return;
     if (Object* record = find(object)) {
         refresh(object, *record, dispatch);
         return;
     }
     if (std::ranges::find(lost_, &object) != lost_.end()) return;
-    std::string text = fault_in_motion(object);
+    std::string text;
     try {
         place(object.getWorldTransform());
     } catch (const InputError& error) {
         text = error.what();
     }
-    faults_.set(object, {fault_of(object, 0, text)});
+    faults_.set(object, {fault_of(object, 0, fault_of_whole(object, std::move(text)))});
     mended_.left_out.push_back(&object);
     lost_.push_back(&object);
 }
@@ -167,6 +182,7 @@ std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Obj
 }
 
 void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole) {
+    leaf.is_fixed = object.isStaticOrKinematicObject();
     const bool was_left_out = leaf.left_out();
     const auto leave_out = [&](const InputError& error, bool unusable) {
         leaf.fault = error.what();

@@ -32,6 +32,7 @@ struct Leaf {
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     btTransform next = btTransform::getIdentity(); ///< pose, or where a moving body is expected at the next dispatch
     btScalar way = 0;      ///< how far its points go until then, at most; also as the scene expects it
+    bool is_fixed = false; ///< its object is static or kinematic
     bool flat = false;     ///< a convex shape without a mesh to stand for it
     std::string fault;     ///< why it is left out; empty: it takes part
     bool unusable = false; ///< no mesh can be made of it, which is its fault; else its transform

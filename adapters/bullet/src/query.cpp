@@ -48,6 +48,7 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   Placed placed{{}, pose, static_cast<int>(leaves.size())};
                   placed.leaf.shape = &shape;
                   placed.leaf.kind = kind_of(shape);
+                  placed.leaf.is_fixed = wrap.getCollisionObject()->isStaticOrKinematicObject();
                   const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
                   try {

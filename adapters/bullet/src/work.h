@@ -15,9 +15,10 @@ inline bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
     return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
 }
 
-/// Whether Bullet's rule for convex shapes holds against a mesh that has no inside: each face stops them on both sides.
+/// Whether Bullet's rule for convex shapes holds: each face of an open level stops them on both sides. What moves and
+/// is open lies on its vertices, whatever it is wound like.
 inline bool is_two_sided(const Leaf& mesh, ConvexShapes convex) {
-    return convex == ConvexShapes::by_mesh && mesh.kind == Kind::mesh && mesh.converted.shape
+    return convex == ConvexShapes::by_mesh && mesh.kind == Kind::mesh && mesh.is_fixed && mesh.converted.shape
            && !mesh.converted.shape->has_inside();
 }
 

@@ -34,9 +34,10 @@ struct ManifoldSettings {
 
 /// Who finds the contacts of a mesh with Bullet's convex shapes. Pairs of convex shapes are Bullet's in any case.
 enum class ConvexShapes {
-    /// By the mesh. One with an inside (Shape::has_inside): as `ours`. An open one, as levels of games are, stops them
-    /// on both sides of each face, however it is wound: balls and capsules in closed form, the others by Bullet's own
-    /// algorithms, which see what touches, and a cast of the shape, which sees what comes fast.
+    /// By the mesh. An open one (without Shape::has_inside) of a static or kinematic object, as levels of games are,
+    /// stops them on both sides of each face, however it is wound: balls and capsules in closed form, the others by
+    /// Bullet's own
+    /// algorithms, which see what touches, and a cast of the shape, which sees what comes fast. Others: as `ours`.
     by_mesh,
     /// RayContact: balls and capsules in closed form; boxes, cylinders, cones, hulls and multi-spheres as meshes made
     /// once for each shape. Other convex shapes are left to Bullet. An open mesh stops them at the front of its faces.
@@ -61,7 +62,7 @@ struct DispatcherStats {
     /// (ConvexShapes::by_mesh); balls and capsules are in round_pairs.
     std::uint64_t two_sided_pairs = 0;
     /// Of mesh_pairs, those with an open mesh: it stops others at the front of its faces, and lets through what comes
-    /// from behind. on_fault() is told once for each such mesh.
+    /// from behind. on_fault() is told once for each such mesh of a static or kinematic object.
     std::uint64_t one_sided_pairs = 0;
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
     std::uint64_t contacts = 0;       ///< found, speculative ones and those of balls and capsules that are near, too
