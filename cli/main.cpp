@@ -3,6 +3,7 @@
 #include "cli/complain.h"
 #include "cli/exit_status.h"
 #include "cli/stop.h"
+#include "cli/suggest.h"
 
 #include <raycontact/error.h>
 
@@ -36,6 +37,9 @@ int run_program(int argc, char** argv) {
     add_commands(app);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::ExtrasError&) {
+        complain(what_was_not_expected(app) + " (see raycontact --help)");
+        return bad_input;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
         complain(std::string(error.what()) + " (see raycontact --help)");
