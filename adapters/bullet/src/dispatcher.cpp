@@ -269,8 +269,11 @@ void CollisionDispatcher::State::look_at_world(const btOverlappingPairCache* cac
     if (world == nullptr || cache != world_cache) return;
     if (info.m_useContinuous) objects.kinematics().sweep(*world, asker);
     const btCollisionObjectArray& all = world->getCollisionObjectArray();
-    for (int i = 0; i < all.size(); ++i)
-        if (!all[i]->isStaticObject() || all[i]->isKinematicObject()) objects.report_lost(*all[i], dispatch);
+    for (int i = 0; i < all.size(); ++i) {
+        const btCollisionObject& object = *all[i];
+        if (object.getActivationState() == ISLAND_SLEEPING) continue; // as static ones do
+        objects.report_lost(object, dispatch);
+    }
 }
 
 // In time for this step: Bullet's islands wake what touches a kinematic object, but solve it one step later where it

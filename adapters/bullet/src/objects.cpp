@@ -182,7 +182,10 @@ std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Obj
 }
 
 void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole) {
-    leaf.is_fixed = object.isStaticOrKinematicObject();
+    if (leaf.is_fixed != object.isStaticOrKinematicObject()) {
+        leaf.is_fixed = !leaf.is_fixed;
+        record.version = ++versions_; // others may find its contacts now
+    }
     const bool was_left_out = leaf.left_out();
     const auto leave_out = [&](const InputError& error, bool unusable) {
         leaf.fault = error.what();

@@ -119,7 +119,7 @@ public:
 
     /// Tells it its world, which Bullet does not. recommend() does so, too. Dispatches of that world then also find
     /// what lies on the way of its kinematic objects (docs/bullet.md), and report each object that Bullet has disabled
-    /// for a transform that is not finite. Call it again for another world. The world must live while it dispatches.
+    /// for a transform that is not finite. Call it again for another world, before that one steps.
     void attach(btCollisionWorld& world);
 
     /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out.
