@@ -207,6 +207,7 @@ std::vector<QueryPair> query_of(const CollideCommand& options) {
 void collide(const CollideCommand& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
+    if (pairs.empty() && !options.json) std::cout << "0 pairs\n";
     ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.settings.execution.threads);
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);

@@ -4,6 +4,7 @@
 #include "cli/complain.h"
 #include "cli/exit_status.h"
 #include "cli/stop.h"
+#include "cli/suggest.h"
 
 #include <raycontact/error.h>
 
@@ -43,6 +44,9 @@ int run(const Program& program, int argc, char** argv) {
     program.add_commands(app);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::ExtrasError&) {
+        complain(name, what_was_not_expected(app) + see);
+        return bad_input;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
         complain(name, error.what() + see);

@@ -188,6 +188,7 @@ void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::
     const auto start = std::chrono::steady_clock::now();
     const int before = stop_signal();
     folder.write("steps.csv", steps_csv(log.rows));
+    if (pictures > 0) std::cerr << "drawing pictures and a film for the report; --pictures none does without\n";
     raycontact::report::ReportOptions report{pictures, compare_with_gimpact(log)};
     Progress progress("drawing", work_of(log, report), "");
     report.progress = [&](std::uint32_t done) { progress.show(done); };

@@ -30,7 +30,9 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/raycontactConfig.cmake
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/raycontactConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/raycontactConfig.cmake ${PROJECT_BINARY_DIR}/raycontactConfigVersion.cmake
     DESTINATION ${raycontact_config_folder})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+    DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}) # and its examples
 if(TARGET raycontact_cli)
     install(TARGETS raycontact_cli)
 endif()

@@ -45,6 +45,14 @@ fs::path behind_links(const fs::path& name) {
     return error ? name : target;
 }
 
+/// As a folder of results is made where it is missing.
+void make_folder_of(const fs::path& name) {
+    if (!name.has_parent_path()) return;
+    std::error_code error;
+    fs::create_directories(name.parent_path(), error);
+    if (error) refuse(name, "its folder cannot be made: " + error.message());
+}
+
 void check_name(const fs::path& name) {
     struct stat status {};
     if (::lstat(with(name, longest_ending).c_str(), &status) != 0 && errno == ENAMETOOLONG)
@@ -94,6 +102,7 @@ int claim(const fs::path& name, const fs::path& part) {
 
 OutFile::OutFile(const fs::path& name) : name_(behind_links(name)), part_(with(name_, ".part")) {
     check_name(name_);
+    make_folder_of(name_);
     descriptor_ = claim(name_, part_);
 }
 

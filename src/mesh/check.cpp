@@ -64,7 +64,7 @@ void check_mesh(const Mesh& mesh, const std::string& name) {
         fail("has more than " + std::to_string(most_triangles) + " triangles or " + std::to_string(most_vertices)
              + " vertices; split or reduce it");
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        if (!is_finite(mesh.vertices[i])) fail("vertex " + std::to_string(i) + " is not finite");
+        if (!is_finite(mesh.vertices[i])) fail("vertex " + std::to_string(i) + " (counted from 0) is not finite");
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const std::uint32_t v : mesh.triangles[i]) {

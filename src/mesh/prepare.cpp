@@ -127,7 +127,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
         // Products of four coordinates must fit float32, with which rays are cast.
         const auto& [x, y, z] = mesh.vertices[i];
         if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > greatest_coordinate)
-            throw InputError(name + ": vertex " + std::to_string(i)
+            throw InputError(name + ": vertex " + std::to_string(i) + " (counted from 0)"
                              + " is further than 1e9 m from the origin; scale the mesh");
     }
     PreparedMesh prepared = weld(mesh);

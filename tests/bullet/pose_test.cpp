@@ -541,7 +541,8 @@ TEST(BulletFaults, ObjectsThatAreGoneForLongAreForgotten) {
     EXPECT_EQ(told, 3);
 }
 
-// A speed beyond all bounds makes a pose that is not finite; speculative contacts ask for it before Bullet does.
+// A speed beyond all bounds makes a pose that is not finite; speculative contacts ask for it before Bullet does. One
+// that is no number would make those of all that touch it no numbers, in Bullet's solver.
 TEST(BulletPose, NoSpeedEndsASimulation) {
     TestWorld w;
     w.dispatcher.on_fault({});
@@ -551,8 +552,83 @@ TEST(BulletPose, NoSpeedEndsASimulation) {
         body.setWorldTransform(at(0, 0, 0.4));
         body.setLinearVelocity(btVector3(0, 0, speed));
         w.world.performDiscreteCollisionDetection();
+        const bool is_left_out = !w.dispatcher.stats().left_out.empty();
+        EXPECT_EQ(is_left_out, !std::isfinite(speed)) << speed;
+        EXPECT_EQ(w.dispatcher.stats().contacts == 0, is_left_out) << speed;
     }
-    EXPECT_GT(w.dispatcher.stats().contacts, 0u);
+}
+
+/// A body that may be disabled, at rest on a static mesh.
+btRigidBody& add_resting(TestWorld& w) {
+    w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5));
+    btRigidBody& body = w.add_mesh(table(), 5, at(0, 0, 0.4));
+    body.forceActivationState(ACTIVE_TAG);
+    w.steps(10);
+    EXPECT_GT(w.touching(), 0);
+    return body;
+}
+
+// Bullet disables such a body in the next update of its boxes, and asks for none of its pairs any more.
+TEST(BulletPose, ABodyThatBulletDisablesIsReported) {
+    for (const bool attached : {false, true}) {
+        for (const bool by_velocity : {false, true}) {
+            TestWorld w;
+            if (attached) w.dispatcher.attach(w.world);
+            btRigidBody& body = add_resting(w);
+            Told told(w);
+            if (by_velocity)
+                body.setLinearVelocity(btVector3(nan, 0, 0));
+            else
+                body.getWorldTransform().getOrigin().setX(nan);
+            for (int i = 0; i < 5; ++i) {
+                w.steps(1);
+                EXPECT_EQ(w.dispatcher.stats().left_out, std::vector<const btCollisionObject*>{&body});
+            }
+            ASSERT_EQ(told.faults.size(), 1u) << attached << by_velocity;
+            EXPECT_EQ(told.faults[0].object, &body);
+            EXPECT_TRUE(told.faults[0].left_out);
+            EXPECT_NE(told.faults[0].text.find(by_velocity ? "velocity is not finite" : "finite"), std::string::npos)
+                << told.faults[0].text;
+            EXPECT_FALSE(body.isActive()) << "Bullet's part";
+
+            body.setCenterOfMassTransform(at(0, 0, 0.4));
+            body.setInterpolationWorldTransform(at(0, 0, 0.4));
+            body.setLinearVelocity(btVector3(0, 0, 0));
+            body.setAngularVelocity(btVector3(0, 0, 0));
+            body.setInterpolationLinearVelocity(btVector3(0, 0, 0));
+            body.setInterpolationAngularVelocity(btVector3(0, 0, 0));
+            body.clearForces();
+            body.forceActivationState(ACTIVE_TAG);
+            w.steps(60);
+            EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+            EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.4, 0.005);
+            body.getWorldTransform().getOrigin().setX(nan);
+            w.steps(2);
+            EXPECT_EQ(told.faults.size(), 2u) << "mended, and broken again";
+        }
+    }
+}
+
+// It is in no pair, so only a dispatcher that knows its world sees it.
+TEST(BulletPose, ABodyInTheAirIsReportedInAnAttachedWorld) {
+    for (const bool mesh : {true, false}) {
+        TestWorld w;
+        w.dispatcher.attach(w.world);
+        add_resting(w);
+        Told told(w);
+        btRigidBody& body = mesh ? w.add_mesh(table(), 5, at(0, 0, 9))
+                                 : w.add(std::make_unique<btSphereShape>(btScalar(0.2)), 1, at(0, 0, 9));
+        body.forceActivationState(ACTIVE_TAG);
+        w.steps(1);
+        body.setLinearVelocity(btVector3(0, nan, 0));
+        w.steps(3);
+        EXPECT_EQ(w.dispatcher.stats().left_out, std::vector<const btCollisionObject*>{&body});
+        ASSERT_EQ(told.faults.size(), 1u);
+        EXPECT_EQ(told.faults[0].object, &body);
+        w.remove(body);
+        w.steps(2);
+        EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+    }
 }
 
 } // namespace

@@ -176,13 +176,40 @@ TEST(Recommend, MeshesComeToRestWithoutSpeculativeContacts) {
     EXPECT_LT(found[1].piles.speed, found[2].piles.speed / 2);
 }
 
+TEST(Recommend, TheSlopGoesByTheSmallestBodyThatMoves) {
+    TestWorld w;
+    const auto slop = [&](const bullet::SolverSettings& settings) {
+        bullet::recommend(w.world, settings);
+        return 1000 * double(w.world.getSolverInfo().m_linearSlop);
+    };
+    w.add_mesh(Shape::make(box_mesh(0.001, 0.001, 0.001)), 0, at(0, 0, -5));
+    EXPECT_NEAR(slop({}), 1, 1e-6) << "nothing moves";
+    w.add_mesh(table(), 5, at(0, 0, 1));
+    EXPECT_NEAR(slop({}), 1, 0.01);
+    w.add(std::make_unique<btSphereShape>(btScalar(0.05)), 1, at(2, 0, 1));
+    EXPECT_NEAR(slop({}), 0.1, 0.01);
+    auto nut = std::make_unique<btCompoundShape>();
+    nut->addChildShape(at(0, 0, 0),
+                       &w.keep(std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(0.02, 0.02, 0.01)))));
+    w.add(std::move(nut), 1, at(4, 0, 1));
+    EXPECT_NEAR(slop({}), 0.02, 0.005);
+    EXPECT_NEAR(slop({.size = 0.5}), 0.5, 1e-6);
+    EXPECT_NEAR(slop({.slop = 0.003, .size = 0.5}), 3, 1e-6);
+    Settings without;
+    without.speculative = false;
+    TestWorld other(without);
+    bullet::recommend(other.world, {.size = 0.02});
+    EXPECT_NEAR(1000 * double(other.world.getSolverInfo().m_linearSlop), 0.1, 1e-6);
+}
+
 TEST(Recommend, RefusesWhatIsOutOfRange) {
     TestWorld w;
     const btContactSolverInfo before = w.world.getSolverInfo();
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
     using Bad = bullet::SolverSettings;
-    for (const Bad& bad : {Bad{.slop = -1e-9}, Bad{.slop = nan}, Bad{.slop = inf}, Bad{.erp = -0.1}, Bad{.erp = 1.1},
-                           Bad{.erp = nan}, Bad{.iterations = 0}, Bad{.iterations = -3}})
+    for (const Bad& bad :
+         {Bad{.slop = -1e-9}, Bad{.slop = nan}, Bad{.slop = inf}, Bad{.size = 0}, Bad{.size = nan}, Bad{.erp = -0.1},
+          Bad{.erp = 1.1}, Bad{.erp = nan}, Bad{.iterations = 0}, Bad{.iterations = -3}})
         EXPECT_THROW(bullet::recommend(w.world, bad), InputError);
     EXPECT_EQ(w.world.getSolverInfo().m_linearSlop, before.m_linearSlop);
     EXPECT_NO_THROW(bullet::recommend(w.world, {.slop = 0, .erp = 1, .iterations = 1}));

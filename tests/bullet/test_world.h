@@ -25,7 +25,7 @@ inline btTransform at(double x, double y, double z) {
 /// A Bullet world with our dispatcher in place of Bullet's: z up, metres, 60 steps a second.
 struct TestWorld {
     explicit TestWorld(const Settings& settings = {}, const bullet::ManifoldSettings& manifolds = {},
-                       bullet::ConvexShapes convex = bullet::ConvexShapes::ours);
+                       bullet::ConvexShapes convex = bullet::ConvexShapes::by_mesh);
     ~TestWorld();
 
     /// Keeps the shape; mass 0 is static.

@@ -323,7 +323,7 @@ TEST_F(Clash, BadInputIsRefused) {
     expect_refused(run({"a.obj", "missing.glb"}), "missing.glb");
     expect_refused(run({"a.obj", "--ignore-touching", "-1"}), "--ignore-touching");
     expect_refused(run({"a.obj", "--threads", "many"}), "--threads");
-    expect_refused(run({"a.obj", "--out", "no/such/folder.glb"}), "no/such");
+    expect_refused(run({"a.obj", "--out", "a.obj/red.glb"}), "a.obj/red.glb: cannot be written: its folder cannot be");
     folder_.write("empty.gltf", R"({"asset": {"version": "2.0"}})");
     expect_refused(run({"empty.gltf"}), "empty.gltf");
     expect_refused(run({"a.obj"}), "is one part");
@@ -331,6 +331,8 @@ TEST_F(Clash, BadInputIsRefused) {
     expect_refused(run({"a.obj", "b.obj", "--out", "b.obj"}), "ends in .glb");
     write_assembly("two.gltf", {{"p", 0}, {"q", 0}});
     ASSERT_EQ(run({"two.gltf", "--out", "two.glb"}).status, 0);
+    EXPECT_EQ(run({"two.gltf", "--out", "a/new/folder/two.glb"}).status, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "a/new/folder/two.glb"));
     expect_refused(run({"two.glb", "--out", "two.glb"}), "one of the files to read");
     folder_.write("text.glb", "no mesh");
     expect_refused(run({"text.glb"}), "text.glb");

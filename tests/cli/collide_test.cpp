@@ -53,6 +53,16 @@ void expect_vector(const json& vector, double x, double y, double z) {
     EXPECT_NEAR(vector[2].get<double>(), z, 1e-6);
 }
 
+TEST_F(Collide, NoPairsAreSaidToBeNone) {
+    folder_.write("none.json", "[]");
+    const auto text = run({"collide", "--pairs", "none.json"}),
+               lines = run({"collide", "--pairs", "none.json", "--json"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_EQ(text.out, "0 pairs\n");
+    EXPECT_EQ(lines.status, 0);
+    EXPECT_EQ(lines.out, "");
+}
+
 TEST_F(Collide, TwoCorners) {
     const auto result = run_vertices(json::array({corner_pair()}));
     ASSERT_EQ(result.status, 0) << result.err;

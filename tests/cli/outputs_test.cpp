@@ -89,8 +89,9 @@ TEST_F(Outputs, AreCheckedBeforeTheFirstStep) {
     const std::string most(246, 'x');
     std::filesystem::create_directories(at("out/report.html"));
     std::filesystem::create_directory(at("folder.glb"));
+    folder_.write("file", "no folder can be made here");
     for (const std::vector<std::string>& words : {std::vector<std::string>{"--record", most + ".glb"},
-                                                  {"--record", "nowhere/a.glb"},
+                                                  {"--record", "file/a.glb"},
                                                   {"--record", "folder.glb"},
                                                   {"--out", std::string(300, 'x')},
                                                   {"--out", "out"},

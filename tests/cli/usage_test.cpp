@@ -72,6 +72,14 @@ TEST_F(Usage, UnknownWordsNameTheOption) {
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--devices", "gpu\n"}), "'gpu?': give");
 }
 
+TEST_F(Usage, UnknownOptionsAreNamedInOrderWithTheNearest) {
+    expect_refused(run({"run", "avalanche", "--bodie", "5"}), "not expected: --bodie 5; did you mean --bodies?");
+    expect_refused(run({"collide", "cube.obj", "cube.obj", "--methods=standard"}), "did you mean --method?");
+    expect_refused(run({"colide", "cube.obj", "cube.obj"}), "did you mean collide?");
+    const auto far = run({"collide", "cube.obj", "cube.obj", "--wavelets"});
+    EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
+}
+
 TEST_F(Usage, ThresholdsThatMakeNoSenseNameTheirOption) {
     const std::pair<const char*, const char*> refused[] = {{"--displacement-threshold", "-0.01"},
                                                            {"--displacement-threshold", "nan"},

@@ -56,7 +56,7 @@ TEST_F(ViewProgram, RefusesWhatItCannotDo) {
     folder_.write("no.glb", "this is no recording");
     expect_refused(view({"missing.glb"}), "missing.glb");
     expect_refused(view({"no.glb"}), "no.glb");
-    expect_refused(view({"a.glb", "--out", "nowhere/b.html"}), "nowhere/b.html");
+    expect_refused(view({"a.glb", "--out", "no.glb/b.html"}), "no.glb/b.html");
     expect_refused(view({"a.glb", "--out", "a.glb"}), "a.glb is the recording itself");
     expect_refused(view({"a.glb", "--every", "0"}), "--every");
     expect_refused(view({"a.glb", "--method", "sometimes"}), "sometimes");

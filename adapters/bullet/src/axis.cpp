@@ -139,6 +139,16 @@ private:
 
 } // namespace
 
+void ways_through(const Converted& mesh, const btVector3& a, const btVector3& b, std::vector<WayOut>& out) {
+    out.clear();
+    for (const Crossing& c : Axis(mesh, a, b).crossings()) {
+        // The normal looks to the side of the second end where the slope is positive.
+        const bool second_is_longer = c.at < btScalar(0.5);
+        const btVector3 normal = (c.slope > 0) == second_is_longer ? c.normal : -c.normal;
+        out.push_back({c.point, normal, btMin(c.at, 1 - c.at) * btFabs(c.slope), c.triangle});
+    }
+}
+
 void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,
               std::vector<WayOut>& out) {
     out.clear();

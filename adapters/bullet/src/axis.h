@@ -24,5 +24,8 @@ struct WayOut {
 /// surface at end k has its contact already, as always with a closed mesh.
 void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,
               std::vector<WayOut>& out);
+/// The same for an open mesh whose faces stop it on both sides: at each face that the axis runs through, to the side
+/// where more of it is.
+void ways_through(const Converted& mesh, const btVector3& a, const btVector3& b, std::vector<WayOut>& out);
 
 } // namespace raycontact::bullet

@@ -2,6 +2,7 @@
 #include <raycontact/bullet/dispatcher.h>
 
 #include <box_face.h>
+#include <cast.h>
 #include <pair.h>
 #include <place_name.h>
 #include <plane.h>
@@ -14,6 +15,7 @@
 #include <world_recorder.h>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -22,6 +24,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 namespace raycontact::bullet {
 
@@ -52,7 +55,7 @@ constexpr unsigned convex_kinds = bit(Kind::convex) | bit(Kind::round);
 bool for_us(const btCollisionShape& a, const btCollisionShape& b, ConvexShapes convex) {
     if (a.isConvex() && b.isConvex()) return false;
     unsigned partners = bit(Kind::mesh) | bit(Kind::plane) | bit(Kind::field);
-    if (convex == ConvexShapes::ours) partners |= convex_kinds;
+    if (convex != ConvexShapes::bullet) partners |= convex_kinds;
     const unsigned in_a = kinds_in(a), in_b = kinds_in(b);
     return ((in_a & bit(Kind::mesh)) && (in_b & partners)) || ((in_b & bit(Kind::mesh)) && (in_a & partners));
 }
@@ -144,9 +147,11 @@ struct CollisionDispatcher::State {
         objects.faults().set_callback(print);
     }
 
+    void look_at_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher* asker);
     bool is_ours(btBroadphasePair& pair);
     void visit(btBroadphasePair& pair, const btDispatcherInfo& info);
     void ask(btBroadphasePair& pair, const btDispatcherInfo& info);
+    void leave_alone(const btCollisionObject& a, const btCollisionObject& b);
     void drop_algorithm(btBroadphasePair& pair) const;
     void fetch_ahead(std::size_t i) const;
     void take(btBroadphasePair& pair, const btDispatcherInfo& info);
@@ -156,7 +161,11 @@ struct CollisionDispatcher::State {
     bool apart(const Leaf& a, const Leaf& b) const;
     std::optional<HalfSpace> face_between(const Leaf& a, const Leaf& b) const;
     void add_plane(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b, const HalfSpace& space);
+    void note_open(const PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    void tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh);
+    void add_cast(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
     void add_round(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b);
+    void wake(const PairState& pair);
     void sort_batch();
     void hand_out(std::span<const Contact> contacts);
 
@@ -166,16 +175,20 @@ struct CollisionDispatcher::State {
     Scene scene;
     Objects objects;
     Queries queries;
+    Touches touches;
     DispatcherStats stats;
     std::uint64_t dispatch = 0;
-    bool asking = false;                 ///< a near callback is at work
-    std::vector<btBroadphasePair*> ours; ///< of this dispatch
-    std::vector<PairState*> work;        ///< this dispatch's pairs, in the broad phase's order
+    btCollisionWorld* world = nullptr;                   ///< that was attached; it may be gone
+    const btOverlappingPairCache* world_cache = nullptr; ///< by which a dispatch shows that it is of that world
+    bool asking = false;                                 ///< a near callback is at work
+    std::vector<btBroadphasePair*> ours;                 ///< of this dispatch
+    std::vector<PairState*> work;                        ///< this dispatch's pairs, in the broad phase's order
     std::vector<BatchEntry> batch;
     std::vector<std::pair<Slots, std::uint32_t>> order; ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs;
     std::vector<PlaneContact> below;
     std::vector<RoundContact> near;
+    std::unordered_map<const Shape*, std::weak_ptr<const Shape>> told_one_sided;
     std::unique_ptr<WorldRecorder> recorder; ///< null: nothing is recorded
 };
 
@@ -195,9 +208,11 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     s.work.clear();
     s.batch.clear();
     s.objects.mended() = {};
+    s.touches.begin();
     const std::uint64_t made_before = s.objects.shapes().made();
     s.objects.sweep();
-    s.objects.look_ahead(s.scene.settings().is_speculative() ? info.m_timeStep : 0);
+    s.objects.look_ahead(s.scene.settings().is_speculative() ? info.m_timeStep : 0, s.dispatch);
+    s.look_at_world(cache, info, dispatcher);
 
     struct Visit final : btOverlapCallback {
         State& state;
@@ -228,14 +243,49 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (i + 4 < s.work.size()) s.work[i + 4]->patches.fetch_list();
         if (i + 2 < s.work.size()) s.work[i + 2]->patches.fetch();
         PairState& pair = *s.work[i];
+        s.wake(pair);
         pair.patches.update(pair.candidates, pair.record0.pose, pair.record1.pose, s.manifolds, s.stats);
+        s.touches.update(pair, info.m_timeStep);
         if (s.scene.settings().is_speculative()) turn_round_what_bounces(pair, info.m_timeStep); // after the callbacks
     }
+    s.touches.done();
+    s.stats.touching = s.touches.count();
     s.stats.shapes_made = s.objects.shapes().made() - made_before;
     s.stats.made_rigid = s.objects.mended().made_rigid;
     s.stats.scaled = s.objects.mended().scaled;
+    s.objects.forget_mended();
     s.stats.left_out = s.objects.mended().left_out;
     s.objects.faults().tell();
+}
+
+void CollisionDispatcher::attach(btCollisionWorld& world) {
+    state_->world = &world;
+    state_->world_cache = world.getPairCache();
+}
+
+// Before the pairs are visited: it may find more of them.
+void CollisionDispatcher::State::look_at_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info,
+                                               btDispatcher* asker) {
+    if (world == nullptr || cache != world_cache) return;
+    if (info.m_useContinuous) objects.kinematics().sweep(*world, asker);
+    const btCollisionObjectArray& all = world->getCollisionObjectArray();
+    for (int i = 0; i < all.size(); ++i) {
+        const btCollisionObject& object = *all[i];
+        if (object.getActivationState() == ISLAND_SLEEPING) continue; // as static ones do
+        objects.report_lost(object, dispatch);
+    }
+}
+
+// In time for this step: Bullet's islands wake what touches a kinematic object, but solve it one step later where it
+// lies in a pile.
+void CollisionDispatcher::State::wake(const PairState& pair) {
+    if (pair.candidates.empty()) return;
+    const auto pushes = [&](const btCollisionObject& pusher, const btCollisionObject& other) {
+        if (other.isActive() || !pusher.hasContactResponse() || !other.hasContactResponse()) return;
+        if (objects.kinematics().next_of(pusher)) other.activate();
+    };
+    pushes(*pair.object0, *pair.object1);
+    pushes(*pair.object1, *pair.object0);
 }
 
 void CollisionDispatcher::State::drop_algorithm(btBroadphasePair& pair) const {
@@ -270,6 +320,13 @@ void CollisionDispatcher::State::visit(btBroadphasePair& pair, const btDispatche
     dispatcher.getNearCallback()(pair, dispatcher, info);
 }
 
+// Of two that do not move one may be disabled by Bullet, which is a fault.
+void CollisionDispatcher::State::leave_alone(const btCollisionObject& a, const btCollisionObject& b) {
+    ++stats.pairs_left_alone;
+    for (const btCollisionObject* object : {&a, &b})
+        if (object->getActivationState() == DISABLE_SIMULATION) objects.report_lost(*object, dispatch);
+}
+
 void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherInfo& info) {
     if (!PairAlgorithm::of(pair.m_algorithm)) drop_algorithm(pair);
     struct Asking {
@@ -290,7 +347,11 @@ void CollisionDispatcher::State::ask(btBroadphasePair& pair, const btDispatcherI
     // Not wanted because both sleep: they keep theirs. Otherwise the callback refused the pair.
     const auto* a = static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
-    if (algorithm->state() && dispatcher.needsCollision(a, b)) algorithm->state()->clear();
+    if (dispatcher.needsCollision(a, b)) {
+        if (algorithm->state()) algorithm->state()->clear();
+        return;
+    }
+    leave_alone(*a, *b);
 }
 
 btCollisionAlgorithm* CollisionDispatcher::findAlgorithm(const btCollisionObjectWrapper* a,
@@ -321,7 +382,7 @@ void CollisionDispatcher::State::take(btBroadphasePair& pair, const btDispatcher
     const auto* b = static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
     // Both asleep, or filtered: as in Bullet, manifolds stay and no work is done.
     const bool asked = dispatcher.getNearCallback() != btCollisionDispatcher::defaultNearCallback;
-    if (!asked && !dispatcher.needsCollision(a, b)) return;
+    if (!asked && !dispatcher.needsCollision(a, b)) return leave_alone(*a, *b);
     PairState& state = state_of(pair, *a, *b);
     objects.refresh(*a, state.record0, dispatch);
     objects.refresh(*b, state.record1, dispatch);
@@ -350,7 +411,7 @@ PairState& CollisionDispatcher::State::state_of(btBroadphasePair& pair, const bt
             objects.drop_unused(&a);
             throw;
         }
-        algorithm->set_state(std::make_unique<PairState>(dispatcher, objects, &a, &b));
+        algorithm->set_state(std::make_unique<PairState>(dispatcher, objects, touches, &a, &b));
     }
     return *algorithm->state();
 }
@@ -364,9 +425,10 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
             const Leaf& la = a.leaves[static_cast<std::size_t>(i)];
             const Leaf& lb = b.leaves[static_cast<std::size_t>(j)];
             if (la.left_out() || lb.left_out()) continue;
-            switch (work_for(la, lb)) {
+            switch (work_for(la, lb, convex)) {
             case Work::batch: {
                 if (several && apart(la, lb)) break;
+                note_open(state, i, j, la, lb);
                 if (const auto face = face_between(la, lb)) {
                     add_plane(state, i, j, la, lb, *face);
                     break;
@@ -385,6 +447,7 @@ void CollisionDispatcher::State::gather(PairState& state, const Object& a, const
                 break;
             case Work::bullet:
                 state.run_child(i, j, la, lb, info);
+                add_cast(state, i, j, la, lb);
                 break;
             case Work::nothing:
                 ++stats.unsupported;
@@ -460,7 +523,7 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
     const bool mesh_is_0 = a.kind == Kind::mesh;
     const Leaf& mesh = mesh_is_0 ? a : b;
     const Leaf& ball = mesh_is_0 ? b : a;
-    const Round round = round_of(*ball.shape);
+    const Round round = round_before(mesh, ball, convex);
     // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
     const btScalar reach =
         btMin(gContactBreakingThreshold, ball.shape->getContactBreakingThreshold(gContactBreakingThreshold));
@@ -482,6 +545,51 @@ void CollisionDispatcher::State::add_round(PairState& state, int leaf0, int leaf
         candidate.speculative = i >= near_now;
         state.candidates.push_back(candidate);
     }
+}
+
+// A body that moves by its own size in a step would be through an open mesh before Bullet's algorithm sees it.
+void CollisionDispatcher::State::add_cast(PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+    const bool mesh_is_0 = a.kind == Kind::mesh;
+    const Leaf& mesh = mesh_is_0 ? a : b;
+    const Leaf& shape = mesh_is_0 ? b : a;
+    if (!is_two_sided(mesh, convex) || shape.kind != Kind::convex) return;
+    ++stats.two_sided_pairs;
+    if (!scene.settings().is_speculative()) return;
+    const auto hit = cast_hit(shape, mesh);
+    if (!hit) return;
+    const btVector3 on_mesh = hit->point - hit->normal * hit->distance;
+    Candidate candidate;
+    candidate.key = {leaf0, leaf1, mesh_is_0 ? 1 : 0};
+    candidate.triangle = hit->triangle;
+    candidate.on0 = mesh_is_0 ? on_mesh : hit->point;
+    candidate.on1 = mesh_is_0 ? hit->point : on_mesh;
+    candidate.normal = mesh_is_0 ? -hit->normal : hit->normal;
+    candidate.distance = hit->distance;
+    candidate.reach = btMin(diagonal(mesh), diagonal(shape));
+    candidate.speculative = true;
+    state.candidates.push_back(candidate);
+}
+
+void CollisionDispatcher::State::note_open(const PairState& state, int leaf0, int leaf1, const Leaf& a, const Leaf& b) {
+    const auto is_open = [](const Leaf& leaf) {
+        return leaf.kind == Kind::mesh && !leaf.converted.shape->has_inside();
+    };
+    if (!is_open(a) && !is_open(b)) return;
+    ++stats.one_sided_pairs;
+    if (is_open(a) && b.kind != Kind::field) tell_one_sided(*state.object0, leaf0, a);
+    if (is_open(b) && a.kind != Kind::field) tell_one_sided(*state.object1, leaf1, b);
+}
+
+// Once for each mesh: many objects may share it. What moves and is open mostly lies on what is closed.
+void CollisionDispatcher::State::tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh) {
+    if (!mesh.is_fixed) return;
+    std::weak_ptr<const Shape>& known = told_one_sided[mesh.converted.shape.get()];
+    if (!known.expired()) return;
+    known = mesh.converted.shape;
+    std::erase_if(told_one_sided, [](const auto& one) { return one.second.expired(); });
+    objects.faults().add(hint_of(object, child,
+                                 "its mesh is open, so it stops other meshes at the front of its faces alone and lets "
+                                 "them through from behind; close it, or turn its faces to where bodies are"));
 }
 
 // Contacts come sorted by pair: sort the batch the same way, by small keys, and hand_out() walks both once.
@@ -575,6 +683,13 @@ void CollisionDispatcher::on_fault(std::function<void(const Fault&)> callback) {
 
 void CollisionDispatcher::prepare() {
     state_->scene.prepare();
+}
+
+std::span<const Touch> CollisionDispatcher::begun() const {
+    return state_->touches.begun();
+}
+std::span<const Touch> CollisionDispatcher::ended() const {
+    return state_->touches.ended();
 }
 
 const Scene& CollisionDispatcher::scene() const {

@@ -18,6 +18,14 @@ int stay_of(const btCollisionObject& object) {
     return proxy ? proxy->getUid() : 0;
 }
 
+std::string name_of(const btCollisionObject& object, int child) {
+    const btCollisionShape& shape = *object.getCollisionShape();
+    std::string text = "object with shape " + std::string(shape.getName());
+    if (shape.isCompound()) text += ", child " + std::to_string(child);
+    if (object.getUserIndex() >= 0) text += ", user index " + std::to_string(object.getUserIndex());
+    return text;
+}
+
 } // namespace
 
 void Faults::add(Fault fault) {
@@ -64,11 +72,11 @@ void Faults::tell() {
 }
 
 Fault fault_of(const btCollisionObject& object, int child, const std::string& what) {
-    const btCollisionShape& shape = *object.getCollisionShape();
-    std::string text = "object with shape " + std::string(shape.getName());
-    if (shape.isCompound()) text += ", child " + std::to_string(child);
-    if (object.getUserIndex() >= 0) text += ", user index " + std::to_string(object.getUserIndex());
-    return {&object, child, text + ": " + what + "; it has no contacts until that is mended"};
+    return {&object, child, name_of(object, child) + ": " + what + "; it has no contacts until that is mended"};
+}
+
+Fault hint_of(const btCollisionObject& object, int child, const std::string& what) {
+    return {&object, child, name_of(object, child) + ": " + what, false};
 }
 
 void print(const Fault& fault) {

@@ -23,6 +23,8 @@ public:
     void add(Fault fault);
     /// All that an object has now: what else it had is mended.
     void set(const btCollisionObject& object, std::vector<Fault> faults);
+    /// It has none now. It may be gone.
+    void forget(const btCollisionObject* object) { known_.erase(object); }
     /// What of the object waits is as if it had not been found. It may be gone.
     void take_back(const btCollisionObject* object);
     /// Calls the callback for those that wait. Where it throws, the others go on waiting.
@@ -54,6 +56,8 @@ private:
 
 /// child: of the leaves, depth first.
 Fault fault_of(const btCollisionObject& object, int child, const std::string& what);
+/// The same for one that takes part all the same.
+Fault hint_of(const btCollisionObject& object, int child, const std::string& what);
 /// One line on stderr.
 void print(const Fault& fault);
 

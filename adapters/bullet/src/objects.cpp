@@ -8,6 +8,8 @@
 #include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btTransformUtil.h>
 
+#include <algorithm>
+
 namespace raycontact::bullet {
 
 namespace {
@@ -23,6 +25,31 @@ btScalar longest_way(const Shape& shape, const btTransform& from, const btTransf
     btScalar turn = 0;
     for (int i = 0; i < 3; ++i) turn += (to.getBasis()[i] - from.getBasis()[i]).length2();
     return (to.getOrigin() - from.getOrigin()).length() + btSqrt(turn) * btScalar(shape.radius());
+}
+
+bool is_finite(const btTransform& t) {
+    btScalar sum = 0; // of zeros, or of what is no number
+    for (int i = 0; i < 3; ++i) sum += t.getBasis()[i].dot(btVector3(0, 0, 0)) + t.getOrigin()[i] * btScalar(0);
+    return sum == 0;
+}
+
+bool is_finite(const btVector3& v) {
+    return v.dot(btVector3(0, 0, 0)) == 0;
+}
+
+bool has_velocity(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body == nullptr || (is_finite(body->getLinearVelocity()) && is_finite(body->getAngularVelocity()));
+}
+
+/// Why an object cannot take part as a whole; empty: it can. A velocity comes first: the transform is then its doing.
+std::string fault_of_whole(const btCollisionObject& object, std::string fault_of_transform) {
+    const bool moves = has_velocity(object);
+    if (moves && !fault_of_transform.empty()) return fault_of_transform;
+    if (moves && is_finite(object.getInterpolationWorldTransform())) return {};
+    return "its velocity is not finite, or beyond all bounds; set velocity and transform, and activate it, since "
+           "Bullet "
+           "disables such objects";
 }
 
 /// What a new stretch is compared with; that of a plane is not rounded.
@@ -109,12 +136,40 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     } catch (const InputError& error) {
         record.fault = error.what();
     }
+    record.fault = fault_of_whole(object, std::move(record.fault));
     record.pose = whole.pose;
     for (Leaf& leaf : record.leaves)
         if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
     std::vector<Fault> faults = faults_of(object, record);
     if (!faults.empty()) mended_.left_out.push_back(&object);
     faults_.set(object, std::move(faults));
+}
+
+void Objects::report_lost(const btCollisionObject& object, std::uint64_t dispatch) {
+    if (is_finite(object.getWorldTransform()) && is_finite(object.getInterpolationWorldTransform())
+        && has_velocity(object))
+        return;
+    if (Object* record = find(object)) {
+        refresh(object, *record, dispatch);
+        return;
+    }
+    if (std::ranges::find(lost_, &object) != lost_.end()) return;
+    std::string text;
+    try {
+        place(object.getWorldTransform());
+    } catch (const InputError& error) {
+        text = error.what();
+    }
+    faults_.set(object, {fault_of(object, 0, fault_of_whole(object, std::move(text)))});
+    mended_.left_out.push_back(&object);
+    lost_.push_back(&object);
+}
+
+void Objects::forget_mended() {
+    for (const btCollisionObject* object : lost_before_)
+        if (std::ranges::find(lost_, object) == lost_.end() && !records_.contains(object)) faults_.forget(object);
+    lost_before_.swap(lost_);
+    lost_.clear();
 }
 
 std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Object& record) {
@@ -127,6 +182,10 @@ std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Obj
 }
 
 void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole) {
+    if (leaf.is_fixed != object.isStaticOrKinematicObject()) {
+        leaf.is_fixed = !leaf.is_fixed;
+        record.version = ++versions_; // others may find its contacts now
+    }
     const bool was_left_out = leaf.left_out();
     const auto leave_out = [&](const InputError& error, bool unusable) {
         leaf.fault = error.what();
@@ -179,15 +238,23 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
 }
 
-// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of a kinematic object, and
-// of one whose speed is beyond all bounds.
+// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of what Bullet gives no
+// velocity, and of one whose speed is beyond all bounds.
 void Objects::expect(const btCollisionObject& object, Object& record) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    if (body == nullptr || body->isStaticOrKinematicObject()) return;
-    const btVector3 velocity =
-        body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+    if (body == nullptr) return;
     btTransform then;
-    btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
+    if (body->isKinematicObject()) { // one without mass is static, too
+        const auto next = kinematics_.next_of(object);
+        if (!next) return;
+        then = *next;
+    } else if (body->isStaticObject()) {
+        return;
+    } else {
+        const btVector3 velocity =
+            body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+        btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
+    }
     for (Leaf& leaf : record.leaves) {
         if ((!leaf.body.valid() && leaf.kind != Kind::round) || leaf.left_out()) continue;
         try {

@@ -3,6 +3,7 @@
 
 #include <convert.h>
 #include <faults.h>
+#include <kinematics.h>
 #include <placement.h>
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/scene.h>
@@ -31,6 +32,7 @@ struct Leaf {
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     btTransform next = btTransform::getIdentity(); ///< pose, or where a moving body is expected at the next dispatch
     btScalar way = 0;      ///< how far its points go until then, at most; also as the scene expects it
+    bool is_fixed = false; ///< its object is static or kinematic
     bool flat = false;     ///< a convex shape without a mesh to stand for it
     std::string fault;     ///< why it is left out; empty: it takes part
     bool unusable = false; ///< no mesh can be made of it, which is its fault; else its transform
@@ -112,8 +114,16 @@ public:
     void refresh_pinned(std::uint64_t dispatch);
 
     /// From now on refresh() also tells the scene where objects will be after so many seconds; 0: not.
-    void look_ahead(btScalar seconds) { ahead_ = seconds; }
+    void look_ahead(btScalar seconds, std::uint64_t dispatch) {
+        ahead_ = seconds;
+        kinematics_.begin(dispatch, seconds);
+    }
 
+    /// Leaves an object out if its transform, or Bullet's next one, is not finite: Bullet disables it without a word,
+    /// so no pair asks for it any more.
+    void report_lost(const btCollisionObject& object, std::uint64_t dispatch);
+    /// Last in a dispatch.
+    void forget_mended();
     /// What leaves the object, or some of its leaves, out.
     static std::vector<Fault> faults_of(const btCollisionObject& object, const Object& record);
     /// Call it once a dispatch.
@@ -125,6 +135,7 @@ public:
     ShapeCache& shapes() { return shapes_; }
     Faults& faults() { return faults_; }
     Mended& mended() { return mended_; }
+    Kinematics& kinematics() { return kinematics_; }
 
 private:
     Kind kind_for_us(const btCollisionShape& shape) const;
@@ -141,8 +152,10 @@ private:
     ShapeCache shapes_;
     Faults faults_;
     Mended mended_;
+    Kinematics kinematics_;
     std::unordered_map<const btCollisionObject*, Object> records_;
     std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
+    std::vector<const btCollisionObject*> lost_, lost_before_; ///< without a record, of this dispatch and of the last
     std::uint64_t versions_ = 0;
     btScalar ahead_ = 0;
 };

@@ -9,10 +9,10 @@
 
 namespace raycontact::bullet {
 
-PairState::PairState(btCollisionDispatcher& dispatcher, Objects& objects, const btCollisionObject* a,
+PairState::PairState(btCollisionDispatcher& dispatcher, Objects& objects, Touches& touches, const btCollisionObject* a,
                      const btCollisionObject* b)
     : object0(a), object1(b), record0(objects.acquire(*a)), record1(objects.acquire(*b)), patches(dispatcher, a, b),
-      dispatcher_(dispatcher), objects_(objects) {}
+      dispatcher_(dispatcher), objects_(objects), touches_(touches) {}
 
 PairState::~PairState() {
     // The objects may be gone from the world, but Bullet cleans pairs before it forgets them.
@@ -25,6 +25,7 @@ void PairState::clear() {
     for (const ChildPair& child : children_) drop_child(child);
     children_.clear();
     patches.clear();
+    touches_.end(*this);
 }
 
 void PairState::drop_child(const ChildPair& child) {
@@ -61,8 +62,10 @@ void PairState::run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, co
                                           -1, -1);
     const btCollisionObjectWrapper whole1(nullptr, object1->getCollisionShape(), object1, object1->getWorldTransform(),
                                           -1, -1);
-    const btCollisionObjectWrapper wrap0(&whole0, a.shape, object0, pose0, -1, leaf0);
-    const btCollisionObjectWrapper wrap1(&whole1, b.shape, object1, pose1, -1, leaf1);
+    const btCollisionObjectWrapper child0(&whole0, a.shape, object0, pose0, -1, leaf0);
+    const btCollisionObjectWrapper child1(&whole1, b.shape, object1, pose1, -1, leaf1);
+    const bool is_child0 = a.shape != object0->getCollisionShape(), is_child1 = b.shape != object1->getCollisionShape();
+    const btCollisionObjectWrapper &wrap0 = is_child0 ? child0 : whole0, &wrap1 = is_child1 ? child1 : whole1;
     btCollisionAlgorithm* algorithm = nullptr;
     if (found != children_.end()) {
         algorithm = found->algorithm;
@@ -73,8 +76,8 @@ void PairState::run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, co
         children_.push_back({leaf0, leaf1, algorithm});
     }
     btManifoldResult result(&wrap0, &wrap1);
-    result.setShapeIdentifiersA(-1, leaf0);
-    result.setShapeIdentifiersB(-1, leaf1);
+    result.setShapeIdentifiersA(-1, is_child0 ? leaf0 : -1);
+    result.setShapeIdentifiersB(-1, is_child1 ? leaf1 : -1);
     algorithm->processCollision(&wrap0, &wrap1, info, &result);
 }
 

@@ -3,6 +3,7 @@
 
 #include <objects.h>
 #include <patches.h>
+#include <touches.h>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
@@ -23,17 +24,27 @@ struct ChildPair {
 /// All that is kept of a pair of objects from step to step.
 class PairState {
 public:
-    PairState(btCollisionDispatcher& dispatcher, Objects& objects, const btCollisionObject* object0,
+    PairState(btCollisionDispatcher& dispatcher, Objects& objects, Touches& touches, const btCollisionObject* object0,
               const btCollisionObject* object1);
     ~PairState();
     PairState(const PairState&) = delete;
     PairState& operator=(const PairState&) = delete;
 
-    /// Runs Bullet's algorithm for two leaves, or drops it if their boxes are apart.
+    /// Runs Bullet's algorithm for two leaves, which may be the whole objects, or drops it if their boxes are apart.
     void run_child(int leaf0, int leaf1, const Leaf& a, const Leaf& b, const btDispatcherInfo& info);
     /// Drops what was kept for old leaves if an object's leaves have changed.
     void check_versions(std::uint64_t version0, std::uint64_t version1);
     void all_manifolds(btManifoldArray& out) const;
+    /// Those of Bullet's algorithms for two leaves.
+    template <class Visit>
+    void each_child_manifold(Visit&& visit) const {
+        static thread_local btManifoldArray found;
+        for (const ChildPair& child : children_) {
+            found.resizeNoInitialize(0);
+            child.algorithm->getAllContactManifolds(found);
+            for (int i = 0; i < found.size(); ++i) visit(*found[i]);
+        }
+    }
     /// No contacts from now on, until the next update.
     void clear();
 
@@ -42,12 +53,14 @@ public:
     Object &record0, &record1;
     std::vector<Candidate> candidates; ///< of this step
     Patches patches;
+    Touch touch; ///< as last seen; without objects: they do not touch
 
 private:
     void drop_child(const ChildPair& child);
 
     btCollisionDispatcher& dispatcher_;
     Objects& objects_;
+    Touches& touches_;
     std::vector<ChildPair> children_;
     std::uint64_t version0_ = 0, version1_ = 0;
 };

@@ -48,6 +48,7 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                   Placed placed{{}, pose, static_cast<int>(leaves.size())};
                   placed.leaf.shape = &shape;
                   placed.leaf.kind = kind_of(shape);
+                  placed.leaf.is_fixed = wrap.getCollisionObject()->isStaticOrKinematicObject();
                   const bool convex = placed.leaf.kind == Kind::convex || placed.leaf.kind == Kind::round;
                   if (convex && convex_ == ConvexShapes::bullet) placed.leaf.kind = Kind::other;
                   try {
@@ -107,7 +108,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
     }
     if (a.leaf.left_out() || b.leaf.left_out()) return;
     const bool convex = a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex;
-    switch (work_for(a.leaf, b.leaf)) {
+    switch (work_for(a.leaf, b.leaf, convex_)) {
     case Work::plane:
         run_plane(a, b, result);
         break;
@@ -152,7 +153,7 @@ void Queries::run_round(const Placed& a, const Placed& b, btManifoldResult& resu
     const Placed& mesh = a_is_mesh ? a : b;
     const Placed& ball = a_is_mesh ? b : a;
     std::vector<RoundContact> found;
-    round_contacts(mesh.leaf.converted, mesh.leaf.pose, round_of(*ball.leaf.shape), ball.leaf.pose,
+    round_contacts(mesh.leaf.converted, mesh.leaf.pose, round_before(mesh.leaf, ball.leaf, convex_), ball.leaf.pose,
                    result.m_closestPointDistanceThreshold, found);
     for (const RoundContact& c : found) {
         const int triangle = static_cast<int>(mesh.leaf.converted.shape->triangle_index()[c.triangle]);

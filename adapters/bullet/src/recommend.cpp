@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/recommend.h>
 
+#include <convert.h>
+#include <raycontact/bullet/dispatcher.h>
 #include <raycontact/error.h>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -9,13 +11,49 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+double size_of(const btCollisionShape& shape) {
+    btVector3 low, high;
+    aabb_once(shape, btTransform::getIdentity(), low, high);
+    // Bullet adds the margin to these; to a small body it adds more than that has.
+    const bool has_margin = shape.isConcave() || shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE;
+    const btVector3 edges = high - low;
+    return double(edges[edges.maxAxis()]) - (has_margin ? 2 * double(shape.getMargin()) : 0);
+}
+
+/// Of the smallest body that moves; empty where none does.
+std::optional<double> smallest_in(const btDiscreteDynamicsWorld& world) {
+    std::optional<double> smallest;
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        if (objects[i]->isStaticOrKinematicObject() || !objects[i]->hasContactResponse()) continue;
+        const double size = size_of(*objects[i]->getCollisionShape());
+        if (std::isfinite(size) && size > 0 && (!smallest || size < *smallest)) smallest = size;
+    }
+    return smallest;
+}
+
+} // namespace
+
 void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
-    if (!(std::isfinite(settings.slop) && settings.slop >= 0))
+    if (settings.slop && !(std::isfinite(*settings.slop) && *settings.slop >= 0))
         throw InputError("SolverSettings::slop must be finite and not negative");
+    if (settings.size && !(std::isfinite(*settings.size) && *settings.size > 0))
+        throw InputError("SolverSettings::size must be finite and above 0");
     if (!(settings.erp >= 0 && settings.erp <= 1)) throw InputError("SolverSettings::erp must be from 0 to 1");
     if (settings.iterations < 1) throw InputError("SolverSettings::iterations must be at least 1");
+    auto* ours = dynamic_cast<CollisionDispatcher*>(world.getDispatcher());
+    double slop = 0.001;
+    if (settings.slop) {
+        slop = *settings.slop;
+    } else if (const auto size = settings.size ? settings.size : smallest_in(world)) {
+        const bool speculative = !ours || ours->scene().settings().is_speculative();
+        slop = (speculative ? 0.001 : 0.005) * *size;
+    }
+    if (ours) ours->attach(world);
     btContactSolverInfo& info = world.getSolverInfo();
-    info.m_linearSlop = btScalar(settings.slop);
+    info.m_linearSlop = btScalar(slop);
     info.m_erp2 = btScalar(settings.erp);
     info.m_numIterations = settings.iterations;
     info.m_splitImpulse = 1;

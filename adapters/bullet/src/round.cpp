@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
 #include <utility>
 
 namespace raycontact::bullet {
@@ -62,8 +61,8 @@ struct Found {
 /// The triangles near a ball or capsule. Mesh frame.
 class Neighbourhood {
 public:
-    Neighbourhood(const Converted& mesh, const btVector3& a, const btVector3& b, btScalar limit)
-        : mesh_(mesh), limit2_(limit * limit) {
+    Neighbourhood(const Converted& mesh, const btVector3& a, const btVector3& b, btScalar limit, bool two_sided)
+        : mesh_(mesh), limit2_(limit * limit), two_sided_(two_sided) {
         btVector3 low = a, high = a;
         low.setMin(b);
         high.setMax(b);
@@ -146,7 +145,7 @@ private:
         found.triangle = t;
         const btVector3 out = outwards(t, on);
         const btScalar away = btSqrt(away2);
-        const bool inside = out.dot(centre - p) < 0;
+        const bool inside = !two_sided_ && out.dot(centre - p) < 0;
         found.away = inside ? -away : away;
         // On the surface itself the line from it to the centre has no direction.
         if (away2 <= hair2 * limit2_)
@@ -158,6 +157,7 @@ private:
 
     const Converted& mesh_;
     btScalar limit2_;
+    bool two_sided_; ///< it has no inside
     // Kept from call to call for their memory.
     static thread_local std::vector<std::uint32_t> triangles_;                      ///< ascending
     static thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> fans_; ///< corners, and triangles there
@@ -217,19 +217,29 @@ void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, st
     limit = btMax(limit, btScalar(1e-3) * size); // a radius of 0 would not grow
     while (out.empty() && limit < most) {
         limit *= 2;
-        Neighbourhood(mesh, centre, centre, limit).of_end(centre, out);
+        Neighbourhood(mesh, centre, centre, limit, false).of_end(centre, out);
     }
     std::erase_if(out, [](const Found& f) { return f.away > 0; });
 }
 
 /// What neither ends nor sides see: an axis inside the mesh between them.
 void add_axis(const Converted& mesh, const btVector3& a, const btVector3& b,
-              const std::array<std::span<const Found>, 2>& ends, std::vector<Found>& out) {
+              const std::array<std::vector<Found>*, 2>& ends, bool two_sided, std::vector<Found>& out) {
+    static thread_local std::vector<WayOut> ways;
+    if (two_sided) {
+        ways_through(mesh, a, b, ways);
+        // The end that is on the other side would be pushed there.
+        const auto against = [&](const Found& f) {
+            return std::ranges::any_of(ways, [&](const WayOut& way) { return way.normal.dot(f.normal) < 0; });
+        };
+        for (std::vector<Found>* found : {ends[0], ends[1], &out}) std::erase_if(*found, against);
+        for (const WayOut& way : ways) out.push_back({way.point, way.normal, -way.depth, way.triangle});
+        return;
+    }
     std::array<bool, 2> known{};
     for (std::size_t k = 0; k < 2; ++k)
         known[k] = mesh.shape->has_inside()
-                   || std::any_of(ends[k].begin(), ends[k].end(), [](const Found& f) { return f.away < 0; });
-    static thread_local std::vector<WayOut> ways;
+                   || std::any_of(ends[k]->begin(), ends[k]->end(), [](const Found& f) { return f.away < 0; });
     ways_out(mesh, a, b, known, ways);
     for (const WayOut& way : ways) out.push_back({way.point, way.normal, -way.depth, way.triangle});
 }
@@ -269,6 +279,7 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     const btTransform to_mesh = mesh_pose.inverseTimes(round_pose);
     const btVector3 a = to_mesh(round.ends[0]), b = to_mesh(round.ends[1]);
     const btScalar limit = round.radius + reach;
+    const bool two_sided = round.two_sided && !mesh.shape->has_inside();
     static thread_local std::vector<Found> found;
     const auto give = [&](int part, const std::vector<Found>& all) {
         int number = 0;
@@ -278,7 +289,7 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
     };
     static thread_local std::vector<Found> first, second;
     {
-        const Neighbourhood neighbourhood(mesh, a, b, limit);
+        const Neighbourhood neighbourhood(mesh, a, b, limit, two_sided);
         neighbourhood.of_end(a, first);
         second.clear();
         found.clear();
@@ -287,9 +298,9 @@ void round_contacts(const Converted& mesh, const btTransform& mesh_pose, const R
             neighbourhood.of_side(a, b, found);
         }
     }
-    if (first.empty()) deep_end(mesh, a, limit, first);
-    if (second.empty() && round.balls > 1) deep_end(mesh, b, limit, second);
-    if (round.balls > 1) add_axis(mesh, a, b, {first, second}, found);
+    if (first.empty() && !two_sided) deep_end(mesh, a, limit, first);
+    if (second.empty() && round.balls > 1 && !two_sided) deep_end(mesh, b, limit, second);
+    if (round.balls > 1) add_axis(mesh, a, b, {&first, &second}, two_sided, found);
     give(0, first);
     give(1, second);
     give(2, found);
@@ -365,7 +376,8 @@ void first_touches(const Converted& mesh, const btTransform& mesh_pose, const bt
     if (round.balls == 1) return;
     // What lies flat is stopped at both ends.
     for (int e = 0; e < 2; ++e) {
-        const Round end{.ends = {round.ends[e], round.ends[e]}, .balls = 1, .radius = round.radius};
+        const Round end{
+            .ends = {round.ends[e], round.ends[e]}, .balls = 1, .radius = round.radius, .two_sided = round.two_sided};
         add(end, {.from = {way.from[e], way.from[e]}, .by = {way.by[e], way.by[e]}}, 2 + e);
     }
 }

@@ -15,6 +15,7 @@ struct Round {
     btVector3 ends[2];
     int balls = 1; ///< 1: both ends are the same
     btScalar radius{};
+    bool two_sided = false; ///< an open mesh stops it on the side where its centre is, whatever the winding
 };
 
 /// `shape` is of kind round.
@@ -24,7 +25,7 @@ Round round_of(const btCollisionShape& shape);
 struct RoundContact {
     int place = 0;              ///< names it from step to step: which end, or the side; of several the how manyth
     btVector3 point;            ///< on the mesh
-    btVector3 normal;           ///< unit, out of the mesh
+    btVector3 normal;           ///< unit, out of the mesh, or towards the side where it is pushed
     btScalar distance{};        ///< negative: the depth
     std::uint32_t triangle = 0; ///< of the shape
 };

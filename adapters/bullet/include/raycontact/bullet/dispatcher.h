@@ -3,6 +3,7 @@
 
 #include <raycontact/bullet/fault.h>
 #include <raycontact/bullet/precision.h>
+#include <raycontact/bullet/touch.h>
 #include <raycontact/recorder.h>
 #include <raycontact/scene.h>
 
@@ -12,7 +13,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
+
+class btCollisionWorld;
 
 namespace raycontact::bullet {
 
@@ -30,21 +34,36 @@ struct ManifoldSettings {
 
 /// Who finds the contacts of a mesh with Bullet's convex shapes. Pairs of convex shapes are Bullet's in any case.
 enum class ConvexShapes {
+    /// By the mesh. An open one (without Shape::has_inside) of a static or kinematic object, as levels of games are,
+    /// stops them on both sides of each face, however it is wound: balls and capsules in closed form, the others by
+    /// Bullet's own
+    /// algorithms, which see what touches, and a cast of the shape, which sees what comes fast. Others: as `ours`.
+    by_mesh,
     /// RayContact: balls and capsules in closed form; boxes, cylinders, cones, hulls and multi-spheres as meshes made
-    /// once for each shape. Other convex shapes are left to Bullet.
+    /// once for each shape. Other convex shapes are left to Bullet. An open mesh stops them at the front of its faces.
     ours,
     bullet, ///< Bullet's own algorithms, a triangle at a time, with their margins
 };
 
 /// What the last dispatch did.
 struct DispatcherStats {
-    std::uint64_t pairs = 0;      ///< pairs of objects that RayContact handled
+    std::uint64_t pairs = 0; ///< pairs of objects that RayContact handled
+    /// Of its pairs, those that it did not look at, since neither object is active, or a filter is between them: their
+    /// manifolds stay as they are, and scene() does not have their contacts.
+    std::uint64_t pairs_left_alone = 0;
+    std::uint64_t touching = 0;   ///< pairs of objects that touch, those asleep too; see begun()
     std::uint64_t mesh_pairs = 0; ///< pairs of meshes, or their like, in its batch (a compound gives several)
     /// Pairs of a mesh and a plane; without speculative contacts also of a mesh and a box's face that it lies wholly
     /// over.
     std::uint64_t plane_pairs = 0;
-    std::uint64_t round_pairs = 0;    ///< pairs of a mesh and a ball or capsule
-    std::uint64_t other_pairs = 0;    ///< left to Bullet's own algorithms
+    std::uint64_t round_pairs = 0; ///< pairs of a mesh and a ball or capsule
+    std::uint64_t other_pairs = 0; ///< left to Bullet's own algorithms
+    /// Pairs of an open mesh and one of Bullet's convex shapes, that takes each face as two-sided
+    /// (ConvexShapes::by_mesh); balls and capsules are in round_pairs.
+    std::uint64_t two_sided_pairs = 0;
+    /// Of mesh_pairs, those with an open mesh: it stops others at the front of its faces, and lets through what comes
+    /// from behind. on_fault() is told once for each such mesh of a static or kinematic object.
+    std::uint64_t one_sided_pairs = 0;
     std::uint64_t unsupported = 0;    ///< a mesh against a concave shape that nothing here handles: no contacts
     std::uint64_t contacts = 0;       ///< found, speculative ones and those of balls and capsules that are near, too
     std::uint64_t points = 0;         ///< kept as manifold points
@@ -95,8 +114,13 @@ public:
     /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
     /// scene() has the weights. Settings::speculative that is empty means true here.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
-                                 const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::ours);
+                                 const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::by_mesh);
     ~CollisionDispatcher() override;
+
+    /// Tells it its world, which Bullet does not. recommend() does so, too. Dispatches of that world then also find
+    /// what lies on the way of its kinematic objects (docs/bullet.md), and report each object that Bullet has disabled
+    /// for a transform that is not finite. Call it again for another world, before that one steps.
+    void attach(btCollisionWorld& world);
 
     /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
@@ -129,7 +153,14 @@ public:
     /// mesh is prepared beside the dispatches once it meets others a second time.
     void prepare();
 
-    /// The batch: contacts(), speculative ones too, pairs() and stats() of the last dispatch.
+    /// Pairs of objects that touch since the last dispatch, and those that no longer do; of all pairs that RayContact
+    /// handles, balls and planes too. What falls asleep goes on touching. Objects that were removed cease at the next
+    /// dispatch. Valid until then.
+    std::span<const Touch> begun() const;
+    std::span<const Touch> ended() const;
+
+    /// The batch: contacts(), speculative ones too, pairs() and stats() of the last dispatch. Pairs that sleep are in
+    /// no batch: there their contacts are lost, and new when they wake. begun() and ended() know better.
     const Scene& scene() const;
     const DispatcherStats& stats() const;
 

@@ -10,11 +10,12 @@ class btCollisionObject;
 
 namespace raycontact::bullet {
 
-/// Why an object, or a child of its compound, takes no part in the contacts that RayContact finds.
+/// Why an object, or a child of its compound, takes no part in the contacts that RayContact finds, or only some.
 struct Fault {
     const btCollisionObject* object = nullptr;
-    int child = 0;    ///< index of the leaf shape, depth first, when the object is a compound; else 0
-    std::string text; ///< names shape and reason, and says what to do, in one line
+    int child = 0;        ///< index of the leaf shape, depth first, when the object is a compound; else 0
+    std::string text;     ///< names shape and reason, and says what to do, in one line
+    bool left_out = true; ///< it takes no part; else it does, and the text says what is missing
 };
 
 /// CollisionDispatcher::add_body() throws it where a dispatch would leave the object out.

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levels of games are open meshes, wound one way or the other. Bullet's convex shapes stand on them in any case.
+#include "test_world.h"
+
+#include <BulletCollision/CollisionShapes/btTriangleMesh.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace raycontact::test {
+namespace {
+
+enum class Wound { up, down, mixed };
+
+/// A floor of 8 x 8 m at z = 0, four triangles a square metre. mixed: half of it is another part, wound otherwise.
+std::unique_ptr<btTriangleMesh> level(Wound wound) {
+    auto mesh = std::make_unique<btTriangleMesh>();
+    const auto corner = [](int i, int k) { return btVector3(btScalar(0.5 * i - 4), btScalar(0.5 * k - 4), 0); };
+    for (int i = 0; i < 16; ++i)
+        for (int k = 0; k < 16; ++k) {
+            const bool up = wound == Wound::up || (wound == Wound::mixed && i < 8);
+            const btVector3 a = corner(i, k), b = corner(i + 1, k), c = corner(i + 1, k + 1), d = corner(i, k + 1);
+            up ? mesh->addTriangle(a, b, c) : mesh->addTriangle(a, c, b);
+            up ? mesh->addTriangle(a, c, d) : mesh->addTriangle(a, d, c);
+        }
+    return mesh;
+}
+
+btRigidBody& add_level(TestWorld& w, btTriangleMesh& mesh) {
+    return w.add(std::make_unique<btBvhTriangleMeshShape>(&mesh, true), 0, at(0, 0, 0));
+}
+
+using MakeShape = std::function<std::unique_ptr<btCollisionShape>()>;
+
+/// All of them 0.2 m above the floor where they rest.
+const std::vector<std::pair<std::string, MakeShape>> shapes{
+    {"box", [] { return std::make_unique<btBoxShape>(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))); }},
+    {"ball", [] { return std::make_unique<btSphereShape>(btScalar(0.2)); }},
+    {"capsule", [] { return std::make_unique<btCapsuleShapeX>(btScalar(0.2), btScalar(0.5)); }},
+    {"cylinder",
+     [] { return std::make_unique<btCylinderShapeZ>(btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2))); }},
+};
+
+TEST(OpenLevel, ConvexShapesStandOnIt) {
+    for (const Wound wound : {Wound::up, Wound::down, Wound::mixed}) {
+        const auto mesh = level(wound);
+        for (const auto& [name, make] : shapes) {
+            TestWorld w;
+            add_level(w, *mesh);
+            for (const double x : {-2.2, 0.0, 2.3}) w.add(make(), 1, at(x, 0.1, 1.2));
+            w.steps(180);
+            for (std::size_t i = 1; i < w.bodies.size(); ++i) {
+                EXPECT_NEAR(double(w.bodies[i]->getWorldTransform().getOrigin().z()), 0.2, 0.012)
+                    << name << ", wound " << static_cast<int>(wound);
+                EXPECT_LT(double(w.bodies[i]->getLinearVelocity().length()), 0.05) << name;
+            }
+            EXPECT_EQ(w.dispatcher.stats().one_sided_pairs, 0u);
+            EXPECT_EQ(w.dispatcher.stats().two_sided_pairs + w.dispatcher.stats().round_pairs, 3u) << name;
+        }
+    }
+}
+
+TEST(OpenLevel, OursIsOneSidedWhereAskedFor) {
+    const auto mesh = level(Wound::down);
+    TestWorld w({}, {}, bullet::ConvexShapes::ours);
+    add_level(w, *mesh);
+    const btRigidBody& body = w.add(shapes[0].second(), 1, at(0, 0, 1));
+    w.steps(120);
+    EXPECT_LT(double(body.getWorldTransform().getOrigin().z()), -1);
+}
+
+// From both sides: the level's own winding does not matter, so one is enough.
+TEST(OpenLevel, NothingFastPasses) {
+    const auto mesh = level(Wound::up);
+    for (const auto& [name, make] : shapes) {
+        for (const double speed : {5.0, 20.0, 60.0}) {
+            for (const double side : {1.0, -1.0}) {
+                for (int i = 0; i < 6; ++i) {
+                    TestWorld w;
+                    w.world.setGravity(btVector3(0, 0, 0));
+                    add_level(w, *mesh);
+                    const double height = 2 + speed / 60 * i / 6;
+                    btRigidBody& body = w.add(make(), 1, at(0.13, 0.21, side * height));
+                    body.setLinearVelocity(btVector3(btScalar(0.2 * speed), 0, btScalar(-side * speed)));
+                    w.steps(static_cast<int>(60 * 2.5 / speed) + 3);
+                    EXPECT_GT(side * double(body.getWorldTransform().getOrigin().z()), 0)
+                        << name << " at " << speed << " m/s from side " << side << ", flight " << i;
+                }
+            }
+        }
+    }
+}
+
+// The cast sees faces alone: no edge between two triangles of the floor stops what slides over it.
+TEST(OpenLevel, WhatSlidesGoesOn) {
+    for (const Wound wound : {Wound::up, Wound::down}) {
+        const auto mesh = level(wound);
+        for (const auto& [name, make] : shapes) {
+            if (name == "cylinder") continue; // Bullet's own algorithm throws it up, with ConvexShapes::bullet as well
+            TestWorld w;
+            add_level(w, *mesh).setFriction(0);
+            btRigidBody& body = w.add(make(), 1, at(-3.5, 0.1, 0.2));
+            body.setFriction(0);
+            body.setAngularFactor(0);
+            w.steps(30);
+            body.setLinearVelocity(btVector3(20, 0, 0));
+            w.steps(18);
+            EXPECT_NEAR(double(body.getWorldTransform().getOrigin().x()), 2.5, 0.1) << name;
+            EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.2, 0.02) << name;
+        }
+    }
+}
+
+TEST(OpenLevel, QueriesFindBothSides) {
+    for (const Wound wound : {Wound::up, Wound::down}) {
+        const auto mesh = level(wound);
+        for (const auto& [name, make] : shapes) {
+            TestWorld w;
+            btRigidBody& ground = add_level(w, *mesh);
+            for (const double side : {1.0, -1.0}) {
+                btRigidBody& body = w.add(make(), 1, at(0.1, 0.2, 0.19 * side));
+                Count count;
+                w.world.contactPairTest(&ground, &body, count);
+                EXPECT_GT(count.points, 0) << name << ", from side " << side;
+                w.remove(body);
+            }
+        }
+    }
+}
+
+// A capsule whose axis goes through a sheet leaves it to the side where more of it is.
+TEST(OpenLevel, ACapsuleThroughASheetLeavesByItsLongerSide) {
+    for (const Wound wound : {Wound::up, Wound::down}) {
+        const auto mesh = level(wound);
+        for (const double side : {1.0, -1.0}) {
+            TestWorld w;
+            w.world.setGravity(btVector3(0, 0, 0));
+            add_level(w, *mesh);
+            const btRigidBody& body =
+                w.add(std::make_unique<btCapsuleShapeZ>(btScalar(0.05), btScalar(0.6)), 1, at(0.1, 0.2, 0.2 * side));
+            w.steps(120);
+            EXPECT_GT(side * double(body.getWorldTransform().getOrigin().z()), 0.33);
+        }
+    }
+}
+
+TEST(OpenLevel, MeshBodiesAreToldOfOneSidedness) {
+    const auto mesh = level(Wound::down);
+    TestWorld w;
+    std::vector<bullet::Fault> told;
+    w.dispatcher.on_fault([&](const bullet::Fault& fault) { told.push_back(fault); });
+    btRigidBody& ground = add_level(w, *mesh);
+    ground.setUserIndex(7);
+    w.add_mesh(table(), 5, at(-1, 0, 0.5));
+    w.add_mesh(torus(), 5, at(2, 0, 0.5));
+    std::uint64_t pairs = 0;
+    for (int i = 0; i < 30; ++i) {
+        w.steps(1);
+        pairs = std::max(pairs, w.dispatcher.stats().one_sided_pairs);
+    }
+    EXPECT_EQ(pairs, 2u);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].object, &ground);
+    EXPECT_FALSE(told[0].left_out);
+    EXPECT_NE(told[0].text.find("user index 7: its mesh is open"), std::string::npos) << told[0].text;
+    EXPECT_TRUE(w.dispatcher.stats().left_out.empty());
+}
+
+} // namespace
+} // namespace raycontact::test
