@@ -65,4 +65,65 @@ void visit_blocks(const TriangleTree& tree, Meets&& meets, Visit&& visit) {
         [&](const kernels::TriangleBlock& block) { goes_on = goes_on && visit(block); });
 }
 
+/// A child of a node, or the root: a node's number or LEAF | a block's, and the place of its box, or NONE.
+struct Branch {
+    std::uint32_t child, at;
+};
+
+/// The box of a branch.
+inline Box box_of(const TriangleTree& tree, const Branch& branch) {
+    if (branch.at != NONE) return box_of(tree.nodes[branch.at / NODE_LANES], branch.at % NODE_LANES);
+    Box box = box_of(tree.nodes[0], 0);
+    for (std::size_t lane = 1; lane < NODE_LANES; ++lane)
+        if (tree.nodes[0].child[lane] != NONE) box.add(box_of(tree.nodes[0], lane));
+    return box;
+}
+
+/// One of two trees.
+enum class Side { a, b };
+
+/// Visits the pairs of a block of one tree and a block of another, those in near boxes first. away(side, node, box,
+/// lanes) fills in how far the children of a node of the tree `side` are from a box of the other tree, each in the
+/// frame of its own tree; not above what anything in them is. Those as far as farthest(), which may shrink from visit
+/// to visit, are left out. Of two nodes the one with the larger box is opened.
+template <class Number, class Farthest, class Away, class Visit>
+void nearest_pairs_first(const TriangleTree& a, const TriangleTree& b, Farthest&& farthest, Away&& away,
+                         Visit&& visit) {
+    struct Waiting {
+        Number away;
+        Branch a, b;
+    };
+    const auto size_of = [](const Box& box) {
+        const Vec3 extent = box.high - box.low;
+        return extent.x + extent.y + extent.z;
+    };
+    std::array<Waiting, 2 * most_tree_levels * NODE_LANES> waiting; // each level leaves at most fifteen
+    std::size_t count = 0;
+    waiting[count++] = {0, {0, NONE}, {0, NONE}};
+    while (count > 0) {
+        const Waiting next = waiting[--count];
+        if (next.away >= farthest()) continue;
+        const bool a_is_leaf = (next.a.child & LEAF) != 0, b_is_leaf = (next.b.child & LEAF) != 0;
+        if (a_is_leaf && b_is_leaf) {
+            visit(a.triangle_blocks[next.a.child & ~LEAF], b.triangle_blocks[next.b.child & ~LEAF]);
+            continue;
+        }
+        const Box box_a = box_of(a, next.a), box_b = box_of(b, next.b);
+        const bool opens_a = b_is_leaf || (!a_is_leaf && size_of(box_a) >= size_of(box_b));
+        const std::uint32_t opened = opens_a ? next.a.child : next.b.child;
+        const kernels::Node& node = (opens_a ? a : b).nodes[opened];
+        const Number most = farthest();
+        Lanes<Number> lanes;
+        away(opens_a ? Side::a : Side::b, node, opens_a ? box_b : box_a, lanes);
+        const std::size_t first = count;
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+            if (!(lanes[lane] < most) || node.child[lane] == NONE) continue;
+            const Branch child{node.child[lane], static_cast<std::uint32_t>(opened * NODE_LANES + lane)};
+            std::size_t at = count++; // the nearest last, so that it is next
+            for (; at > first && waiting[at - 1].away < lanes[lane]; --at) waiting[at] = waiting[at - 1];
+            waiting[at] = opens_a ? Waiting{lanes[lane], child, next.b} : Waiting{lanes[lane], next.a, child};
+        }
+    }
+}
+
 } // namespace raycontact
