@@ -21,7 +21,8 @@ namespace raycontact {
 /// The limits on one mesh: three corners of every triangle are counted in 32 bits.
 constexpr std::size_t most_vertices = 0xfffffffeu, most_triangles = 0xffffffffu / 3 - 1;
 
-/// A whole file in memory. Its readers report errors in one line that names the file.
+/// A whole file in memory; without a path where it never was a file. Its readers report errors in one line that names
+/// the file.
 struct InputFile {
     std::filesystem::path path;
     std::string shown; ///< the path, fit for a message

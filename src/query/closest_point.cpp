@@ -2,6 +2,7 @@
 #include <raycontact/query.h>
 
 #include "executor/float_environment.h"
+#include "query/checks.h"
 #include "query/shape_pair.h"
 #include "shape/mesh_rays.h"
 

@@ -13,7 +13,7 @@ struct Placing {
     std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< entries below 1e-36 count as 0
     Vec3 shift, shift_rest;                                    ///< metres; the rest is below the last bit of the shift
     bool by_quarters = true;                                   ///< only entries of 0, 1 and -1
-    double error = 0; ///< of `rough` of its points, metres, at most
+    double error = 0;                                          ///< of `rough` of its points, metres, at most
 
     Placing() = default;
     Placing(const std::array<double, 9>& rotation, const Vec3& translation, const Vec3& origin);

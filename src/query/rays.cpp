@@ -3,10 +3,9 @@
 
 #include "executor/float_environment.h"
 #include "mesh/predicates.h"
+#include "query/checks.h"
 #include "query/shape_pair.h"
 #include "shape/mesh_rays.h"
-
-#include <raycontact/error.h>
 
 #include <algorithm>
 #include <array>
@@ -19,22 +18,6 @@ namespace raycontact {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-double largest_of(const Vec3& v) {
-    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
-// Unit to rounding.
-Vec3 unit_direction(const Vec3& given) {
-    if (!is_finite(given)) throw InputError("raycast: the direction has a coordinate that is not a finite number");
-    const double largest = largest_of(given);
-    if (largest == 0) throw InputError("raycast: the direction is zero; give one of any length above 0");
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    // By powers of two first, so that no square overflows or underflows.
-    const Vec3 scaled{std::ldexp(given.x, -exponent), std::ldexp(given.y, -exponent), std::ldexp(given.z, -exponent)};
-    return unit(scaled);
-}
 
 /// A ray in the body frame, which predicates take as it is.
 struct BodyRay {
@@ -154,7 +137,7 @@ PlacedRay cast(const Shape& shape, const Pose& pose, const Vec3& origin, const V
     check_placed(pose, "pose of the mesh");
     check_place(origin, "raycast: the origin");
     check_reach(max, "raycast");
-    const Vec3 along = unit_direction(direction);
+    const Vec3 along = checked_direction(direction);
     const std::array<double, 9> back = inverse_of(pose.rotation);
     const BodyRay ray{own_point(rotated(back, origin - pose.translation)), own_point(rotated(back, along))};
     return {along, Caster(shape, ray, max, any).cast()};

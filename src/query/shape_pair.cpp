@@ -3,11 +3,8 @@
 
 #include "broadphase/sweep_and_prune.h"
 
-#include <raycontact/error.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace raycontact {
 
@@ -50,23 +47,6 @@ std::array<double, 9> product_of(const std::array<double, 9>& left, const std::a
     return product;
 }
 
-void check_reach(double metres, const char* what) {
-    if (!(metres >= 0)) // also not a number
-        throw InputError(std::string(what) + ": the greatest distance is negative or not a number; give metres, or "
-                                             "infinity for any distance");
-}
-
-void check_place(const Vec3& point, const char* what) {
-    if (!is_finite(point)) throw InputError(std::string(what) + ": a coordinate is not a finite number");
-    if (std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) > 1e30)
-        throw InputError(std::string(what) + ": farther than 1e30 m from the origin; give a nearer one");
-}
-
-void check_placed(const Pose& pose, const char* what) {
-    check_pose(pose, what);
-    check_place(pose.translation, what);
-}
-
 PlacedPoint PlacedShape::vertex(std::uint32_t vertex) const {
     const Vec3& own = shape_.file_vertex(vertex);
     return {own - shape_.centre, own_point(own), &placing_};
@@ -103,8 +83,9 @@ ShapePair::ShapePair(const ShapeData& a, const ShapeData& b, const Poses& poses)
          1e-14 * (a.reach + b.reach + size_of(poses.apart()) + size_of(a.centre) + size_of(b.centre))),
       b_(b, poses.b, poses.b.translation, 1e-15 * b.reach),
       a_in_b_(centred_relative(b.centre, poses.b, a.centre, poses.a)),
-      b_in_a_(centred_relative(a.centre, poses.a, b.centre, poses.b)),
-      b_in_world_{poses.given_b.rotation, transform_point(poses.given_b, b.centre)},
+      b_in_a_(centred_relative(a.centre, poses.a, b.centre, poses.b)), b_in_world_{poses.given_b.rotation,
+                                                                                   transform_point(poses.given_b,
+                                                                                                   b.centre)},
       far_apart_(!(size_of(poses.apart()) < farthest_translation)) {} // also where it overflows
 
 PlacedPoint ShapePair::vertex_of_a(std::uint32_t vertex) const {

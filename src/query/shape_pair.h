@@ -13,11 +13,6 @@ namespace raycontact {
 std::array<double, 9> inverse_of(const std::array<double, 9>& rotation);
 std::array<double, 9> product_of(const std::array<double, 9>& left, const std::array<double, 9>& right);
 
-// Each throws InputError, which calls what it is given `what`.
-void check_reach(double metres, const char* what);     ///< the greatest distance of a query
-void check_place(const Vec3& point, const char* what); ///< finite, and within 1e30 m, so that no square overflows
-void check_placed(const Pose& pose, const char* what); ///< rigid, and so near
-
 /// A placed shape; rough points lie in its centred frame.
 class PlacedShape {
 public:

@@ -91,8 +91,7 @@ void shorten_between(Span& span, const Corners& p, const Corners& q) {
     for (const Vec3& corner : p) span.shorten(corner, nearest_point(corner, q[0], q[1], q[2]));
     for (const Vec3& corner : q) span.shorten(nearest_point(corner, p[0], p[1], p[2]), corner);
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            shorten_between_edges(span, p[i], p[(i + 1) % 3], q[k], q[(k + 1) % 3]);
+        for (std::size_t k = 0; k < 3; ++k) shorten_between_edges(span, p[i], p[(i + 1) % 3], q[k], q[(k + 1) % 3]);
 }
 
 /// Looks at the pairs of triangles of two blocks. Those in boxes that touch are asked whether they meet.

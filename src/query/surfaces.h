@@ -18,7 +18,8 @@ struct TrianglePair {
 /// The first triangles found that meet, exactly.
 std::optional<TrianglePair> meeting_triangles(const ShapePair& pair);
 
-/// The closest triangles not farther apart than `farthest`, metres, give or take a rounding; where two meet exactly, such a pair, with equal points.
+/// The closest triangles not farther apart than `farthest`, metres, give or take a rounding; where two meet exactly,
+/// such a pair, with equal points.
 std::optional<TrianglePair> closest_triangles(const ShapePair& pair, double farthest);
 
 } // namespace raycontact

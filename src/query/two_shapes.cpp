@@ -2,6 +2,7 @@
 #include <raycontact/query.h>
 
 #include "executor/float_environment.h"
+#include "query/checks.h"
 #include "query/inside.h"
 #include "query/surfaces.h"
 

@@ -24,8 +24,8 @@ struct ShapeData : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
     /// As they were before that, for exact queries; empty where no coordinate was changed. 24 bytes a vertex.
     std::vector<Vec3> file_vertices;
-    TriangleTree slivers;                ///< over the triangles that have an area only before that; often empty
-    std::vector<std::uint32_t> flat;     ///< those that have one only after it, rising
+    TriangleTree slivers;            ///< over the triangles that have an area only before that; often empty
+    std::vector<std::uint32_t> flat; ///< those that have one only after it, rising
     Vec3 centre;
     std::vector<Point3f> points; ///< float32 offsets from centre
     std::vector<Vec3> vertex_normals;
