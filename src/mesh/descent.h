@@ -108,14 +108,14 @@ enum class Side { a, b };
 template <class Number, class Farthest, class Away, class Visit>
 void nearest_pairs_first(const TriangleTree& a, const TriangleTree& b, Farthest&& farthest, Away&& away,
                          Visit&& visit) {
-    struct Pair {
+    struct Branches {
         Branch a, b;
     };
     const auto size_of = [](const Box& box) {
         const Vec3 extent = box.high - box.low;
         return extent.x + extent.y + extent.z;
     };
-    NearestLast<Number, Pair, 2 * most_tree_levels * NODE_LANES> waiting({{0, NONE}, {0, NONE}});
+    NearestLast<Number, Branches, 2 * most_tree_levels * NODE_LANES> waiting({{0, NONE}, {0, NONE}});
     while (!waiting.is_empty()) {
         const auto next = waiting.take();
         if (next.away >= farthest()) continue;
@@ -134,7 +134,7 @@ void nearest_pairs_first(const TriangleTree& a, const TriangleTree& b, Farthest&
         away(opens_a ? Side::a : Side::b, node, opens_a ? box_b : box_a, lanes);
         waiting.add(node, lanes, most, [&](std::size_t lane) {
             const Branch child{node.child[lane], static_cast<std::uint32_t>(opened * NODE_LANES + lane)};
-            return opens_a ? Pair{child, in_b} : Pair{in_a, child};
+            return opens_a ? Branches{child, in_b} : Branches{in_a, child};
         });
     }
 }

@@ -39,7 +39,7 @@ void round_vertices(ShapeData& shape) {
         low = least(low, {p.x, p.y, p.z});
         high = most(high, {p.x, p.y, p.z});
     }
-    if (shape.file_vertices == shape.mesh.vertices) shape.file_vertices = {};
+    if (shape.file_vertices == shape.mesh.vertices) std::vector<Vec3>().swap(shape.file_vertices);
     shape.diagonal = length(high - low);
     shape.grain = shape.diagonal / std::sqrt(double(shape.mesh.triangles.size()));
     for (std::size_t k = 0; k < 3; ++k) {

