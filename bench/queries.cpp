@@ -80,7 +80,7 @@ std::shared_ptr<fcl::BVHModel<Volume>> model_of(const rc::Shape& shape) {
 fcl::Transform3d transform_of(const rc::Pose& pose) {
     fcl::Transform3d transform = fcl::Transform3d::Identity();
     for (int i = 0; i < 9; ++i) transform.linear()(i / 3, i % 3) = pose.rotation[static_cast<std::size_t>(i)];
-    transform.translation() = {pose.translation.x, pose.translation.y, pose.translation.z};
+    transform.translation() = fcl::Vector3d(pose.translation.x, pose.translation.y, pose.translation.z);
     return transform;
 }
 #endif
