@@ -64,8 +64,9 @@ struct Distance {
 };
 
 /// The least distance of two surfaces, if it is within `max` metres; 0 where they intersect, or one lies inside the
-/// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point().
-/// Branch and bound over both trees. A small `max` saves work.
+/// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point(), but
+/// between edges parallel to some 1e-8: to 1e-8 of their length. Branch and bound over both trees. A small `max` saves
+/// work.
 std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                  double max = any_distance);
 

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace raycontact {
 
 namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // Twice what two meshes reach, and some more; and far below what overflows in a predicate.
 constexpr double farthest_translation = 1e10;
@@ -99,6 +102,20 @@ std::array<PlacedPoint, 3> ShapePair::triangle_of_a(std::uint32_t triangle) cons
     return {vertex_of_a(u), vertex_of_a(v), vertex_of_a(w)};
 }
 
+std::array<Vec3, 3> ShapePair::corners_of_a(std::uint32_t triangle) const {
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = transform_point(a_in_b_, a().file_vertex(a().mesh.triangles[triangle][k]) - a().centre);
+    return corners;
+}
+
+std::array<Vec3, 3> ShapePair::corners_of_b(std::uint32_t triangle) const {
+    const ShapeData& b = b_.shape();
+    std::array<Vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = b.file_vertex(b.mesh.triangles[triangle][k]) - b.centre;
+    return corners;
+}
+
 Box ShapePair::box_in(Side side, const Box& of_other) const {
     return world_box(of_other, side == Side::a ? b_in_a_ : a_in_b_, error());
 }
@@ -108,10 +125,16 @@ BlockBoxes::BlockBoxes(const kernels::TriangleBlock& block, double grow) {
         const auto &p = block.corner[k], &q = block.corner[3 + k], &r = block.corner[6 + k];
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const bool empty = block.triangle[lane] == NONE;
-            low[k][lane] = empty ? 1e30 : double(std::min(std::min(p[lane], q[lane]), r[lane])) - grow;
-            high[k][lane] = empty ? -1e30 : double(std::max(std::max(p[lane], q[lane]), r[lane])) + grow;
+            low[k][lane] = empty ? infinite : double(std::min(std::min(p[lane], q[lane]), r[lane])) - grow;
+            high[k][lane] = empty ? -infinite : double(std::max(std::max(p[lane], q[lane]), r[lane])) + grow;
         }
     }
+}
+
+Box BlockBoxes::whole() const {
+    const auto low_end = [&](std::size_t k) { return *std::min_element(low[k].begin(), low[k].end()); };
+    const auto high_end = [&](std::size_t k) { return *std::max_element(high[k].begin(), high[k].end()); };
+    return {{low_end(0), low_end(1), low_end(2)}, {high_end(0), high_end(1), high_end(2)}};
 }
 
 Lanes<double> BlockBoxes::squared_distances(const Box& box) const {
@@ -124,6 +147,18 @@ Lanes<double> BlockBoxes::squared_distances(const Box& box) const {
         }
     }
     return squares;
+}
+
+Lanes<double> least_along(const kernels::TriangleBlock& block, const Vec3& direction) {
+    Lanes<double> least;
+    for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
+        const auto along = [&](std::size_t k) {
+            return direction.x * double(block.corner[k][lane]) + direction.y * double(block.corner[k + 1][lane])
+                   + direction.z * double(block.corner[k + 2][lane]);
+        };
+        least[lane] = block.triangle[lane] == NONE ? infinite : std::min(std::min(along(0), along(3)), along(6));
+    }
+    return least;
 }
 
 } // namespace raycontact

@@ -53,6 +53,11 @@ public:
 
     PlacedPoint vertex_of_a(std::uint32_t vertex) const;
     std::array<PlacedPoint, 3> triangle_of_a(std::uint32_t triangle) const;
+    /// Rough corners alone.
+    std::array<Vec3, 3> corners_of_a(std::uint32_t triangle) const;
+    std::array<Vec3, 3> corners_of_b(std::uint32_t triangle) const;
+    /// Rough points of a in the centred frame of b.
+    const Pose& a_in_b() const { return a_in_b_; }
     Vec3 to_world(const Vec3& rough) const { return transform_point(b_in_world_, rough); }
 
     /// About a box of the other tree, in the frame of `side`.
@@ -79,9 +84,14 @@ struct BlockBoxes {
     std::array<Lanes<double>, 3> low, high;
     /// Grown by `grow`, metres.
     BlockBoxes(const kernels::TriangleBlock& block, double grow);
+    /// About them all.
+    Box whole() const;
     /// The squared distance of each from a box, m^2; 0: they touch.
     Lanes<double> squared_distances(const Box& box) const;
 };
+
+/// How far along a direction each triangle of a block begins: the least of direction . corner; infinite in empty lanes.
+Lanes<double> least_along(const kernels::TriangleBlock& block, const Vec3& direction);
 
 /// How far a file's vertex can be from the float32 one, metres, with a margin.
 inline double rounding_of(const ShapeData& shape) {

@@ -12,14 +12,13 @@ namespace raycontact {
 struct TrianglePair {
     std::uint32_t a = NONE, b = NONE;
     Vec3 point_a, point_b;
-    bool meet = false; ///< exactly
 };
 
 /// The first triangles found that meet, exactly.
 std::optional<TrianglePair> meeting_triangles(const ShapePair& pair);
 
-/// The closest triangles not farther apart than `farthest`, metres, give or take a rounding; where two meet exactly,
-/// such a pair, with equal points.
+/// The closest triangles of two shapes whose surfaces do not meet, if they are not farther apart than `farthest`,
+/// metres, give or take a rounding.
 std::optional<TrianglePair> closest_triangles(const ShapePair& pair, double farthest);
 
 } // namespace raycontact

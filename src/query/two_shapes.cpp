@@ -56,22 +56,23 @@ std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape
     check_placed(pose_b, "pose of the second mesh");
     check_reach(max, "distance");
     const ShapePair pair(a, pose_a, b, pose_b);
-    const auto closest = closest_triangles(pair, max);
-    const bool meet = closest && closest->meet;
-    if (!meet) {
-        if (const auto inner = inner_vertex(a, pose_a, b, pose_b, pair)) {
-            Distance result{0, inner->point, inner->point};
-            if (inner->of_a)
-                result.triangle_a = in_file(a, a.vertex_triangles()[inner->vertex]);
-            else
-                result.triangle_b = in_file(b, b.vertex_triangles()[inner->vertex]);
-            return result;
-        }
+    if (const auto found = meeting_triangles(pair)) {
+        const Vec3 point = pair.to_world(found->point_a);
+        return Distance{0, point, point, in_file(a, found->a), in_file(b, found->b)};
     }
+    if (const auto inner = inner_vertex(a, pose_a, b, pose_b, pair)) {
+        Distance result{0, inner->point, inner->point};
+        if (inner->of_a)
+            result.triangle_a = in_file(a, a.vertex_triangles()[inner->vertex]);
+        else
+            result.triangle_b = in_file(b, b.vertex_triangles()[inner->vertex]);
+        return result;
+    }
+    const auto closest = closest_triangles(pair, max);
     if (!closest) return std::nullopt;
-    // Of the difference: the points in the world may be rounded by more than that.
+    // Of the difference: the points in the world may be rounded by more. Above 0, though it may round to that.
     const Vec3 apart = rotated(pose_b.rotation, closest->point_a - closest->point_b);
-    const double metres = meet ? 0 : std::max(length(apart), std::numeric_limits<double>::min());
+    const double metres = std::max(length(apart), std::numeric_limits<double>::min());
     if (metres > max) return std::nullopt;
     return Distance{metres, pair.to_world(closest->point_a), pair.to_world(closest->point_b), in_file(a, closest->a),
                     in_file(b, closest->b)};
