@@ -13,6 +13,7 @@ void add_device(CLI::App& app);
 void add_roofline(CLI::App& app);
 void add_several(CLI::App& app);
 void add_balance(CLI::App& app);
+void add_queries(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_stacks(CLI::App& app);
 void add_holds(CLI::App& app);

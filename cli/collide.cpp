@@ -100,27 +100,31 @@ Json to_json(const Contact& contact) {
     return json;
 }
 
-void print_json(std::size_t index, bool intersecting, std::span<const Contact> contacts) {
+/// apart: how far they are, metres; 0: they intersect.
+void print_json(std::size_t index, double apart, std::span<const Contact> contacts) {
     Json list = Json::array();
     for (const Contact& contact : contacts) list.push_back(to_json(contact));
     const Json line{{"pair", index},
                     {"colliding", !contacts.empty()},
-                    {"intersecting", intersecting},
+                    {"intersecting", apart == 0},
+                    {"distance", apart},
                     {"contacts", std::move(list)}};
     std::cout << line.dump() << '\n';
 }
 
-void print_table(std::size_t index, const QueryPair& pair, bool intersecting, std::span<const Contact> contacts,
+void print_table(std::size_t index, const QueryPair& pair, double apart, std::span<const Contact> contacts,
                  bool weighted) {
+    const bool intersecting = apart == 0;
+    const std::string distance = fmt::format("apart by {:.6g} m", apart);
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
     if (contacts.empty()) {
-        std::cout << (intersecting ? "intersecting, 0 contacts (touching, or no rule of contact applies)\n"
-                                   : "apart\n");
+        std::cout << (intersecting ? "intersecting, 0 contacts (touching, or no rule of contact applies)" : distance)
+                  << '\n';
         return;
     }
     const auto deepest = std::max_element(contacts.begin(), contacts.end(),
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
-    std::cout << fmt::format("{}, {} contact{}{}, deepest {:.6g} m\n", intersecting ? "intersecting" : "apart",
+    std::cout << fmt::format("{}, {} contact{}{}, deepest {:.6g} m\n", intersecting ? "intersecting" : distance,
                              contacts.size(), contacts.size() == 1 ? "" : "s",
                              intersecting ? "" : " of open meshes, each behind the other", deepest->depth);
     const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
@@ -158,10 +162,9 @@ StepStats collide_batch(const Settings& settings, std::span<const QueryPair> pai
         const auto [a, b] = list[i];
         // A contact shows that they intersect, unless neither has an inside.
         const bool solid = scene.shape(a).has_inside() || scene.shape(b).has_inside();
-        const bool intersecting =
-            (solid && !own.empty()) || intersects(scene.shape(a), scene.pose(a), scene.shape(b), scene.pose(b));
-        json ? print_json(first + i, intersecting, own)
-             : print_table(first + i, pairs[i], intersecting, own, settings.direction == Direction::weighted);
+        const double apart = solid && !own.empty() ? 0 : scene.distance(a, b)->distance;
+        json ? print_json(first + i, apart, own)
+             : print_table(first + i, pairs[i], apart, own, settings.direction == Direction::weighted);
         begin = end;
     }
     return scene.stats();

@@ -5,11 +5,11 @@
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
+#include <raycontact/query.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace raycontact {
@@ -26,19 +26,5 @@ struct CollideOptions {
 /// finite and rigid.
 std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                              const CollideOptions& options = {});
-
-/// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
-/// closed and wound alike everywhere. Exact for the vertices of `a` rounded to double in the frame of `b`: no tolerance
-/// decides. Ends at the first triangles that meet; copies nothing. Safe to call from several threads. Throws InputError
-/// as collide().
-bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
-
-/// A point that both share, world frame, metres, to rounding: where two triangles meet, or a vertex of the one inside
-/// the other. Nothing if intersects() is false.
-std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
-
-/// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
-/// Decided by exact predicates. Body frame, metres. Safe to call from several threads.
-bool contains(const Shape& shape, const Vec3& point);
 
 } // namespace raycontact

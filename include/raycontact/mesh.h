@@ -4,8 +4,10 @@
 #include <raycontact/pose.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,20 @@ struct Mesh {
 /// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: a missing,
 /// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
 Mesh load_mesh(const std::filesystem::path& file);
+
+enum class MeshFormat { obj, stl, ply, off, gltf, glb };
+
+/// The same from memory: the bytes of a whole file. name: for messages and Mesh::name.
+/// Throws InputError, which names it, as for a file; also for a glTF file whose buffers are files of their own.
+Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
+
+/// From arrays. coordinates: x, y, z of each vertex, metres; corners: three vertices of each triangle,
+/// counter-clockwise seen from outside. Throws InputError naming it and the element to blame for: no triangles, a
+/// number that is not a multiple of three, a vertex that does not exist, a coordinate not finite.
+Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
+               const std::string& name = {});
+Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
+               const std::string& name = {});
 
 /// What a mesh is, after the repairs it names.
 struct MeshReport {

@@ -5,11 +5,13 @@
 #include <raycontact/contact.h>
 #include <raycontact/error.h>
 #include <raycontact/prediction.h>
+#include <raycontact/query.h>
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 #include <raycontact/step_stats.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +23,14 @@ namespace raycontact {
 
 /// An unordered pair of bodies; the first has the lower slot.
 using Pair = std::pair<BodyId, BodyId>;
+
+/// What a query of a scene found, and on which body; of equally near bodies the one with the lowest slot.
+struct BodyRayHit : RayHit {
+    BodyId body{};
+};
+struct BodyClosestPoint : ClosestPoint {
+    BodyId body{};
+};
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
 /// call of find_contacts(). Not thread-safe; use one scene per thread.
@@ -94,6 +104,22 @@ public:
     /// What the last step of method `predictive` expects to touch next; sorted as contacts; none of other methods. Read
     /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go.
     std::vector<Prediction> predictions() const;
+
+    // Queries of the bodies where they are now, poses set since the last step included, by the functions of query.h,
+    // with what those promise and throw. Each looks at the boxes of all bodies and then into meshes, nearest first.
+    // They change nothing: several threads may ask a scene at once as long as none changes it. wanted: the bodies that
+    // count; empty: all.
+    using Wanted = std::function<bool(BodyId)>;
+    std::optional<BodyRayHit> raycast(const Vec3& origin, const Vec3& direction, double max = any_distance,
+                                      const Wanted& wanted = {}) const;
+    bool raycast_any(const Vec3& origin, const Vec3& direction, double max = any_distance,
+                     const Wanted& wanted = {}) const;
+    std::optional<BodyClosestPoint> closest_point(const Vec3& point, double max = any_distance,
+                                                  const Wanted& wanted = {}) const;
+    /// The bodies whose meshes intersect another one, placed here; by slot.
+    std::vector<BodyId> overlaps(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
+    /// Of two bodies. Throws InputError for one that is not in the scene.
+    std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
 private:
     struct State;

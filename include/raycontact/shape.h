@@ -44,6 +44,9 @@ public:
     /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far
     /// from their origin lose nothing; these positions are centre + float32 offset, in double.
     std::span<const Vec3> vertices() const;
+    /// Body frame, not rounded: those that the mesh had, of which queries decide (query.h). They are kept, 24 bytes a
+    /// vertex, only where they differ from vertices().
+    std::span<const Vec3> file_vertices() const;
     std::span<const std::array<std::uint32_t, 3>> triangles() const;
     std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex
     std::span<const std::uint32_t> triangle_index() const; ///< file index of each triangle

@@ -216,6 +216,9 @@ bool GltfFile::is_data(const Item& uri) const {
 }
 
 std::filesystem::path GltfFile::path_of(const Item& uri) const {
+    if (file_.path.empty())
+        fail(uri, "names the file " + in_quotes(text_of(uri))
+                      + ", and bytes in memory have none beside them; make it a GLB, or load it by its path");
     return file_.path.parent_path() / decoded_uri(text_of(uri));
 }
 

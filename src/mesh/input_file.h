@@ -22,7 +22,8 @@ namespace raycontact {
 constexpr std::size_t most_vertices = 0xfffffffeu;
 constexpr std::size_t most_triangles = 0x7fffffffu / 3 - 1; // an edge has a number of 31 bits: ContactFeature::key()
 
-/// A whole file in memory. Its readers report errors in one line that names the file.
+/// A whole file in memory; without a path where it never was a file. Its readers report errors in one line that names
+/// the file.
 struct InputFile {
     std::filesystem::path path;
     std::string shown; ///< the path, fit for a message

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/predicates.h"
 
+#include "mesh/expansion.h"
 #include "mesh/vector.h"
 
 #include <array>
@@ -9,71 +10,29 @@
 namespace raycontact {
 namespace {
 
-/// A sum of doubles that do not overlap, by rising magnitude: the last one has the sign of the sum. Every operation is
-/// `add`, which is exact for any summand (Shewchuk 1997, theorem 10); zeros are left out.
-class Expansion {
-public:
-    Expansion() = default;
-    Expansion(double a, double b) { // a - b
-        add(a);
-        add(-b);
-    }
-
-    void add(double summand) {
-        double carry = summand;
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < size_; ++i) {
-            const double part = parts_[i];
-            const double sum = carry + part;
-            const double shadow = sum - carry;
-            const double error = (carry - (sum - shadow)) + (part - shadow);
-            carry = sum;
-            if (error != 0) parts_[kept++] = error;
-        }
-        if (carry != 0) parts_[kept++] = carry;
-        size_ = kept;
-    }
-
-    /// Adds sign * a * b.
-    void add_product(const Expansion& a, const Expansion& b, double sign) {
-        for (std::size_t i = 0; i < a.size_; ++i) {
-            for (std::size_t k = 0; k < b.size_; ++k) {
-                const double factor = sign * a.parts_[i];
-                const double product = factor * b.parts_[k];
-                add(std::fma(factor, b.parts_[k], -product));
-                add(product);
-            }
-        }
-    }
-
-    int sign() const { return size_ == 0 ? 0 : parts_[size_ - 1] > 0 ? 1 : -1; }
-
-private:
-    // The largest is orient3d: 3 terms of 2 x (2 x 2 x 2 + 2 x 2 x 2) x 2 parts.
-    std::array<double, 192> parts_;
-    std::size_t size_ = 0;
-};
+// The largest is orient3d: 3 terms of 2 x (2 x 2 x 2 + 2 x 2 x 2) x 2 parts.
+using Sum = Expansion<192>;
 
 constexpr double half_ulp = 1.1102230246251565e-16;
 constexpr double bound3 = (7 + 56 * half_ulp) * half_ulp;
 constexpr double bound2 = (3 + 16 * half_ulp) * half_ulp;
 
-Expansion minor_of(const Expansion& a, const Expansion& b, const Expansion& c, const Expansion& d) {
-    Expansion result; // a d - b c
+Sum minor_of(const Sum& a, const Sum& b, const Sum& c, const Sum& d) {
+    Sum result; // a d - b c
     result.add_product(a, d, 1);
     result.add_product(b, c, -1);
     return result;
 }
 
 int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    std::array<std::array<Expansion, 3>, 3> row;
+    std::array<std::array<Sum, 3>, 3> row;
     const std::array points{&a, &b, &c};
     for (std::size_t r = 0; r < 3; ++r) {
-        for (std::size_t k = 0; k < 3; ++k) row[r][k] = Expansion(axis(*points[r], k), axis(d, k));
+        for (std::size_t k = 0; k < 3; ++k) row[r][k] = Sum(axis(*points[r], k), axis(d, k));
     }
-    Expansion sum;
+    Sum sum;
     for (std::size_t r = 0; r < 3; ++r) {
-        const std::array<Expansion, 3>&next = row[(r + 1) % 3], &last = row[(r + 2) % 3];
+        const std::array<Sum, 3>&next = row[(r + 1) % 3], &last = row[(r + 2) % 3];
         sum.add_product(row[r][2], minor_of(next[0], next[1], last[0], last[1]), 1);
     }
     return sum.sign();
@@ -101,11 +60,37 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t drop) {
     const double det = left - right, permanent = std::fabs(left) + std::fabs(right);
     if (std::fabs(det) > bound2 * permanent) return det > 0 ? 1 : -1;
     if (permanent == 0) return 0;
-    return minor_of(Expansion(au, cu), Expansion(av, cv), Expansion(bu, cu), Expansion(bv, cv)).sign();
+    return minor_of(Sum(au, cu), Sum(av, cv), Sum(bu, cu), Sum(bv, cv)).sign();
 }
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
     return orient2d(a, b, c, 0) == 0 && orient2d(a, b, c, 1) == 0 && orient2d(a, b, c, 2) == 0;
+}
+
+int order(const Vec3& a, const Vec3& b, std::size_t k) {
+    return axis(a, k) < axis(b, k) ? -1 : axis(a, k) > axis(b, k) ? 1 : 0;
+}
+
+int line_side(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b) {
+    const Vec3 p = a - origin, q = b - origin, &d = direction;
+    const double xy1 = p.x * q.y, xy2 = p.y * q.x, yz1 = p.y * q.z, yz2 = p.z * q.y, zx1 = p.z * q.x, zx2 = p.x * q.z;
+    const double det = d.z * (xy1 - xy2) + d.x * (yz1 - yz2) + d.y * (zx1 - zx2);
+    const double permanent = std::fabs(d.z) * (std::fabs(xy1) + std::fabs(xy2))
+                             + std::fabs(d.x) * (std::fabs(yz1) + std::fabs(yz2))
+                             + std::fabs(d.y) * (std::fabs(zx1) + std::fabs(zx2));
+    if (std::fabs(det) > bound3 * permanent) return det > 0 ? 1 : -1;
+    if (permanent == 0) return 0;
+    Sum sum;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+        Sum along;
+        along.add(axis(direction, k));
+        sum.add_product(along,
+                        minor_of(Sum(axis(a, u), axis(origin, u)), Sum(axis(a, v), axis(origin, v)),
+                                 Sum(axis(b, u), axis(origin, u)), Sum(axis(b, v), axis(origin, v))),
+                        1);
+    }
+    return sum.sign();
 }
 
 Vec3 snapped(const Vec3& point) {

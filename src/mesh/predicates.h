@@ -16,6 +16,13 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 /// Turn of a, b, c seen along coordinate axis `drop` (projected onto the other two, in cyclic order): 1 is left.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t drop);
 
+/// Of a and b along axis k: -1 where a comes first, 0 where they are equal there.
+int order(const Vec3& a, const Vec3& b, std::size_t k);
+
+/// The sign of direction . ((a - origin) x (b - origin)): on which side the line passes the edge from a to b. Of two
+/// triangles on an edge, one gets the sign and the other its opposite. No component of the direction exceeds 1.
+int line_side(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b);
+
 /// All three on one line, or equal.
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 

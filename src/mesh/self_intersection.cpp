@@ -2,6 +2,7 @@
 #include "mesh/self_intersection.h"
 
 #include "mesh/predicates.h"
+#include "mesh/triangle_pair.h"
 
 #include <algorithm>
 
@@ -9,70 +10,6 @@ namespace raycontact {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
-
-/// An axis along which the triangle does not look like a line.
-std::size_t drop_axis(const Corners& t) {
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (orient2d(t[0], t[1], t[2], k) != 0) return k;
-    }
-    return 2;
-}
-
-// In a common plane, seen along `drop`. Segments are closed.
-bool segments_meet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, std::size_t drop) {
-    const int c_side = orient2d(a, b, c, drop), d_side = orient2d(a, b, d, drop);
-    if (c_side * d_side > 0) return false;
-    const int a_side = orient2d(c, d, a, drop), b_side = orient2d(c, d, b, drop);
-    if (a_side * b_side > 0) return false;
-    if (c_side != 0 || d_side != 0 || a_side != 0 || b_side != 0) return true;
-    // All on one line: their extents must overlap along both remaining axes.
-    for (const std::size_t k : {(drop + 1) % 3, (drop + 2) % 3}) {
-        const auto [low1, high1] = std::minmax({axis(a, k), axis(b, k)});
-        const auto [low2, high2] = std::minmax({axis(c, k), axis(d, k)});
-        if (high1 < low2 || high2 < low1) return false;
-    }
-    return true;
-}
-
-bool point_in_triangle(const Vec3& p, const Corners& t, std::size_t drop) {
-    const int s0 = orient2d(t[0], t[1], p, drop), s1 = orient2d(t[1], t[2], p, drop),
-              s2 = orient2d(t[2], t[0], p, drop);
-    return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
-}
-
-/// Closed segment p q against closed triangle t; the sides of p and q of its plane are known.
-bool segment_meets_triangle(const Vec3& p, const Vec3& q, int p_side, int q_side, const Corners& t) {
-    if (p_side * q_side > 0) return false;
-    if (p_side == 0 && q_side == 0) {
-        const std::size_t drop = drop_axis(t);
-        return point_in_triangle(p, t, drop) || segments_meet(p, q, t[0], t[1], drop)
-               || segments_meet(p, q, t[1], t[2], drop) || segments_meet(p, q, t[2], t[0], drop);
-    }
-    // The line crosses the plane in one point, on the segment; it passes the edges all on the same side, or touches
-    // them.
-    const int s0 = orient3d(p, q, t[0], t[1]), s1 = orient3d(p, q, t[1], t[2]), s2 = orient3d(p, q, t[2], t[0]);
-    return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
-}
-
-/// Closed triangles that share no corner (`shared` 0), or their corner 0 (1). If they meet, an edge of one meets the
-/// other: the common segment ends on an edge; if they are coplanar, the boundaries cross or one contains the other.
-/// What they have in common besides corner 0 is convex with it, so it reaches an opposite edge.
-bool edges_meet(const Corners& a, const Corners& b, std::size_t shared) {
-    const auto one_side = [&](const std::array<int, 3>& side) {
-        return side[1] == side[2] && side[2] != 0 && (shared == 1 || side[0] == side[1]);
-    };
-    std::array<int, 3> side_a{}, side_b{};
-    for (std::size_t i = shared; i < 3; ++i) side_a[i] = orient3d(b[0], b[1], b[2], a[i]);
-    if (one_side(side_a)) return false;
-    for (std::size_t i = shared; i < 3; ++i) side_b[i] = orient3d(a[0], a[1], a[2], b[i]);
-    if (one_side(side_b)) return false;
-    for (std::size_t i = shared; i < 3 - shared; ++i) {
-        const std::size_t k = (i + 1) % 3;
-        if (segment_meets_triangle(a[i], a[k], side_a[i], side_a[k], b)) return true;
-        if (segment_meets_triangle(b[i], b[k], side_b[i], side_b[k], a)) return true;
-    }
-    return false;
-}
 
 /// A plane through the shared corner with one triangle on either side, clear of rounding: the common case, for four dot
 /// products instead of exact determinants on nearly flat surfaces.
@@ -122,10 +59,6 @@ bool triangles_meet(std::span<const Vec3> vertices, const Triangle& a, const Tri
     if (shared == 0) return edges_meet(u, v, 0);
     if (shared == 1) return !clearly_apart(u, v) && edges_meet(u, v, 1);
     return shared == 3 || (!clearly_open(u, v) && folded_flat(u, v));
-}
-
-bool triangles_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b) {
-    return edges_meet(a, b, 0);
 }
 
 } // namespace raycontact

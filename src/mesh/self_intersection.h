@@ -3,7 +3,6 @@
 
 #include "mesh/measure.h"
 
-#include <array>
 #include <span>
 
 namespace raycontact {
@@ -11,8 +10,5 @@ namespace raycontact {
 /// Whether two triangles meet elsewhere than in the vertices or the edge they share. Exact for vertices as given (see
 /// predicates.h), which are equal exactly where their indices are. Neither may be degenerate.
 bool triangles_meet(std::span<const Vec3> vertices, const Triangle& a, const Triangle& b);
-
-/// Whether two triangles of different meshes have a point in common. As exact; neither may be degenerate.
-bool triangles_meet(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b);
 
 } // namespace raycontact

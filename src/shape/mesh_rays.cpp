@@ -14,13 +14,39 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-// A bit for each triangle that the ray's line passes within the rounding of floats: all that meet() can accept, and
-// some more. error: with S, the farthest corner's distance from the mesh's centre and the origin's added, a volume in
-// float is wrong by less than 2e-6 S^2; twice that serves. outside: 1, or 0 where those met from outside do not count.
-std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const std::array<float, 3>& origin,
-                                const std::array<float, 3>& direction, float error, std::uint32_t outside) {
-    const auto [ox, oy, oz] = origin;
-    const auto [dx, dy, dz] = direction;
+// Where the ray meets a triangle; otherwise `never`. Edges belong to it.
+double meet(const kernels::TriangleBlock& block, std::size_t lane, const MeshRay& ray, bool& from_inside) {
+    const auto corner = [&](std::size_t k) {
+        return Vec3{block.corner[k][lane], block.corner[k + 1][lane], block.corner[k + 2][lane]} - ray.origin;
+    };
+    const Vec3 p = corner(0), q = corner(3), r = corner(6), &d = ray.direction;
+    const double u = dot(cross(q, r), d), v = dot(cross(r, p), d), w = dot(cross(p, q), d);
+    from_inside = u >= 0 && v >= 0 && w >= 0;
+    if (!from_inside && !(u <= 0 && v <= 0 && w <= 0)) return never;
+    const double volume = u + v + w;
+    if (volume == 0) return never;
+    const double at = (u * dot(p, d) + v * dot(q, d) + w * dot(r, d)) / volume;
+    return at > ray.least && at <= ray.most ? at : never;
+}
+
+} // namespace
+
+// With S, the farthest corner's distance from the mesh's centre and the origin's added, a volume in float is wrong by
+// less than 2e-6 S^2; twice that serves.
+FloatLine::FloatLine(const ShapeData& mesh, const Vec3& from, const Vec3& along, double slack) {
+    double apart = mesh.reach;
+    for (std::size_t k = 0; k < 3; ++k) {
+        origin[k] = static_cast<float>(axis(from, k));
+        direction[k] = static_cast<float>(axis(along, k));
+        apart += std::fabs(axis(from, k));
+    }
+    error = static_cast<float>(4e-6 * apart * apart + 8 * slack * apart);
+}
+
+std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const FloatLine& line, std::uint32_t outside) {
+    const auto [ox, oy, oz] = line.origin;
+    const auto [dx, dy, dz] = line.direction;
+    const float error = line.error;
     std::array<std::uint32_t, TRIANGLE_LANES> on;
     for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) {
         const float px = block.corner[0][k] - ox, py = block.corner[1][k] - oy, pz = block.corner[2][k] - oz;
@@ -43,35 +69,14 @@ std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const std::
     return bits;
 }
 
-// Where the ray meets a triangle; otherwise `never`. Edges belong to it.
-double meet(const kernels::TriangleBlock& block, std::size_t lane, const MeshRay& ray, bool& from_inside) {
-    const auto corner = [&](std::size_t k) {
-        return Vec3{block.corner[k][lane], block.corner[k + 1][lane], block.corner[k + 2][lane]} - ray.origin;
-    };
-    const Vec3 p = corner(0), q = corner(3), r = corner(6), &d = ray.direction;
-    const double u = dot(cross(q, r), d), v = dot(cross(r, p), d), w = dot(cross(p, q), d);
-    from_inside = u >= 0 && v >= 0 && w >= 0;
-    if (!from_inside && !(u <= 0 && v <= 0 && w <= 0)) return never;
-    const double volume = u + v + w;
-    if (volume == 0) return never;
-    const double at = (u * dot(p, d) + v * dot(q, d) + w * dot(r, d)) / volume;
-    return at > ray.least && at <= ray.most ? at : never;
-}
-
-} // namespace
-
 // Boxes and lines are asked in float: boxes are grown by far more than its rounding.
 MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
-    std::array<float, 3> origin, direction, inverse;
-    double apart = mesh.reach;
+    const FloatLine line(mesh, ray.origin, ray.direction);
+    std::array<float, 3> inverse;
     for (std::size_t k = 0; k < 3; ++k) {
         const double d = axis(ray.direction, k);
-        origin[k] = static_cast<float>(axis(ray.origin, k));
-        direction[k] = static_cast<float>(d);
         inverse[k] = static_cast<float>(1 / (std::fabs(d) > 1e-20 ? d : 1e-20));
-        apart += std::fabs(axis(ray.origin, k));
     }
-    const float error = static_cast<float>(4e-6 * apart * apart);
     const std::uint32_t outside = ray.from_inside ? 0 : 1;
     MeshHit hit;
     const auto farthest = [&] {
@@ -84,7 +89,7 @@ MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
         first.fill(0);
         last.fill(infinite);
         for (std::size_t k = 0; k < 3; ++k) {
-            const float at = origin[k], by = inverse[k];
+            const float at = line.origin[k], by = inverse[k];
             for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
                 const float t0 = (node.bounds[k][lane] - at) * by, t1 = (node.bounds[3 + k][lane] - at) * by;
                 first[lane] = std::max(first[lane], std::min(t0, t1));
@@ -95,7 +100,7 @@ MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray) {
             first[lane] = first[lane] <= last[lane] ? first[lane] : infinite;
     };
     nearest_first<float>(mesh, farthest, enter, [&](const kernels::TriangleBlock& block) {
-        for (std::uint32_t on = triangles_on_line(block, origin, direction, error, outside); on != 0; on &= on - 1) {
+        for (std::uint32_t on = triangles_on_line(block, line, outside); on != 0; on &= on - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(on));
             const std::uint32_t face = block.triangle[lane];
             bool from_inside;

@@ -4,6 +4,7 @@
 #include "mesh/measure.h"
 #include "shape/shape_data.h"
 
+#include <array>
 #include <limits>
 #include <span>
 
@@ -34,6 +35,20 @@ struct MeshRay {
     bool from_inside = false;                 ///< faces met from outside do not count
     std::span<const std::uint32_t> skipped{}; ///< faces that do not count
 };
+
+/// The line of a ray in float32, centred frame, to find triangles that it may meet. direction: unit.
+struct FloatLine {
+    std::array<float, 3> origin{}, direction{};
+    float error = 0; ///< of a volume, m^3
+
+    FloatLine() = default;
+    /// slack: how far the line may be off, metres.
+    FloatLine(const ShapeData& mesh, const Vec3& origin, const Vec3& direction, double slack = 0);
+};
+
+/// A bit for each triangle of a block that a line passes within the rounding of floats: all that it meets, and some
+/// more. outside: 1, or 0 where those met from outside do not count.
+std::uint32_t triangles_on_line(const kernels::TriangleBlock& block, const FloatLine& line, std::uint32_t outside);
 
 /// The closest face that counts; of equal ones the lowest.
 MeshHit closest_hit(const ShapeData& mesh, const MeshRay& ray);

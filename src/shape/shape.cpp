@@ -5,13 +5,16 @@
 #include "mesh/adjacency.h"
 #include "mesh/check.h"
 #include "mesh/measure.h"
+#include "mesh/predicates.h"
 #include "platform/system.h"
 #include "shape/build.h"
 
 #include <raycontact/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace raycontact {
 
@@ -21,8 +24,9 @@ constexpr double rounding = 1.1920929e-7;       // 2^-23
 constexpr std::size_t few_triangles = 512;      // one thread has them done before others wake
 constexpr std::size_t many_triangles = 1 << 16; // a millisecond to give memory back is not noticed
 
-// Rounds the vertices to float32, the double positions, too, so that all users see one geometry.
+// Rounds the vertices to float32, the double positions, too, so that steps see one geometry. Keeps what they were.
 void round_vertices(ShapeData& shape) {
+    shape.file_vertices = shape.mesh.vertices;
     shape.points.reserve(shape.mesh.vertices.size());
     Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
     for (Vec3& v : shape.mesh.vertices) {
@@ -35,6 +39,7 @@ void round_vertices(ShapeData& shape) {
         low = least(low, {p.x, p.y, p.z});
         high = most(high, {p.x, p.y, p.z});
     }
+    if (shape.file_vertices == shape.mesh.vertices) std::vector<Vec3>().swap(shape.file_vertices);
     shape.diagonal = length(high - low);
     shape.grain = shape.diagonal / std::sqrt(double(shape.mesh.triangles.size()));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -61,6 +66,25 @@ void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Exe
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane)
             if (const std::uint32_t t = shape.triangle_blocks[id].triangle[lane]; t != NONE)
                 shape.faces[t].triangle_lane = static_cast<std::uint32_t>(TRIANGLE_LANES * id + lane);
+}
+
+// Exact queries see the file's vertices: finds the triangles that rounding gave or took an area.
+void find_slivers(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor) {
+    std::vector<char> had_area(normals.size());
+    executor.each(normals.size(), 1024, [&](std::uint32_t t) {
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = snapped(shape.file_vertex(shape.mesh.triangles[t][k]));
+        had_area[t] = !collinear(corners[0], corners[1], corners[2]);
+    });
+    std::vector<std::uint32_t> lost;
+    for (std::uint32_t t = 0; t < normals.size(); ++t) {
+        const bool has_area = normals[t] != Vec3{};
+        if (has_area && !had_area[t]) shape.flat.push_back(t);
+        if (!has_area && had_area[t]) lost.push_back(t);
+    }
+    if (lost.empty()) return;
+    if (!build_tree(shape.slivers, {shape.points, shape.mesh.triangles, lost, grow, true, most_tree_levels}, executor))
+        throw std::logic_error("a balanced tree is too deep");
 }
 
 } // namespace
@@ -110,7 +134,9 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     shape.header.closed = shape.mesh.report.closed && shape.mesh.report.oriented ? 1 : 0;
     shape.header.outward = shape.header.closed != 0 && shape.mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
-    build_bvh(shape, normals, (shape.header.closed ? 32 : 256) * rounding * shape.diagonal, executor);
+    const double grow = (shape.header.closed ? 32 : 256) * rounding * shape.diagonal;
+    build_bvh(shape, normals, grow, executor);
+    find_slivers(shape, normals, grow, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
     shape.exit_distances = measure_exits(shape, normals, executor);
@@ -157,6 +183,9 @@ bool Shape::has_inside() const {
 }
 std::span<const Vec3> Shape::vertices() const {
     return data_->mesh.vertices;
+}
+std::span<const Vec3> Shape::file_vertices() const {
+    return data_->file_vertices.empty() ? data_->mesh.vertices : data_->file_vertices;
 }
 std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const {
     return data_->mesh.triangles;
@@ -205,6 +234,7 @@ std::uint64_t Shape::memory_bytes() const {
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
            + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.hair_moves)
            + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks)
+           + bytes(d.file_vertices) + bytes(d.slivers.triangle_blocks) + bytes(d.slivers.nodes) + bytes(d.flat)
            + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
            + (is_prepared() ? accelerators()->bytes() : 0);
 }

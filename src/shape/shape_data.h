@@ -5,6 +5,7 @@
 
 #include <raycontact/shape.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace raycontact {
@@ -21,6 +22,10 @@ kernels::ulong host_place(const std::vector<T>& values) {
 /// Everything a shape is made of. The kernel arrays use offsets from their own beginning.
 struct ShapeData : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
+    /// As they were before that, for exact queries; empty where no coordinate was changed. 24 bytes a vertex.
+    std::vector<Vec3> file_vertices;
+    TriangleTree slivers;            ///< over the triangles that have an area only before that; often empty
+    std::vector<std::uint32_t> flat; ///< those that have one only after it, rising
     Vec3 centre;
     std::vector<Point3f> points; ///< float32 offsets from centre
     std::vector<Vec3> vertex_normals;
@@ -65,6 +70,12 @@ struct ShapeData : TriangleTree {
     }
 
     Vec3 point(std::uint32_t vertex) const { return {points[vertex].x, points[vertex].y, points[vertex].z}; }
+    const Vec3& file_vertex(std::uint32_t vertex) const {
+        return file_vertices.empty() ? mesh.vertices[vertex] : file_vertices[vertex];
+    }
+    bool is_flat(std::uint32_t triangle) const {
+        return !flat.empty() && std::binary_search(flat.begin(), flat.end(), triangle);
+    }
     Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }
 };
 

@@ -222,7 +222,7 @@ TEST_F(Clash, OpenPartsBehindEachOtherAreNoClash) {
     EXPECT_NE(result.out.find("0 clashes among 2 parts (1 pair of touching boxes)"), std::string::npos) << result.out;
     // They do have contacts: a vertex of one sees the other from behind.
     const ProgramResult pair = run_program({"collide", "tent.obj", "sheet.obj"}, folder_.path());
-    EXPECT_NE(pair.out.find(": apart, "), std::string::npos) << pair.out;
+    EXPECT_NE(pair.out.find(": apart by "), std::string::npos) << pair.out;
     EXPECT_NE(pair.out.find(" of open meshes, each behind the other, deepest "), std::string::npos) << pair.out;
     const json line = json::parse(run_program({"collide", "tent.obj", "sheet.obj", "--json"}, folder_.path()).out);
     EXPECT_EQ(line["colliding"], true);

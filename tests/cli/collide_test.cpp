@@ -70,7 +70,7 @@ TEST_F(Collide, TwoCorners) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
     const auto lines = json_lines(result.out);
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "intersecting", "contacts"}));
+    EXPECT_EQ(keys_of(lines[0]), (std::set<std::string>{"pair", "colliding", "intersecting", "distance", "contacts"}));
     EXPECT_EQ(lines[0]["pair"], 0);
     EXPECT_EQ(lines[0]["colliding"], true);
     const json& contacts = lines[0]["contacts"];
@@ -327,9 +327,9 @@ TEST_F(CollideByHand, SaysWhatItIs) {
     const auto crossing = run({"--at", "0.9,0.2,0.1"});
     EXPECT_NE(crossing.out.find("pair 0: cube.obj and cube.obj: intersecting, "), std::string::npos) << crossing.out;
     EXPECT_NE(crossing.out.find(" contacts, deepest 0.1 m\n"), std::string::npos) << crossing.out;
-    EXPECT_EQ(run({"--at", "1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart\n");
+    EXPECT_EQ(run({"--at", "1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart by 0.1 m\n");
     EXPECT_NE(run({"--at=-1,0,0"}).out.find("intersecting, 0 contacts"), std::string::npos) << "they touch";
-    EXPECT_EQ(run({"--at", "-1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart\n");
+    EXPECT_EQ(run({"--at", "-1.1,0,0"}).out, "pair 0: cube.obj and cube.obj: apart by 0.1 m\n");
 }
 
 TEST_F(CollideByHand, TurnsAboutXThenYThenZ) {

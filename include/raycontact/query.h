@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/error.h>
+#include <raycontact/pose.h>
+#include <raycontact/shape.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+// Questions about one or two shapes, without a scene (docs/queries.md). They copy nothing and change nothing: safe to
+// call from several threads, on the same shapes. Points are in the world frame unless said otherwise, lengths in
+// metres. A mesh's vertices are Shape::file_vertices(): not rounded. Where an answer is called exact, it is that for
+// the real numbers rotation * vertex + translation, with the doubles of the mesh and the pose, and no tolerance;
+// coordinates and entries of rotations below 1e-36 count as 0.
+//
+// All throw InputError for a pose that is not finite and rigid to 1e-4, for a point that is not finite or beyond 1e30
+// m, and for a greatest distance that is negative or not a number.
+
+namespace raycontact {
+
+constexpr double any_distance = std::numeric_limits<double>::infinity();
+
+/// Where a ray meets a mesh.
+struct RayHit {
+    std::uint32_t triangle = Shape::no_triangle; ///< index in the file
+    double distance = 0;                         ///< from the origin, metres, whatever the direction's length
+    Vec3 normal;                                 ///< of the face as the shape winds it, unit, world frame
+    Vec3 point;                                  ///< world frame
+};
+
+/// The closest triangle that a ray meets within `max` metres of its origin; of equally close ones the lowest. Both
+/// sides of a face count, and so do its edges and a face on which the origin lies; one that is seen exactly edge-on
+/// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on exact predicates
+/// decide which triangles it meets (Shewchuk 1997), so none slips between two that share an edge. The distance is
+/// rounded. direction: of any length. Throws InputError where it is zero or not finite.
+std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
+                              double max = any_distance);
+
+/// Whether raycast() has a hit; ends at the first one found.
+bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
+                 double max = any_distance);
+
+/// The point of a surface that is nearest to another point.
+struct ClosestPoint {
+    std::uint32_t triangle = Shape::no_triangle; ///< on which it lies, index in the file; of several the lowest
+    Vec3 point;                                  ///< world frame
+    double distance = 0;                         ///< metres; contains() tells on which side of a closed mesh
+};
+
+/// The closest point of a mesh's surface, if it is within `max` metres. In double: right to some 1e-15 of the size of
+/// the mesh and its distance from the origins. Of a triangle that is a million times longer than wide only the edges
+/// are looked at.
+std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
+                                          double max = any_distance);
+
+/// The least distance of two meshes, and where it is.
+struct Distance {
+    double distance = 0;   ///< metres; 0 exactly where intersects() is true
+    Vec3 point_a, point_b; ///< one on each surface, world frame; where they intersect, one that both share
+    /// On which the points lie, indices in the files. no_triangle for a mesh inside of which the other lies.
+    std::uint32_t triangle_a = Shape::no_triangle, triangle_b = Shape::no_triangle;
+};
+
+/// The least distance of two surfaces, if it is within `max` metres; 0 where they intersect, or one lies inside the
+/// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point(), but
+/// between edges parallel to some 1e-8: to 1e-8 of their length. Branch and bound over both trees. A small `max` saves
+/// work.
+std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                                 double max = any_distance);
+
+/// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
+/// closed and wound alike everywhere. Exact: parts of one assembly that share faces touch. Where both poses are equal
+/// they do not matter at all. Ends at the first triangles that meet.
+bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+
+/// A point that both share, to rounding: where two triangles meet, or a vertex of the one inside the other. Nothing if
+/// intersects() is false.
+std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+
+/// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
+/// Exact. The point is in the body frame, or in the world of a placed mesh.
+bool contains(const Shape& shape, const Vec3& point);
+bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
+
+} // namespace raycontact

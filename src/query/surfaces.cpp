@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "query/surfaces.h"
+
+#include "mesh/triangle_pair.h"
+#include "shape/mesh_rays.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace raycontact {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+using Corners = std::array<Vec3, 3>;
+
+Box grown(const Box& box, double by) {
+    const Vec3 grow{by, by, by};
+    return {box.low - grow, box.high + grow};
+}
+
+// How far a point of a triangle's plane is outside of the triangle, roughly; 0 inside.
+double off_triangle(const Vec3& p, const Corners& t) {
+    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 along = t[(k + 1) % 3] - t[k];
+        off = std::max(off, -dot(cross(along, p - t[k]), normal) / (length(along) * length(normal)));
+    }
+    return off;
+}
+
+// Where two triangles that meet do so, to rounding: where an edge of one passes the other, or, in a common plane, a
+// corner of one or the middle of what their boxes share.
+Vec3 meeting_point(const Corners& p, const Corners& q) {
+    const Box a = box_of(p), b = box_of(q);
+    Vec3 best = 0.5 * (most(a.low, b.low) + least(a.high, b.high));
+    double least_off = infinite;
+    const auto consider = [&](const Corners& edges, const Corners& t) {
+        const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &from = edges[k], &to = edges[(k + 1) % 3];
+            const double before = dot(normal, from - t[0]), after = dot(normal, to - t[0]);
+            if (before * after > 0) continue;
+            const double part = before == after ? 0 : before / (before - after);
+            const Vec3 at = from + part * (to - from);
+            const double off = off_triangle(at, t);
+            if (off >= least_off) continue;
+            least_off = off;
+            best = at;
+        }
+    };
+    consider(p, q);
+    consider(q, p);
+    return best;
+}
+
+/// Two points and their squared distance, m^2.
+struct Span {
+    double squared = infinite;
+    Vec3 a, b;
+
+    void shorten(const Vec3& to_a, const Vec3& to_b) {
+        const Vec3 off = to_a - to_b;
+        if (dot(off, off) < squared) *this = {dot(off, off), to_a, to_b};
+    }
+};
+
+// The closest points of two segments (after Ericson 2005, section 5.1.9). Of nearly parallel ones, where rounding may
+// put the place anywhere along both, the distance is within 1e-8 of their length.
+void shorten_between_edges(Span& span, const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
+    const auto ratio = [](double above, double below) { return below > 0 ? std::clamp(above / below, 0.0, 1.0) : 0; };
+    const Vec3 w = p - q;
+    const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
+    const double s = ratio(uv * vw - vv * uw, uu * vv - uv * uv);
+    const double t = ratio(uv * s + vw, vv);
+    span.shorten(p + ratio(uv * t - uw, uu) * u, q + t * v);
+}
+
+/// A triangle with what its distance from others needs.
+struct Face {
+    Corners corner, edge;
+    Vec3 normal; ///< twice the area long; zero of a needle, whose normal is not accurate and whose edges are enough
+
+    explicit Face(const Corners& t) : corner(t), edge{t[1] - t[0], t[2] - t[1], t[0] - t[2]} {
+        const Vec3 n = cross(edge[0], edge[1]);
+        if (dot(n, n) > 1e-12 * dot(edge[0], edge[0]) * dot(edge[1], edge[1])) normal = n;
+    }
+
+    /// The point within the face that is closest to p, unless an edge is closer or it is no nearer than `least`, m^2.
+    std::optional<Vec3> within(const Vec3& p, double least) const {
+        const Vec3 off = p - corner[0];
+        const double height = dot(normal, off), size2 = dot(normal, normal);
+        if (!(height * height < least * size2)) return std::nullopt;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (dot(normal, cross(edge[k], p - corner[k])) < 0) return std::nullopt;
+        return p - (height / size2) * normal;
+    }
+};
+
+// Of triangles that do not meet: between two edges, or from a corner of one to the face of the other.
+void shorten_between(Span& span, const Face& p, const Face& q) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) shorten_between_edges(span, p.corner[i], p.edge[i], q.corner[k], q.edge[k]);
+    for (const Vec3& corner : p.corner)
+        if (const auto point = q.within(corner, span.squared)) span.shorten(corner, *point);
+    for (const Vec3& corner : q.corner)
+        if (const auto point = p.within(corner, span.squared)) span.shorten(*point, corner);
+}
+
+/// Asks pairs of triangles whether they meet.
+class Meeting {
+public:
+    explicit Meeting(const ShapePair& pair)
+        : pair_(pair), grow_a_(rounding_of(pair.a())), grow_b_(rounding_of(pair.b().shape())) {}
+
+    const std::optional<TrianglePair>& found() const { return found_; }
+
+    void look(const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
+        const BlockBoxes boxes_a(of_a, grow_a_), boxes_b(of_b, grow_b_);
+        const Lanes<double> squares_a = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
+        for (std::size_t i = 0; i < TRIANGLE_LANES; ++i) {
+            const std::uint32_t a = of_a.triangle[i];
+            if (squares_a[i] > 0 || pair_.a().is_flat(a)) continue;
+            const std::array<PlacedPoint, 3> p = pair_.triangle_of_a(a);
+            const Corners corners{p[0].rough, p[1].rough, p[2].rough};
+            const Lanes<double> squares_b = boxes_b.squared_distances(grown(box_of(corners), pair_.error()));
+            for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) {
+                const std::uint32_t b = of_b.triangle[k];
+                if (squares_b[k] > 0 || pair_.b().shape().is_flat(b)) continue;
+                if (!triangles_meet(p, pair_.b().triangle(b))) continue;
+                const Vec3 point = meeting_point(corners, pair_.corners_of_b(b));
+                found_ = {a, b, point, point};
+                return;
+            }
+        }
+    }
+
+private:
+    const ShapePair& pair_;
+    double grow_a_, grow_b_;
+    std::optional<TrianglePair> found_;
+};
+
+/// The closest of the triangles seen so far. The way between them nearly parts all that is farther: along it, both
+/// meshes are seen without the slack of boxes that are turned.
+class Closest {
+public:
+    /// limit: only what is nearer counts, m^2.
+    Closest(const ShapePair& pair, double limit)
+        : pair_(pair), grow_a_(rounding_of(pair.a())), grow_b_(rounding_of(pair.b().shape())), squared_(limit) {
+        go({});
+    }
+
+    const std::optional<TrianglePair>& found() const { return found_; }
+    double squared() const { return squared_; } ///< m^2
+
+    /// How far the children of a node are from a box of the other tree, each in its own frame, m^2 at least.
+    void fill_gaps(Side side, const kernels::Node& node, const Box& other, Lanes<double>& lanes) const {
+        const Box box = pair_.box_in(side, other);
+        const Vec3 &own = side == Side::a ? forth_ : back_, &others = side == Side::a ? back_ : forth_;
+        const double reach = most_along(other, others) + shift_;
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+            const Box child = box_of(node, lane);
+            const double parted = std::max(-(most_along(child, own) + reach), 0.0);
+            lanes[lane] = std::max(gap(child, box), parted * parted);
+        }
+    }
+
+    void look(const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
+        Along along(*this, of_a, of_b);
+        if (is_beyond(along.first_of_b - along.last_of_a)) return;
+        const BlockBoxes boxes_a(of_a, grow_a_), boxes_b(of_b, grow_b_);
+        const Lanes<double> squares = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
+        for (const std::size_t lane : by_rising(squares)) {
+            const std::uint32_t a = of_a.triangle[lane];
+            if (!(squares[lane] < squared_)) return;
+            if (is_beyond(along.first_of_b - along.a[lane]) || pair_.a().is_flat(a)) continue;
+            if (look(a, along.a[lane], of_b, boxes_b, along.b)) along = Along(*this, of_a, of_b);
+        }
+    }
+
+private:
+    /// Where along the way the triangles of a end, and those of b begin, metres.
+    struct Along {
+        Lanes<double> a, b;
+        double last_of_a, first_of_b;
+
+        Along(const Closest& closest, const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b)
+            : a(least_along(of_a, Vec3{} - closest.forth_)), b(least_along(of_b, Vec3{} - closest.back_)) {
+            for (double& end : a) end = closest.shift_ + closest.grow_a_ - end;
+            for (double& begin : b) begin -= closest.grow_b_;
+            last_of_a = *std::max_element(a.begin(), a.end());
+            first_of_b = *std::min_element(b.begin(), b.end());
+        }
+    };
+
+    static double gap(const Box& a, const Box& b) {
+        const Vec3 off = most(most(a.low - b.high, b.low - a.high), Vec3{});
+        return dot(off, off);
+    }
+    static double most_along(const Box& box, const Vec3& way) {
+        const Vec3 half = 0.5 * (box.high - box.low);
+        return dot(way, box.middle()) + std::fabs(way.x) * half.x + std::fabs(way.y) * half.y
+               + std::fabs(way.z) * half.z;
+    }
+    /// Of a gap along the way.
+    bool is_beyond(double metres) const { return metres > 0 && metres * metres >= squared_; }
+
+    // Empty lanes, which are infinitely far, come last.
+    static std::array<std::size_t, NODE_LANES> by_rising(const Lanes<double>& squares) {
+        std::array<std::size_t, NODE_LANES> order;
+        for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+            std::size_t at = lane;
+            for (; at > 0 && squares[order[at - 1]] > squares[lane]; --at) order[at] = order[at - 1];
+            order[at] = lane;
+        }
+        return order;
+    }
+
+    // A triangle of a, which ends there along the way, and those of a block of b. Whether one is the closest now.
+    bool look(std::uint32_t a, double end, const kernels::TriangleBlock& of_b, const BlockBoxes& boxes,
+              const Lanes<double>& begins) {
+        const Corners corners = pair_.corners_of_a(a);
+        const Lanes<double> squares = boxes.squared_distances(grown(box_of(corners), pair_.error()));
+        // The nearest first: what it leaves is less.
+        const auto nearest =
+            static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
+        const Face face(corners);
+        bool closer = look(a, face, of_b.triangle[nearest], squares[nearest]);
+        for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane)
+            if (lane != nearest && !is_beyond(begins[lane] - end))
+                closer = look(a, face, of_b.triangle[lane], squares[lane]) || closer;
+        return closer;
+    }
+
+    bool look(std::uint32_t a, const Face& face, std::uint32_t b, double box_square) {
+        if (!(box_square < squared_) || pair_.b().shape().is_flat(b)) return false;
+        Span span{squared_, {}, {}};
+        shorten_between(span, face, Face(pair_.corners_of_b(b)));
+        if (!(span.squared < squared_)) return false;
+        squared_ = span.squared;
+        found_ = {a, b, span.a, span.b};
+        go(unit(span.b - span.a));
+        return true;
+    }
+
+    // way: unit, or 0, which parts nothing; centred frame of b.
+    void go(const Vec3& way) {
+        forth_ = rotated_back(pair_.a_in_b().rotation, way);
+        back_ = Vec3{} - way;
+        shift_ = dot(way, pair_.a_in_b().translation) + pair_.error();
+    }
+
+    const ShapePair& pair_;
+    double grow_a_, grow_b_, squared_;
+    std::optional<TrianglePair> found_;
+    /// The way from a to b in the centred frame of a, the way back in that of b, and how far the first is behind the
+    /// second, metres.
+    Vec3 forth_, back_;
+    double shift_ = 0;
+};
+
+} // namespace
+
+std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
+    if (pair.far_apart()) return std::nullopt;
+    constexpr float never = std::numeric_limits<float>::infinity();
+    Meeting meeting(pair);
+    pair.each_tree([&](const TriangleTree& a, const TriangleTree& b) {
+        nearest_pairs_first<float>(
+            a, b, [&] { return meeting.found() ? 0 : never; },
+            [&](Side side, const kernels::Node& node, const Box& other, Lanes<float>& lanes) {
+                const Box box = pair.box_in(side, other);
+                const Vec3 middle = box.middle();
+                // The nearest middles first: deep in one another, they are likely to meet.
+                for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
+                    const Box child = box_of(node, lane);
+                    const Vec3 off = child.middle() - middle;
+                    lanes[lane] = child.touches(box) ? static_cast<float>(std::min(dot(off, off), 1e30)) : never;
+                }
+            },
+            [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
+                if (!meeting.found()) meeting.look(of_a, of_b);
+            });
+    });
+    return meeting.found();
+}
+
+std::optional<TrianglePair> closest_triangles(const ShapePair& pair, double farthest) {
+    // Beyond it by a rounding, so that what is there exactly is found.
+    Closest closest(pair, farthest * farthest * (1 + 1e-12));
+    pair.each_tree([&](const TriangleTree& a, const TriangleTree& b) {
+        nearest_pairs_first<double>(
+            a, b, [&] { return closest.squared(); },
+            [&](Side side, const kernels::Node& node, const Box& other, Lanes<double>& lanes) {
+                closest.fill_gaps(side, node, other, lanes);
+            },
+            [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) { closest.look(of_a, of_b); });
+    });
+    return closest.found();
+}
+
+} // namespace raycontact

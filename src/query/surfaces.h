@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "query/shape_pair.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace raycontact {
+
+/// A triangle of each shape and a point on each, in the centred frame of b.
+struct TrianglePair {
+    std::uint32_t a = NONE, b = NONE;
+    Vec3 point_a, point_b;
+};
+
+/// The first triangles found that meet, exactly.
+std::optional<TrianglePair> meeting_triangles(const ShapePair& pair);
+
+/// The closest triangles of two shapes whose surfaces do not meet, if they are not farther apart than `farthest`,
+/// metres, give or take a rounding.
+std::optional<TrianglePair> closest_triangles(const ShapePair& pair, double farthest);
+
+} // namespace raycontact
