@@ -39,7 +39,7 @@ void find_pairs(Work& work) {
     const auto scene = make_scene(work, one_thread(Method::standard));
     for (WorkStep& step : work.steps) {
         place(*scene, step);
-        scene->step();
+        scene->find_contacts();
         step.pairs.assign(scene->pairs().begin(), scene->pairs().end());
     }
 }

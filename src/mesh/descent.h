@@ -4,6 +4,8 @@
 #include "mesh/measure.h"
 #include "mesh/triangle_tree.h"
 
+#include <raycontact/contact.h>
+
 #include <array>
 #include <limits>
 
@@ -97,9 +99,6 @@ inline Box box_of(const TriangleTree& tree, const Branch& branch) {
         if (tree.nodes[0].child[lane] != NONE) box.add(box_of(tree.nodes[0], lane));
     return box;
 }
-
-/// One of two trees.
-enum class Side { a, b };
 
 /// Visits the pairs of a block of one tree and a block of another, those in near boxes first. away(side, node, box,
 /// lanes) fills in how far the children of a node of the tree `side` are from a box of the other tree, each in the

@@ -111,7 +111,7 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
     EXPECT_GE(lines[1]["contacts"].size(), 4u);
     for (const json& contact : lines[1]["contacts"]) {
         EXPECT_EQ(contact["feature"], "edges");
-        EXPECT_EQ(contact["key"].get<std::string>().size(), 18u);
+        EXPECT_EQ(contact["key"].get<std::string>().size(), 16u);
         EXPECT_TRUE(contact.contains("edge_a") && contact.contains("edge_b")) << contact;
         for (const char* of_vertices : {"vertex", "vertex_body", "triangle"})
             EXPECT_FALSE(contact.contains(of_vertices)) << contact;
