@@ -154,8 +154,8 @@ void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_
 namespace raycontact::bench {
 
 void add_queries(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("queries", "intersects() and distance() beside FCL on the same poses, by turns, with ratios");
+    CLI::App* command = app.add_subcommand(
+        "queries", "intersects() and distance() beside FCL on the same poses, by turns, with ratios");
     struct Options {
         std::size_t rounds = 7, pairs = 200;
     };

@@ -11,9 +11,9 @@ namespace raycontact::output {
 /// Nobody else can claim the name while this lives, in this process or another. Move-only.
 class OutFile {
 public:
-    /// Claims the name: makes its folder where missing, and NAME.part, empty. Throws InputError naming the file where that cannot be, where the name
-    /// has no room for its endings, where something other than a file of ours to write has it, or where another run
-    /// has claimed it. A NAME.part that a run left is moved aside, to NAME.1.part, NAME.2.part, ...
+    /// Claims the name: makes its folder where missing, and NAME.part, empty. Throws InputError naming the file where
+    /// that cannot be, where the name has no room for its endings, where something other than a file of ours to write
+    /// has it, or where another run has claimed it. A NAME.part that a run left is moved aside, to NAME.1.part, ...
     explicit OutFile(const std::filesystem::path& name);
     OutFile(OutFile&& other) noexcept;
     OutFile& operator=(OutFile&& other) noexcept;

@@ -33,8 +33,8 @@ public:
     std::span<const Contact> contacts() const; ///< of the last step; a body's slot is its place in the description
     const StepStats& stats() const;            ///< of the last step
     const Scene& scene() const;                ///< poses and pairs of the last step, as contacts() came from them
-    Pose pose(std::uint32_t body) const; ///< of a body that has come, by its place in the description
-    std::uint32_t body_count() const;    ///< of bodies that move and come within the planned steps
+    Pose pose(std::uint32_t body) const;       ///< of a body that has come, by its place in the description
+    std::uint32_t body_count() const;          ///< of bodies that move and come within the planned steps
     Health health() const;
     std::string hash() const; ///< ContactHash of all steps so far
     std::uint64_t contacts_total() const;

@@ -107,7 +107,7 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
             for (std::uint32_t body = 0; body < options.bodies; ++body) step.poses.push_back(scene.pose(body));
             step.poses.emplace_back(); // the ground
         }
-        scene.find_contacts();
+        scene.step();
     }
     find_pairs(work);
     return work;

@@ -41,7 +41,8 @@ public:
         } while (scanner_.next_line());
         for (const auto& [vertex, line] : forward_) {
             if (vertex >= mesh_.vertices.size()) {
-                file_.fail_at(line, "vertex " + std::to_string(vertex + 1) + " (counted from 1, as OBJ does) does not exist; the file has "
+                file_.fail_at(line, "vertex " + std::to_string(vertex + 1)
+                                        + " (counted from 1, as OBJ does) does not exist; the file has "
                                         + std::to_string(mesh_.vertices.size()));
             }
         }

@@ -50,7 +50,8 @@ public:
         for (Scene* scene : scenes_) change(*scene);
     }
 
-    /// A step of all three; wrong contacts of the certified ones are counted. `pairs`: as of Scene::find_contacts, or none.
+    /// A step of all three; wrong contacts of the certified ones are counted. `pairs`: as of Scene::find_contacts, or
+    /// none.
     template <class... Pairs>
     void step(Counts& counts, const Pairs&... pairs) {
         each([&](Scene& scene) { scene.find_contacts(pairs...); });

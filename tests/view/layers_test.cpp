@@ -38,7 +38,7 @@ TEST(Layers, RaysGoFromVertexToHit) {
         EXPECT_NEAR(contact.point[2], 1 - into, 1e-6);
         EXPECT_NEAR(dot(contact.direction, contact.direction), 1, 1e-9);
         EXPECT_NEAR(contact.point[2] + contact.length * contact.direction[2], 1, 1e-6); // the hit is on the large box
-        EXPECT_NEAR(contact.normal[2], 1, 1e-6);                                         // from A, below, to B
+        EXPECT_NEAR(contact.normal[2], 1, 1e-6);                                        // from A, below, to B
         EXPECT_NEAR(contact.depth, into, 1e-6);
     }
 }

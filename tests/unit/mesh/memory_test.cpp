@@ -118,7 +118,7 @@ TEST(FromArrays, BadOnesAreRefused) {
     EXPECT_EQ(refused(points, {}), "arrays: has no triangles; export a triangle mesh");
     EXPECT_EQ(refused(points, {0, 1, 3}), "arrays: triangle 0: vertex index 3 is not in 0 to 3 - 1");
     EXPECT_EQ(refused({0, 0, 0, 1, 0, 0, 0, std::numeric_limits<double>::infinity(), 0}, one),
-              "arrays: vertex 2 is not finite");
+              "arrays: vertex 2 (counted from 0) is not finite");
 }
 
 } // namespace

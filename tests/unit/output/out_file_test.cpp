@@ -93,7 +93,7 @@ TEST_F(Output, WhatCannotBeWrittenIsRefused) {
     ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     fs::create_directory(folder_ / "way.part");
     fs::create_symlink("nowhere", folder_ / "link.part");
-    for (const std::string& name : {std::string("folder"), std::string("pipe"), std::string("none/a"),
+    for (const std::string& name : {std::string("folder"), std::string("pipe"), std::string("pipe/a"),
                                     std::string("way"), std::string("link"), std::string(246, 'a')}) {
         try {
             const OutFile file(folder_ / name);
@@ -103,6 +103,8 @@ TEST_F(Output, WhatCannotBeWrittenIsRefused) {
         }
     }
     EXPECT_NO_THROW(OutFile(folder_ / std::string(245, 'a')));
+    EXPECT_NO_THROW(OutFile(folder_ / "none" / "yet" / "a")); // its folder is made
+    EXPECT_TRUE(fs::is_directory(folder_ / "none" / "yet"));
 }
 
 TEST_F(Output, ALinkStaysALink) {
