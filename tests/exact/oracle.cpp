@@ -68,13 +68,15 @@ struct ExactBody::State {
     double diagonal = 0;
 };
 
-ExactBody::ExactBody(const Shape& shape) : state_(std::make_unique<State>()) {
+ExactBody::ExactBody(const Shape& shape, Positions positions) : state_(std::make_unique<State>()) {
     State& s = *state_;
     if (!shape.report().closed || shape.report().components != 1)
         throw std::logic_error("a mesh of the exact test is not closed and of one piece");
-    for (const Vec3& v : shape.vertices()) { // float32 about the centre: the addition is undone without a loss
+    const bool of_file = positions == Positions::of_file;
+    for (const Vec3& v : of_file ? shape.file_vertices() : shape.vertices()) {
         const Vec3 d = v - shape.centre();
-        s.vertices.push_back({double(float(d.x)), double(float(d.y)), double(float(d.z))});
+        // Of float32 about the centre the addition is undone without a loss.
+        s.vertices.push_back(of_file ? d : Vec3{double(float(d.x)), double(float(d.y)), double(float(d.z))});
     }
     s.triangles.assign(shape.triangles().begin(), shape.triangles().end());
     for (const auto& t : s.triangles)

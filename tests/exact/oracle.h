@@ -7,10 +7,13 @@
 
 namespace raycontact::exact {
 
-/// A closed mesh of one piece with the positions that the library works with: float32 about the shape's centre.
+/// Which positions of a mesh: those of contacts, float32 about the shape's centre, or those of its file.
+enum class Positions { rounded, of_file };
+
+/// A closed mesh of one piece.
 class ExactBody {
 public:
-    explicit ExactBody(const Shape& shape);
+    explicit ExactBody(const Shape& shape, Positions positions = Positions::rounded);
     ~ExactBody();
     ExactBody(ExactBody&&) noexcept;
 
