@@ -54,8 +54,7 @@ void expect_vector(const json& vector, double x, double y, double z) {
 }
 
 TEST_F(Collide, NoPairsAreSaidToBeNone) {
-    folder_.write("none.json", "[]");
-    const auto text = run({"--pairs", "none.json"}), lines = run({"--pairs", "none.json", "--json"});
+    const auto text = run(json::array(), {}), lines = run(json::array());
     EXPECT_EQ(text.status, 0);
     EXPECT_EQ(text.out, "0 pairs\n");
     EXPECT_EQ(lines.status, 0);
