@@ -113,9 +113,9 @@ double distance(const Vec3& point, const Triangle& t) {
     return within ? std::fabs(dot(minus(point, t[0]), n)) / norm(n) : nearest;
 }
 
-double distance(const Triangle& a, const Triangle& b) {
+double distance(const Triangle& a, const Triangle& b, double most) {
     if (crosses(a, b) || crosses(b, a)) return 0;
-    double nearest = infinite;
+    double nearest = most;
     for (std::size_t k = 0; k < 3; ++k) {
         nearest = std::min({nearest, distance(a[k], b), distance(b[k], a)});
         for (std::size_t i = 0; i < 3; ++i) {
@@ -143,7 +143,7 @@ double distance(const std::vector<Triangle>& a, bool a_is_closed, const std::vec
             // Balls about the corners are farther apart than the best so far: most pairs.
             const double reach_s = std::max(norm(minus(s[1], s[0])), norm(minus(s[2], s[0])));
             const double reach_t = std::max(norm(minus(t[1], t[0])), norm(minus(t[2], t[0])));
-            if (norm(minus(s[0], t[0])) - reach_s - reach_t < nearest) nearest = std::min(nearest, distance(s, t));
+            if (norm(minus(s[0], t[0])) - reach_s - reach_t < nearest) nearest = distance(s, t, nearest);
         }
     return nearest;
 }

@@ -24,8 +24,8 @@ std::vector<Triangle> placed(const Mesh& mesh, const Pose& pose);
 double size_of(const std::vector<Triangle>& mesh);
 
 double distance(const Vec3& point, const Triangle& triangle);
-/// 0 where they cross; touching may be off by rounding.
-double distance(const Triangle& a, const Triangle& b);
+/// 0 where they cross; touching may be off by rounding. No more than `most`.
+double distance(const Triangle& a, const Triangle& b, double most);
 double distance(const Vec3& point, const std::vector<Triangle>& mesh);
 /// 0 where they cross, or a corner of one is inside the other, of those that are closed.
 double distance(const std::vector<Triangle>& a, bool a_is_closed, const std::vector<Triangle>& b, bool b_is_closed);
