@@ -54,7 +54,10 @@ std::string what_was_not_expected(const CLI::App& app) {
     }
     const std::vector<std::string> given = command->remaining(false);
     std::string text = given.size() > 1 ? "these arguments were not expected:" : "this argument was not expected:";
-    for (const std::string& one : given) text += " " + one;
+    for (const std::string& one : given) {
+        text += ' ';
+        text += one;
+    }
     for (const std::string& one : given) {
         const std::string near = nearest_to(one, *command);
         if (!near.empty()) return text + "; did you mean " + near + "?";

@@ -38,7 +38,9 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
             for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.file_vertex(mesh.mesh.triangles[t][k]) - mesh.centre;
             const Vec3 at = nearest_point(sought, corners[0], corners[1], corners[2]), off = sought - at;
             const double square = dot(off, off);
-            if (square > nearest2 || (square == nearest2 && face != NONE && t >= face)) continue;
+            if (square > nearest2
+                || (square == nearest2 && face != NONE && shape.triangle_index()[t] >= shape.triangle_index()[face]))
+                continue;
             nearest2 = square;
             face = t;
             nearest = at;

@@ -71,16 +71,20 @@ std::optional<Found> nearest_of(std::span<const Candidate> candidates, double ma
     return nearest;
 }
 
+std::vector<Candidate> boxes_on_ray(const Scene& scene, const Scene::Wanted& wanted, const Vec3& origin,
+                                    const Vec3& direction, double max) {
+    check_place(origin, "raycast: the origin");
+    check_reach(max, "raycast");
+    const Vec3 along = checked_direction(direction);
+    return nearest_boxes(scene, wanted, max, [&](const Box& box) { return entry_of(box, origin, along); });
+}
+
 } // namespace
 
 std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& direction, double max,
                                          const Wanted& wanted) const {
     const FloatEnvironment environment;
-    check_place(origin, "raycast: the origin");
-    check_reach(max, "raycast");
-    const Vec3 along = checked_direction(direction);
-    const auto candidates =
-        nearest_boxes(*this, wanted, max, [&](const Box& box) { return entry_of(box, origin, along); });
+    const auto candidates = boxes_on_ray(*this, wanted, origin, direction, max);
     return nearest_of<BodyRayHit>(candidates, max, [&](BodyId body, double most) {
         return raycontact::raycast(shape(body), pose(body), origin, direction, most);
     });
@@ -88,11 +92,7 @@ std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& directi
 
 bool Scene::raycast_any(const Vec3& origin, const Vec3& direction, double max, const Wanted& wanted) const {
     const FloatEnvironment environment;
-    check_place(origin, "raycast: the origin");
-    check_reach(max, "raycast");
-    const Vec3 along = checked_direction(direction);
-    const auto candidates =
-        nearest_boxes(*this, wanted, max, [&](const Box& box) { return entry_of(box, origin, along); });
+    const auto candidates = boxes_on_ray(*this, wanted, origin, direction, max);
     return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
         return raycontact::raycast_any(shape(candidate.body), pose(candidate.body), origin, direction, max);
     });

@@ -271,8 +271,9 @@ void CollisionDispatcher::State::look_at_world(const btOverlappingPairCache* cac
     const btCollisionObjectArray& all = world->getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
         const btCollisionObject& object = *all[i];
-        if (object.getActivationState() == ISLAND_SLEEPING) continue; // as static ones do
-        objects.report_lost(object, dispatch);
+        // Bullet has disabled what is lost, unless a user forbids it.
+        const int state = object.getActivationState();
+        if (state == DISABLE_SIMULATION || state == DISABLE_DEACTIVATION) objects.report_lost(object, dispatch);
     }
 }
 

@@ -48,8 +48,7 @@ std::string fault_of_whole(const btCollisionObject& object, std::string fault_of
     if (moves && !fault_of_transform.empty()) return fault_of_transform;
     if (moves && is_finite(object.getInterpolationWorldTransform())) return {};
     return "its velocity is not finite, or beyond all bounds; set velocity and transform, and activate it, since "
-           "Bullet "
-           "disables such objects";
+           "Bullet disables such objects";
 }
 
 /// What a new stretch is compared with; that of a plane is not rounded.

@@ -36,8 +36,8 @@ struct ManifoldSettings {
 enum class ConvexShapes {
     /// By the mesh. An open one (without Shape::has_inside) of a static or kinematic object, as levels of games are,
     /// stops them on both sides of each face, however it is wound: balls and capsules in closed form, the others by
-    /// Bullet's own
-    /// algorithms, which see what touches, and a cast of the shape, which sees what comes fast. Others: as `ours`.
+    /// Bullet's own algorithms, which see what touches, and a cast of the shape, which sees what comes fast. Closed or
+    /// moving ones: as `ours`.
     by_mesh,
     /// RayContact: balls and capsules in closed form; boxes, cylinders, cones, hulls and multi-spheres as meshes made
     /// once for each shape. Other convex shapes are left to Bullet. An open mesh stops them at the front of its faces.
