@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slot_pair.h"
-
 #include <raycontact/contact.h>
 
+#include <compare>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace raycontact {
 
-/// What contacts are sorted by: the pair, then the key.
-using ContactOrder = std::pair<SlotPair, std::uint64_t>;
+/// What contacts are sorted by: the slots of the pair, in one number, then the key.
+struct ContactOrder {
+    std::uint64_t pair, key;
+    friend auto operator<=>(const ContactOrder&, const ContactOrder&) = default;
+};
+inline ContactOrder order_of(BodyId a, BodyId b, std::uint64_t key) {
+    return {std::uint64_t{a.slot} << 32 | b.slot, key};
+}
 inline ContactOrder order_of(const Contact& contact) {
-    return {pair_of(contact), contact.key()};
+    return order_of(contact.body_a, contact.body_b, contact.key());
 }
 
 /// Finds the contacts of a step that the last step did not have, and those that are gone. What touches is new where it
@@ -26,7 +30,7 @@ public:
     struct Known {
         BodyId body_a, body_b;
         std::uint64_t key;
-        ContactOrder order() const { return {{body_a.slot, body_b.slot}, key}; }
+        ContactOrder order() const { return order_of(body_a, body_b, key); }
     };
     /// Sorted.
     std::span<const Known> previous() const { return previous_; }

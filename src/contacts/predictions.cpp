@@ -12,7 +12,7 @@ namespace raycontact {
 namespace {
 
 ContactOrder order_of(const Prediction& p) {
-    return {{p.body_a.slot, p.body_b.slot}, p.feature.key()};
+    return raycontact::order_of(p.body_a, p.body_b, p.feature.key());
 }
 
 // Where the vertex's outward normal meets the plane of the triangle; the vertex itself where they are parallel.
