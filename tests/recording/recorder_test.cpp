@@ -94,7 +94,7 @@ TEST_P(RecorderOf, BodiesThatComeAndGoReplayWithTheSameHash) {
             if (step > 20) row.add();
         }
         if (step == 25) { // all but one at once
-            while (row.bodies.size() > 1) row.remove({0});
+            while (row.bodies.size() > 1) row.remove(0);
             for (int i = 0; i < 4; ++i) row.add();
         }
         row.step();
@@ -126,7 +126,7 @@ TEST(Recorder, BeginsInMidLife) {
     ContactHash hash;
     for (std::uint32_t step = 0; step < 20; ++step) {
         if (step % 3 == 0) row.add();
-        if (step % 4 == 1) row.remove({0});
+        if (step % 4 == 1) row.remove(0);
         row.step();
         hash.add(step, row.scene.contacts());
         recorder.record();

@@ -76,7 +76,7 @@ Sample make_sample(std::uint32_t steps) {
         for (std::size_t i = 1; i < poses.size(); ++i) poses[i] = moved(poses[i]);
         for (std::uint32_t a = 0; a < poses.size(); ++a) {
             for (std::uint32_t b = a + 1; b < poses.size(); ++b) {
-                const Pair pair{a, b};
+                const Pair pair{BodyId{a}, BodyId{b}};
                 const auto at = std::lower_bound(pairs.begin(), pairs.end(), pair);
                 const bool had = at != pairs.end() && *at == pair;
                 const bool there = sample.bodies[a].alive(step) && sample.bodies[b].alive(step);

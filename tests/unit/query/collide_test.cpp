@@ -32,7 +32,7 @@ TEST(Collide, FindsWhatASceneFinds) {
                 Scene scene(settings);
                 scene.add(p.a->shape, p.pose_a);
                 scene.add(p.b->shape, p.pose_b);
-                const Pair pair{0, 1};
+                const Pair pair{BodyId{0}, BodyId{1}};
                 const auto expected = scene.find_contacts({&pair, 1});
                 const auto found = collide(*p.a->shape, p.pose_a, *p.b->shape, p.pose_b,
                                            {.direction = direction, .features = features});
