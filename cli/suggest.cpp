@@ -60,7 +60,7 @@ std::string what_was_not_expected(const CLI::App& app) {
     }
     for (const std::string& one : given) {
         const std::string near = nearest_to(one, *command);
-        if (!near.empty()) return text + "; did you mean " + near + "?";
+        if (!near.empty()) return text.append("; did you mean ").append(near).append("?");
     }
     return text;
 }

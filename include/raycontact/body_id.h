@@ -19,7 +19,9 @@ struct BodyId {
 
     /// It was given by a scene, where its body may have been removed since (Scene::has()).
     constexpr bool valid() const { return slot != no_slot; }
-    friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default; ///< by slot, then generation
+    /// By slot, then generation.
+    // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the 0 that the compiler compares with for a pointer
+    friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
 
 } // namespace raycontact

@@ -3,18 +3,15 @@
 
 #include <raycontact/contact.h>
 
-#include <compare>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
 
 /// What contacts are sorted by: the slots of the pair, in one number, then the key.
-struct ContactOrder {
-    std::uint64_t pair, key;
-    friend auto operator<=>(const ContactOrder&, const ContactOrder&) = default;
-};
+using ContactOrder = std::pair<std::uint64_t, std::uint64_t>;
 inline ContactOrder order_of(BodyId a, BodyId b, std::uint64_t key) {
     return {std::uint64_t{a.slot} << 32 | b.slot, key};
 }
