@@ -111,7 +111,7 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
              "WORD", std::string(to_string(settings.features)),
              [&](const std::string& word) { settings.features = features_from(word); });
     add_length(command, settings.paper, &PaperOptions::displacement_threshold, "--displacement-threshold",
-               "metres a pair may move before it is looked at in full again; auto: chosen for each pair");
+               "metres a pair may move before it is tested in full again; auto: chosen for each pair");
     add_setting(command, settings.paper, &PaperOptions::confidence, "--confidence",
                 "predictive: how far ahead a vertex is followed, in displacement thresholds, at least 1", "C",
                 fmt::format("{:g}", settings.paper.confidence), [](const std::string& word) {

@@ -32,7 +32,7 @@ constexpr Count counts[] = {
     {"walk_casts", &StepDetails::walk_casts},
     {"predictions", &StepDetails::predictions},
     {"pairs_full", &StepDetails::pairs_full},
-    {"pairs_asleep", &StepDetails::pairs_asleep},
+    {"pairs_skipped", &StepDetails::pairs_skipped},
     {"pairs_as_standard", &StepDetails::pairs_as_standard},
     {"pair_bytes", &StepStats::pair_bytes},
     {"contacts_new", &StepStats::contacts_new},
@@ -87,8 +87,8 @@ void put_settings(Json& object, const Settings& settings) {
 std::string work_for_a_person(const Json& s) {
     const auto count = [&](const char* key) { return s.at(key).get<std::uint64_t>(); };
     std::string text =
-        fmt::format("work       {} rays cast in full; directed pairs: {} times looked at in full, {} times asleep\n",
-                    count("rays_cast"), count("pairs_full"), count("pairs_asleep"));
+        fmt::format("work       {} rays cast in full; directed pairs: {} times tested in full, {} times skipped\n",
+                    count("rays_cast"), count("pairs_full"), count("pairs_skipped"));
     if (count("walks") > 0 || count("predictions") > 0)
         text += fmt::format("walks      {}, of them {} ended nowhere, {} of those cast in full; {} predictions\n",
                             count("walks"), count("walks_lost"), count("walk_casts"), count("predictions"));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* scene = "avalanche";
 
-/// The first two cast every ray of a full look, as the paper's do; the others are spared some by the library's grids.
+/// The first two cast every ray of a full test, as the paper's do; the others are spared some by the library's grids.
 std::vector<Settings> contestants(const Plan& plan, Caster caster) {
     std::vector<Settings> all{as_in_the_paper(Method::iterative, plan.constants), by_default(Method::standard)};
     all[1].paper.skip_outside = false;
@@ -82,7 +82,7 @@ Outcome show(const std::vector<Json>& found) {
                 "lga13", 33, best, "times as fast", Better::higher,
                 fmt::format(
                     "best second of the avalanche, caster basic, constants fixed, both cast every ray; mean {:.1f}. It "
-                    "grows as the pile comes to rest and fewer pairs are looked at in full: {:.1f} in the first "
+                    "grows as the pile comes to rest and fewer pairs are tested in full: {:.1f} in the first "
                     "second, "
                     "{:.1f} in the last. The paper says \"up to\", on a GPU and a scene that it does not name",
                     mean, of_second(standard, iterative, 0),
@@ -91,7 +91,7 @@ Outcome show(const std::vector<Json>& found) {
     out.tables.push_back(table);
     out.paragraphs = {
         "Both methods follow the same recording with the same caster. standard casts every ray in full in "
-        "every step; iterative has the fixed constants of Figure 9 and casts every ray of a full look."};
+        "every step; iterative has the fixed constants of Figure 9 and casts every ray of a full test."};
     return out;
 }
 

@@ -10,7 +10,7 @@ namespace raycontact::reproduce {
 /// Of the paper's Figure 11: B, most pairs are cast in full; C, most are updated.
 enum class Phase { b, c };
 
-/// Of each step. A second (60 steps) is of phase B if its share of ordered pairs looked at in full lies above the
+/// Of each step. A second (60 steps) is of phase B if its share of ordered pairs tested in full lies above the
 /// middle between the least and the largest share of the seconds that have pairs, or if all have the same; others are
 /// C.
 std::vector<Phase> phases(const Series& full, const Series& ordered_pairs);

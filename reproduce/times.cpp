@@ -102,7 +102,7 @@ Outcome show(const Constants& constants, const std::string& scene, const std::ve
     out.paragraphs = {
         "The paper's text names two parts of Figure 11: B, in which most pairs are cast in full, and C, in "
         "which most are updated. Here a second is of phase B if the share of ordered pairs that iterative "
-        "looks at in full lies above the middle between the least and the largest share of the run's "
+        "tests in full lies above the middle between the least and the largest share of the run's "
         "seconds with pairs; all other seconds are of phase C. Constants fixed as in Figure 9."};
     return out;
 }

@@ -5,12 +5,11 @@
 #include "broadphase/sweep_and_prune.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
-#include "give_back.h"
+#include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
-#include "step.h"
 
 #include <raycontact/error.h>
 
@@ -34,7 +33,7 @@ void refuse_faulty(const Pose& pose, BodyId body) {
     if (const char* fault = pose_fault(pose)) throw InputError(name_of(body) + ": " + fault);
 }
 
-// Their walks begin where a full look found something, and what a look finds depends on the grids.
+// Their walks begin where a full test found something, and what a test finds depends on the grids.
 bool follows_rays(Method method) {
     return method == Method::iterative || method == Method::predictive;
 }
@@ -205,7 +204,13 @@ struct Scene::State {
         slots.step_done();
         want_shapes();
         cut_to_slots();
-        give_back(boxes, pairs, slot_pairs);
+        if (narrow.trimmed()) trim();
+    }
+
+    void trim() {
+        boxes.shrink_to_fit();
+        pairs.shrink_to_fit();
+        slot_pairs.shrink_to_fit();
     }
 
     // Frees memory once less than a quarter of it is in use.

@@ -4,8 +4,8 @@
 
 #include <raycontact/error.h>
 
+#include "number_text.h"
 #include "printable.h"
-#include "real_text.h"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "step.h"
+#include "narrow_phase.h"
 
 #include <bench/peers/work.h>
 

@@ -112,7 +112,7 @@ std::string table(const Machine& machine, std::span<const WorkNote> works, std::
              "and "
              "contacts are a pair and step; memory is the growth of the C library's heap, * the library's own count. "
              "Of "
-             "ours: rays cast and followed (walks), of these lost, pairs looked at in full, memory kept for pairs; "
+             "ours: rays cast and followed (walks), of these lost, pairs tested in full, memory kept for pairs; "
              "wrong against standard with every ray cast: contacts missed, invented, on another triangle.\n";
 }
 

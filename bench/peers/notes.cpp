@@ -33,7 +33,7 @@ void put_counts(nlohmann::ordered_json& object, const StepStats& s, const record
     object["walk_casts"] = s.details.walk_casts;
     object["predictions"] = s.details.predictions;
     object["pairs_full"] = s.details.pairs_full;
-    object["pairs_asleep"] = s.details.pairs_asleep;
+    object["pairs_skipped"] = s.details.pairs_skipped;
     object["pair_bytes"] = s.pair_bytes;
     object["contacts"] = s.contacts;
     object["wrong_rays"] = {

@@ -13,7 +13,7 @@
 namespace raycontact::bench {
 
 // Fixed before anything was measured, so that no result chose its own setting (the paper names no values): a pair is
-// looked at in full when it has moved 1 % of a body's size, and predictive rays look twice that far.
+// tested in full when it has moved 1 % of a body's size, and predictive rays look twice that far.
 inline constexpr double fixed_displacement = 0.01; ///< of the largest extent of a body's box
 inline constexpr double fixed_confidence = 2;
 

@@ -11,7 +11,7 @@ void add(StepStats& sums, const StepStats& step) {
     sums.details.rays += step.details.rays;
     sums.details.rays_cast += step.details.rays_cast;
     sums.details.pairs_full += step.details.pairs_full;
-    sums.details.pairs_asleep += step.details.pairs_asleep;
+    sums.details.pairs_skipped += step.details.pairs_skipped;
     sums.details.walks += step.details.walks;
     sums.details.walks_lost += step.details.walks_lost;
     sums.details.walk_casts += step.details.walk_casts;

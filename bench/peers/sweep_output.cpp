@@ -20,13 +20,13 @@ using recording::WrongRays;
 
 constexpr Method swept[] = {Method::iterative, Method::predictive, Method::certified};
 
-constexpr const char* work_columns = "rays,rays_cast,walks,walks_lost,walk_casts,predictions,pairs_full,pairs_asleep,"
+constexpr const char* work_columns = "rays,rays_cast,walks,walks_lost,walk_casts,predictions,pairs_full,pairs_skipped,"
                                      "pair_bytes,contacts,missed,invented,other_triangle,wrong,rays_compared,"
                                      "contacts_compared";
 std::string work_fields(const StepStats& s, const WrongRays& w) {
     return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", s.details.rays, s.details.rays_cast,
                        s.details.walks, s.details.walks_lost, s.details.walk_casts, s.details.predictions,
-                       s.details.pairs_full, s.details.pairs_asleep, s.pair_bytes, s.contacts, w.missed, w.invented,
+                       s.details.pairs_full, s.details.pairs_skipped, s.pair_bytes, s.contacts, w.missed, w.invented,
                        w.other_triangle, w.total(), w.rays_compared, w.contacts_compared);
 }
 
@@ -95,7 +95,7 @@ std::string table(const Machine& machine, std::span<const WorkNote> works, std::
     for (const WorkNote& work : works) {
         text += heading(work);
         text += fmt::format("  {:<12}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n", "", "threshold",
-                            "us/step", "full looks", "cast", "walks", "lost", "missed", "invented", "other", "wrong");
+                            "us/step", "full tests", "cast", "walks", "lost", "missed", "invented", "other", "wrong");
         for (const ThresholdRow& r : rows) {
             if (r.work != work.name) continue;
             text += fmt::format("  {:<12}{:>10}{:>12.1f}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n",

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 // Questions about one or two shapes, without a scene (docs/queries.md). They copy nothing and change nothing: safe to
 // call from several threads, on the same shapes. Points are in the world frame unless said otherwise, lengths in
@@ -15,8 +16,8 @@
 // the real numbers rotation * vertex + translation, with the doubles of the mesh and the pose, and no tolerance;
 // coordinates and entries of rotations below 1e-36 count as 0.
 //
-// All throw InputError for a pose that is not finite and rigid to 1e-4, for a point that is not finite or beyond 1e30
-// m, and for a greatest distance that is negative or not a number.
+// All that take a pose throw InputError for one that is not finite and rigid to 1e-4, for a point that is not finite or
+// beyond 1e30 m, and for a greatest distance that is negative or not a number.
 
 namespace raycontact {
 
@@ -83,5 +84,18 @@ std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape
 /// Exact. The point is in the body frame, or in the world of a placed mesh.
 bool contains(const Shape& shape, const Vec3& point);
 bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
+
+/// Two corners of a box along the axes of the body.
+struct AxisBox {
+    Vec3 low, high;
+};
+
+/// Regions of one mesh, in the body frame, by Shape::vertices(): indices of Shape::triangles() and of its vertices,
+/// ascending, each once. They replace what `found` had. triangles_in_box(): those whose own boxes touch the box.
+/// vertices_below(): those with normal . v < offset; normal: of any length. What is not a number is nowhere.
+void triangles_in_box(const Shape& shape, const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& found);
+void vertices_below(const Shape& shape, const Vec3& normal, double offset, std::vector<std::uint32_t>& found);
+/// Boxes that together hold the mesh, no more than `most` but at least one: of its tree, the largest ones opened.
+std::vector<AxisBox> covering_boxes(const Shape& shape, std::size_t most);
 
 } // namespace raycontact

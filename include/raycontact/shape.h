@@ -6,14 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stop_token>
 
 namespace raycontact {
-
-struct ShapeData;
-struct Accelerators;
-class AcceleratorSlot;
-class Executor;
 
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
@@ -75,15 +69,13 @@ public:
 
     std::uint64_t memory_bytes() const;
 
-    // For the library's own use.
-    const ShapeData& data() const { return *data_; }                     ///< the kernels' arrays
-    const Accelerators* accelerators() const;                            ///< null: not prepared
-    bool prepare(Executor& executor, const std::stop_token& stop) const; ///< false if it was asked to stop
+    /// What a shape is made of: a type that only the library knows.
+    struct Data;
+    const Data& data() const { return *data_; }
 
 private:
-    explicit Shape(std::unique_ptr<ShapeData> data);
-    std::unique_ptr<ShapeData> data_;
-    std::unique_ptr<AcceleratorSlot> accelerators_;
+    explicit Shape(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
 };
 
 } // namespace raycontact

@@ -13,7 +13,7 @@ struct StepDetails {
     std::uint64_t vertices = 0; ///< tested against bounds, after whole clusters were ruled out
     /// `standard`: rays of the rule, the vertices inside the other body's bounds. `certified`: the vertices that it
     /// cannot prove safe; for pairs too fast for it, the vertices in the bounds whose block it cannot prove safe.
-    /// `iterative` and `predictive`: the vertices in the bounds (`predictive` widens them) that a full look tested, and
+    /// `iterative` and `predictive`: the vertices in the bounds (`predictive` widens them) that a full test tested, and
     /// the rays followed.
     std::uint64_t rays = 0;
     /// Traced through the mesh, along the ray or ahead of it; the rest were followed or known already.
@@ -21,8 +21,8 @@ struct StepDetails {
     /// Directions cast to tell inside from outside where the closest hits lay within rounding.
     std::uint64_t side_tests = 0;
     double ray_length = 0;               ///< sum over the contacts that touch, metres (paper section 5.2)
-    std::uint64_t pairs_full = 0;        ///< ordered pairs looked at in full: those new, fast, or moved far
-    std::uint64_t pairs_asleep = 0;      ///< ordered pairs without rays, of which no vertex was tested
+    std::uint64_t pairs_full = 0;        ///< ordered pairs tested in full: those new, fast, or moved far
+    std::uint64_t pairs_skipped = 0;     ///< ordered pairs without rays, of which no vertex was tested
     std::uint64_t pairs_as_standard = 0; ///< ordered pairs that `certified` left to `standard`, which costs less there
     std::uint64_t walks = 0;             ///< rays followed from last step's triangle (iterative, predictive)
     std::uint64_t walks_lost = 0;        ///< of these, how many ended nowhere

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/changes.h"
 
-#include "give_back.h"
-
 namespace raycontact {
 
 namespace {
@@ -46,7 +44,6 @@ void Changes::mark(std::span<Contact> contacts) {
     touched_.reserve(contacts.size());
     previous_.resize(contacts.size());
     touched_.resize(contacts.size());
-    give_back(previous_, touched_, lost_);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         previous_[i] = {contacts[i].body_a, contacts[i].body_b, contacts[i].key()};
         touched_[i] = contacts[i].is_speculative() ? 0 : 1;

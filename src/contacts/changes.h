@@ -36,6 +36,11 @@ public:
     std::span<const LostContact> lost() const { return lost_; }
     /// Of those that touch.
     std::size_t new_count() const { return new_count_; }
+    void trim() {
+        previous_.shrink_to_fit();
+        lost_.shrink_to_fit();
+        touched_.shrink_to_fit();
+    }
 
 private:
     std::vector<Known> previous_;

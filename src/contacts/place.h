@@ -2,7 +2,6 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "give_back.h"
 #include "pairs/directed_pairs.h"
 
 #include <vector>
@@ -17,9 +16,6 @@ public:
     void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
              std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
              std::vector<Contact>& contacts);
-
-    /// After a step: frees memory that it hardly used.
-    void give_back() { raycontact::give_back(order_); }
 
 private:
     std::vector<std::uint64_t> order_; ///< of the local contacts: vertex, place

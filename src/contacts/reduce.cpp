@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/reduce.h"
 
+#include "free_all.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
@@ -103,7 +104,11 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
         if (ranks_[i] == merged_away) ++merged_;
     }
     contacts.resize(kept);
-    give_back(ranks_, begins_, rest_, left_out_);
+}
+
+void ContactReducer::trim() {
+    free_all(ranks_, begins_, rest_);
+    left_out_.shrink_to_fit();
 }
 
 void ContactReducer::clear() {

@@ -3,7 +3,6 @@
 
 #include "contacts/changes.h"
 #include "executor/executor.h"
-#include "give_back.h"
 #include "pairs/directed_pairs.h"
 
 #include <raycontact/manifold.h>
@@ -27,6 +26,7 @@ public:
     /// Sorted.
     std::span<const Contact> left_out() const { return left_out_; }
     void clear();
+    void trim();
 
 private:
     struct Work {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pairs/directed_pairs.h"
+#include "shape/shape_data.h"
 
 #include <raycontact/contact.h>
 
@@ -17,9 +18,9 @@ public:
 
 private:
     const ShapeData &source_, &target_;
-    Pose relative_;      ///< of the source's centred frame in the target's
-    const Pose& turned_; ///< the target's
-    double hair_;        ///< metres; what is nearer has no direction of its own
+    Pose relative_;       ///< of the source's centred frame in the target's
+    const Pose& turned_;  ///< the target's
+    double perturbation_; ///< metres; what is nearer has no direction of its own
 };
 
 } // namespace raycontact

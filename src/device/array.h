@@ -8,7 +8,7 @@
 
 namespace raycontact {
 
-/// A typed device buffer. It only grows, so that steps allocate nothing after warm-up, until give_back().
+/// A typed device buffer. It only grows, so that steps allocate nothing after warm-up.
 template <typename T>
 class Array {
 public:
@@ -56,12 +56,6 @@ public:
         if (!values.empty()) device.queue().write(*buffer_, old_size * sizeof(T), values.data(), values.size_bytes());
     }
 
-    /// Frees the buffer if it is large and the last step used less than a quarter of it; the contents are then lost.
-    void give_back(std::size_t used) {
-        if (capacity_ * sizeof(T) > kept_anyway && capacity_ > 4 * used) *this = {};
-    }
-    void give_back() { give_back(size_); }
-
     /// An argument of Queue::read() that copies the elements from `first` on to `values`.
     Piece piece(std::span<T> values, std::size_t first = 0) const {
         return {values.data(), buffer_.get(), first * sizeof(T), values.size_bytes()};
@@ -75,8 +69,6 @@ public:
     std::span<T> in_place() const { return {buffer_ ? static_cast<T*>(buffer_->host()) : nullptr, size_}; }
 
 private:
-    static constexpr std::size_t kept_anyway = 1 << 20; // bytes
-
     std::unique_ptr<Buffer> buffer_;
     std::size_t size_ = 0;
     std::size_t capacity_ = 0;

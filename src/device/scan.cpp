@@ -25,11 +25,6 @@ void Columns::resize(Device& device, kernels::uint columns, std::size_t items) {
     firsts_.resize(device, items);
 }
 
-void Columns::give_back(std::size_t used) {
-    values_.give_back(columns_ * used);
-    firsts_.give_back(used);
-}
-
 void Columns::scan(Device& device, const Count& count, const Array<kernels::Totals>& totals, std::size_t at,
                    std::size_t room) const {
     device.queue().scan({count, columns_, stride_, values_.buffer(), firsts_.buffer(), totals.buffer(),

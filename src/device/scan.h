@@ -12,8 +12,6 @@ class Columns {
 public:
     /// Makes room for `items` in each of `columns`. The contents are lost if the table must grow.
     void resize(Device& device, kernels::uint columns, std::size_t items);
-    /// As Array's; `used` items. resize() comes before the next use.
-    void give_back(std::size_t used);
     kernels::uint stride() const { return stride_; }
     const Array<kernels::uint>& values() const { return values_; }
     const Array<kernels::uint>& firsts() const { return firsts_; }

@@ -2,7 +2,6 @@
 #include "edges/edge_stage.h"
 
 #include "contacts/write_contact.h"
-#include "give_back.h"
 #include "speculative/speculative_pair.h"
 
 #include <algorithm>
@@ -75,7 +74,8 @@ std::optional<FeatureContact> contact_of_inside(const SourceMesh& placed, Side s
                                        target.corner(nearest.face, 2))
                          - p;
         const double depth = length(out);
-        const Vec3 normal = depth > 1e-3 * placed.hair ? (1 / depth) * out : unit(area_normal(target, nearest.face));
+        const Vec3 normal =
+            depth > 1e-3 * placed.perturbation ? (1 / depth) * out : unit(area_normal(target, nearest.face));
         if (!(depth > 0)) continue;
         deepest = {source, FeatureKind::inside, v, nearest.face, p, normal, depth};
     }
@@ -158,11 +158,11 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
         const bool apart = !find_inside(a, b, work.found);
         if (asked.apart != nullptr) *asked.apart = apart && near[0].empty() && near[1].empty();
     }
-    const std::span<const FeatureContact> coming = question.speculative.of(asked.pair);
-    const bool told = in_contact || !coming.empty();
+    const std::span<const FeatureContact> speculative = question.speculative.of(asked.pair);
+    const bool told = in_contact || !speculative.empty();
     if (settings.is_speculative() && asked.edges)
         find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
-    work.found.insert(work.found.end(), coming.begin(), coming.end());
+    work.found.insert(work.found.end(), speculative.begin(), speculative.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == Side::a;
@@ -177,16 +177,6 @@ std::uint64_t EdgeStage::bytes() const {
     std::uint64_t bytes = 0;
     for (std::size_t b = 0; b < block_count_; ++b) bytes += blocks_[b].contacts.capacity() * sizeof(Contact);
     return bytes;
-}
-
-void EdgeStage::give_back() {
-    // A block is as large as what its pairs found, so those of pairs that are gone go as a whole.
-    if (is_mostly_empty(pairs_in_block * blocks_.size(), pairs_in_block * block_count_)) {
-        blocks_.resize(block_count_);
-        blocks_.shrink_to_fit();
-    }
-    for (Block& block : blocks_) raycontact::give_back(block.contacts);
-    raycontact::give_back(merged_);
 }
 
 void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) {

@@ -23,8 +23,6 @@ public:
              std::span<const AskedPair> asked, std::vector<Contact>& contacts);
     /// Of what it found in the last step.
     std::uint64_t bytes() const;
-    /// After a step: frees memory that it hardly used.
-    void give_back();
 
 private:
     /// What some of the blocks are worked on in, one after the other.

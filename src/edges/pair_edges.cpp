@@ -26,7 +26,7 @@ constexpr double parallel = 0.98;
 constexpr double sideways = 0.1;
 // Two edges may be so many times as deep as their region is along a face; beside flush faces.
 constexpr double most_deep = 2, most_flush = 1.25;
-// What is no deeper than this, in hairs, is rounding.
+// What is no deeper than this, in perturbations, is rounding.
 constexpr double noise = 0.1;
 constexpr std::size_t most_faces = 64;
 // A ray from a piece begins this part of its half inside.
@@ -313,7 +313,7 @@ const Vec3& PairEdges::way_of(const PairMeshes& pair, Region& region) const {
 
 Vec3 PairEdges::find_way(const PairMeshes& pair, const Region& region) const {
     const Vec3 way = unit(region.area);
-    if (!is_thinner(region, 0.5 * range(region, way).extent() - 5 * pair.hair())) return way;
+    if (!is_thinner(region, 0.5 * range(region, way).extent() - 5 * pair.perturbation())) return way;
     double thin = never;
     for (std::uint32_t i = region.first_face; i < region.end_face; ++i)
         thin = std::min(thin, range(region, faces_[i].second).extent());
@@ -321,7 +321,7 @@ Vec3 PairEdges::find_way(const PairMeshes& pair, const Region& region) const {
     double best = -never;
     for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
         const Vec3& n = faces_[i].second;
-        if (dot(n, way) > best && range(region, n).extent() <= 1.1 * thin + pair.hair()) {
+        if (dot(n, way) > best && range(region, n).extent() <= 1.1 * thin + pair.perturbation()) {
             best = dot(n, way);
             by = n;
         }
@@ -399,8 +399,8 @@ void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_
     double depth = dot(q - p, n);
     // Nearly parallel edges are pierced far apart, and only what lies across them counts.
     if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
-    if (!(depth > noise * pair.hair()) || depth < least) return;
-    if (is_thinner(region, depth / (region.is_flush() ? most_flush : most_deep) - 5 * pair.hair())) return;
+    if (!(depth > noise * pair.perturbation()) || depth < least) return;
+    if (is_thinner(region, depth / (region.is_flush() ? most_flush : most_deep) - 5 * pair.perturbation())) return;
     passing_.push_back({number, {Side::a, FeatureKind::edges, x.edge, y.edge, point, n, depth}});
 }
 
@@ -425,7 +425,7 @@ bool PairEdges::speaks(const PairMeshes& pair, const Piece& piece) const {
 }
 
 // How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
-MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
+MeshHit PairEdges::exit_along(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
     const std::size_t other = 1 - piece.side;
     const Vec3 from = point + pull * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
     const Vec3 along = pair.direction_in(other, piece.side == 0 ? way : -1.0 * way);
@@ -436,7 +436,7 @@ MeshHit PairEdges::way_out(const PairMeshes& pair, const Piece& piece, const Vec
 // Adds the point of a piece, with the edge of the other body nearest to where it comes out.
 void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
                          const MeshHit& hit) {
-    if (!(depth > noise * pair.hair())) return;
+    if (!(depth > noise * pair.perturbation())) return;
     const bool of_a = piece.side == 0;
     const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
     deep_.push_back({Side::a, FeatureKind::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
@@ -467,14 +467,14 @@ void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
     const auto ask = [&](const Piece& piece, const Vec3& point) {
         const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
         if (!(most > region.told)) return;
-        const MeshHit hit = way_out(pair, piece, point, way);
+        const MeshHit hit = exit_along(pair, piece, point, way);
         double depth = std::min(most, hit.distance);
         if (!(depth > region.told)) return;
         const auto [own, across] = faces_of(pair.shape(piece.side), piece.edge);
         Vec3 inward = pair.normal(piece.side, own);
         if (across != NONE) inward = inward + pair.normal(piece.side, across);
         inward = unit(inward);
-        const MeshHit in = way_out(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
+        const MeshHit in = exit_along(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
         if (in.face != NONE) depth = std::min(depth, in.distance);
         if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
     };
@@ -501,7 +501,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
             double most = 0;
             for (const Piece& piece : pieces_) {
                 if (region_of(piece) != number || !speaks(pair, piece)) continue;
-                for (const Vec3& end : piece.ends) most = std::max(most, way_out(pair, piece, end, n).distance);
+                for (const Vec3& end : piece.ends) most = std::max(most, exit_along(pair, piece, end, n).distance);
                 if (most > 1.001 * least) break;
             }
             if (!(most > 0)) continue;
@@ -514,7 +514,7 @@ void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
     for (const Piece& piece : pieces_) {
         if (region_of(piece) != number || !speaks(pair, piece)) continue;
         for (const Vec3& end : piece.ends) {
-            const MeshHit hit = way_out(pair, piece, end, way);
+            const MeshHit hit = exit_along(pair, piece, end, way);
             add_deep(pair, piece, end, way, hit.distance, hit);
         }
     }

@@ -75,7 +75,7 @@ private:
     Vec3 find_way(const PairMeshes& pair, const Region& region) const;
     bool is_thinner(const Region& region, double limit) const;
     Range range(const Region& region, const Vec3& normal) const;
-    static MeshHit way_out(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
+    static MeshHit exit_along(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way);
     void add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
                   const MeshHit& hit);
     void list_deep(const PairMeshes& pair, std::uint32_t region);

@@ -12,42 +12,42 @@
 namespace raycontact {
 
 /// One direction of a pair for the edges' rule: the source's vertices in the target's centred frame, in double. Each is
-/// moved inwards by a hair and shaken by a hundredth of it, so that aligned faces, shared vertices and coincident edges
-/// decide nothing (docs/edges.md).
+/// moved inwards by a perturbation and shaken by a hundredth of it, so that aligned faces, shared vertices and
+/// coincident edges decide nothing (docs/edges.md).
 struct SourceMesh {
     const ShapeData& source;
     const ShapeData& target;
     const Accelerators* target_accelerators; ///< null: it has none
     Pose pose;                               ///< of the source's centred frame in the target's
     double size;                             ///< of the smaller body's box, its diagonal, metres
-    double hair;                             ///< metres
+    double perturbation;                     ///< metres
 
     SourceMesh(const PlacedBody& from, const PlacedBody& to)
-        : source(from.shape->data()), target(to.shape->data()), target_accelerators(to.shape->accelerators()),
-          pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), hair(1e-7 * size) {}
+        : source(from.shape->data()), target(to.shape->data()), target_accelerators(accelerators_of(*to.shape)),
+          pose(relative_pose(to.centred, from.centred)), size(smaller_size(from, to)), perturbation(1e-7 * size) {}
 
     Vec3 turned(const Vec3& v) const { return rotated(pose.rotation, v); }
     Vec3 placed(const Vec3& v) const { return turned(v) + pose.translation; }
     /// A point of the target's frame, back in the source's.
     Vec3 back(const Vec3& p) const { return rotated_back(pose.rotation, p - pose.translation); }
-    Vec3 vertex(std::uint32_t v) const { return placed(source.point(v) + hair * source.hair_moves[v]); }
+    Vec3 vertex(std::uint32_t v) const { return placed(source.point(v) + perturbation * source.perturbations[v]); }
 };
 
 /// Both bodies of a pair in one frame, that of b about its centre, in double: what decides, decides of one
-/// configuration. Every vertex is moved inward by a hair, those of a and b shaken in opposite ways.
+/// configuration. Every vertex is moved inward by a perturbation, those of a and b shaken in opposite ways.
 class PairMeshes {
 public:
     PairMeshes(const PlacedBody& a, const PlacedBody& b) : a_in_b_(a, b), shapes_{&a_in_b_.source, &a_in_b_.target} {}
 
     const ShapeData& shape(std::size_t side) const { return *shapes_[side]; }
-    double hair() const { return a_in_b_.hair; }
+    double perturbation() const { return a_in_b_.perturbation; }
     /// Of the smaller body's box, its diagonal.
     double size() const { return a_in_b_.size; }
 
     Vec3 vertex(std::size_t side, std::uint32_t v) const {
         const ShapeData& own = *shapes_[side];
         if (side == 0) return a_in_b_.vertex(v);
-        return own.point(v) - hair() * (own.hair_moves[v] + 2.0 * own.vertex_normals[v]);
+        return own.point(v) - perturbation() * (own.perturbations[v] + 2.0 * own.vertex_normals[v]);
     }
     Vec3 corner(std::size_t side, std::uint32_t face, std::size_t k) const {
         return vertex(side, shapes_[side]->mesh.triangles[face][k]);

@@ -2,8 +2,8 @@
 // The kernels of the certified method (docs/certified.md). Only devices that share the host's memory run them. Included
 // after kernels.h.
 // clang-format off
-#include "kernels/watch.h"
-#include "kernels/tube.h"
+#include "kernels/candidates.h"
+#include "kernels/swept_clearance.h"
 #include "kernels/held_group.h"
-#include "kernels/cap.h"
+#include "kernels/normal_cone.h"
 #include "kernels/hold.h"

@@ -36,10 +36,10 @@ DEVICE float go_half_way(READS(DirectedPair) now, READS(DirectedPair) next, READ
     return 1.001f * (root_of(shift) + reach * root_of(turn));
 }
 
-// Metres within which an edge must be asked: the rounding of poses and corners, three hairs by which the rule moves
-// vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions lie
-// side by side. horizons: where edges are looked for, `ahead` and half their way beyond the margins; more, ahead: null
-// for 0. half_way: of the pairs on their way to `next`; both null: they stay.
+// Metres within which an edge must be asked: the rounding of poses and corners, three perturbations by which the rule
+// moves vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions
+// lie side by side. horizons: where edges are looked for, `ahead` and half their way beyond the margins; more, ahead:
+// null for 0. half_way: of the pairs on their way to `next`; both null: they stay.
 KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
                          READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons,
                          WRITES(DirectedPair) half_way) {

@@ -151,8 +151,8 @@ DEVICE Outcome follow_ray(const Follow* follow, const FollowedRay* followed) {
     return end;
 }
 
-// The vertices of a full look that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
-// the bounds of the look. By pair: `reach`: that distance; `margins`: with at most this safe distance a vertex could be
+// The vertices of a full test that could be in contact, or are nearer than the culling distance. `wide`: the pairs with
+// the bounds of the test. By pair: `reach`: that distance; `margins`: with at most this safe distance a vertex could be
 // in contact. The upper half of PairBlock.lanes marks vertices whose own ray must be cast. counts: see count_rays().
 KERNEL void count_near_rays(COUNT(count), uint stride, READS(DirectedPair) wide, READS(float) reach,
                             READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
@@ -193,17 +193,17 @@ KERNEL void write_near_rays(COUNT(count), READS(PairBlock) near_blocks, READS(ui
     }
 }
 
-// Candidates of the last step become rays of this one. Segment.first: of the candidates; firsts[s]: of the rays.
-KERNEL void copy_candidates(COUNT(count), READS(Segment) segments, READS(uint) firsts, READS(Candidate) candidates,
-                            WRITES(Ray) rays, WRITES(uint) starts) {
+// Cached rays of the last step become rays of this one. Segment.first: of the cached rays; firsts[s]: of the rays.
+KERNEL void copy_cached_rays(COUNT(count), READS(Segment) segments, READS(uint) firsts, READS(CachedRay) cached,
+                             WRITES(Ray) rays, WRITES(uint) starts) {
     FOR_EACH(s, count) {
         const Segment segment = segments[s];
         for (uint i = 0u; i < segment.count; ++i) {
             const uint at = firsts[s] + i;
-            const Candidate candidate = candidates[segment.first + i];
+            const CachedRay ray = cached[segment.first + i];
             rays[at].pair = segment.pair;
-            rays[at].vertex_lane = candidate.vertex_lane;
-            starts[at] = candidate.triangle;
+            rays[at].vertex_lane = ray.vertex_lane;
+            starts[at] = ray.triangle;
         }
     }
 }
@@ -303,8 +303,8 @@ KERNEL void find_ranges(COUNT(count), READS(Ray) rays, WRITES(uint) ranges) {
     }
 }
 
-KERNEL void count_candidates(COUNT(count), READS(uint) ranges, READS(Hit) hits, READS(uint) nexts, READS(uint) hows,
-                             WRITES(Followed) followed, WRITES(uint) counts) {
+KERNEL void count_cached_rays(COUNT(count), READS(uint) ranges, READS(Hit) hits, READS(uint) nexts, READS(uint) hows,
+                              WRITES(Followed) followed, WRITES(uint) counts) {
     FOR_EACH(p, count) {
         Followed sum = {0u, 0u, 0u, 0u, 0u};
         for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
@@ -320,14 +320,14 @@ KERNEL void count_candidates(COUNT(count), READS(uint) ranges, READS(Hit) hits, 
     }
 }
 
-KERNEL void write_candidates(COUNT(count), READS(uint) ranges, READS(Ray) rays, READS(uint) nexts, READS(uint) firsts,
-                             WRITES(Candidate) candidates) {
+KERNEL void write_cached_rays(COUNT(count), READS(uint) ranges, READS(Ray) rays, READS(uint) nexts, READS(uint) firsts,
+                              WRITES(CachedRay) cached) {
     FOR_EACH(p, count) {
         uint at = firsts[p];
         for (uint i = ranges[2u * p]; i < ranges[2u * p + 1u]; ++i) {
             if (nexts[i] != NONE) {
-                candidates[at].vertex_lane = rays[i].vertex_lane;
-                candidates[at].triangle = nexts[i];
+                cached[at].vertex_lane = rays[i].vertex_lane;
+                cached[at].triangle = nexts[i];
                 ++at;
             }
         }

@@ -8,22 +8,23 @@
 // Rays, and what was kept of each. All zero at first, since lanes without a ray or a triangle are tested, too.
 STRUCT(HeldGroup) {
     RayGroup rays;
-    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // at the tube search
+    float position[3][RAYS_IN_GROUP], direction[3][RAYS_IN_GROUP]; // when the clearance was searched
     float safe[RAYS_IN_GROUP], limit[RAYS_IN_GROUP];
     uint triangle_lane[RAYS_IN_GROUP]; // NONE: it has no triangle
     uint triangle[RAYS_IN_GROUP];      // of its shape
-    uint cap[RAYS_IN_GROUP];           // of the triangle
-    uint tests_cap[RAYS_IN_GROUP];
+    uint cone[RAYS_IN_GROUP];          // of the triangle
+    uint tests_cones[RAYS_IN_GROUP];
     float margin[RAYS_IN_GROUP];    // of rounding, metres
     float corner[9][RAYS_IN_GROUP]; // [3 * corner + axis]
     uint is_known[RAYS_IN_GROUP], is_hit[RAYS_IN_GROUP];
     float distance[RAYS_IN_GROUP]; // of a hit
-    // For caps (cap.h), of every ray with a triangle. edge: the edge functions of its line; is_inside_edges: whether
-    // the line passes well inside all edges; is_exit: whether the ray leaves the target there, a hit if it can meet no
-    // other triangle. `distance` is then that of the triangle's plane.
+    // For normal-cone balls (normal_cone.h), of every ray with a triangle. edge: the edge functions of its line;
+    // is_inside_edges: whether the line passes well inside all edges; is_exit: whether the ray leaves the target there,
+    // a hit if it can meet no other triangle. `distance` is then that of the triangle's plane.
     float edge[3][RAYS_IN_GROUP];
     uint is_inside_edges[RAYS_IN_GROUP], is_exit[RAYS_IN_GROUP];
-    uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the cap of the neighbour is tested next; 0: none
+    uint beyond[RAYS_IN_GROUP]; // 1 to 3: the edge across which the normal-cone ball of the neighbour is tested next;
+                                // 0: none
 };
 
 // Each of the triangle's words lies in a cache line of its own.
@@ -43,13 +44,13 @@ DEVICE void add_held(const RayArrays* arrays, HeldGroup* group, uint at, const S
     group->safe[r] = held->safe;
     group->limit[r] = held->limit;
     group->margin[r] = held_range->margin;
-    group->tests_cap[r] = held_range->tests_caps;
+    group->tests_cones[r] = held_range->tests_cones;
     group->triangle_lane[r] = held->triangle;
-    group->cap[r] = 0u;
+    group->cone[r] = 0u;
     if (held->triangle == NONE) return;
     READS(TriangleBlock) blocks = AT(arrays->memory, TriangleBlock, shape->triangle_blocks);
     prefetch_triangle(blocks + held->triangle / TRIANGLE_LANES, held->triangle % TRIANGLE_LANES);
-    if (held_range->tests_caps != 0u) PREFETCH(AT(arrays->memory, uint, shape->caps), held->triangle);
+    if (held_range->tests_cones != 0u) PREFETCH(AT(arrays->memory, uint, shape->normal_cones), held->triangle);
 }
 
 DEVICE void fetch_triangle(const RayArrays* arrays, HeldGroup* group, uint r) {
@@ -59,7 +60,7 @@ DEVICE void fetch_triangle(const RayArrays* arrays, HeldGroup* group, uint r) {
     READS(TriangleBlock) block = blocks + triangle_lane / TRIANGLE_LANES;
     for (int k = 0; k < 9; ++k) group->corner[k][r] = block->corner[k][lane];
     group->triangle[r] = block->triangle[lane];
-    group->cap[r] = group->tests_cap[r] != 0u ? AT(arrays->memory, uint, shape->caps)[triangle_lane] : 0u;
+    group->cone[r] = group->tests_cones[r] != 0u ? AT(arrays->memory, uint, shape->normal_cones)[triangle_lane] : 0u;
     PREFETCH(AT(arrays->memory, Packed3, shape->face_normals), group->triangle[r]);
 }
 
@@ -69,8 +70,8 @@ DEVICE void fetch_triangles(const RayArrays* arrays, HeldGroup* group) {
         if (group->triangle_lane[r] != NONE) fetch_triangle(arrays, group, r);
 }
 
-// First tests whether any part of the ray has left its tube: no point of it has moved farther than one of its ends.
-// Then tests the triangle with the result of hit_lane(), and whether any other triangle can matter.
+// First tests whether any part of the ray has left its swept clearance: no point of it has moved farther than one of
+// its ends. Then tests the triangle with the result of hit_lane(), and whether any other triangle can matter.
 DEVICE void test_held(HeldGroup* group) {
     RayGroup* rays = &group->rays;
     frame_group(rays, false);
@@ -83,7 +84,7 @@ DEVICE void test_held(HeldGroup* group) {
         const float turned_z = rays->direction[2][r] - group->direction[2][r];
         const float far_x = x + limit * turned_x, far_y = y + limit * turned_y, far_z = z + limit * turned_z;
         const float start = (x * x + y * y) + z * z, end = (far_x * far_x + far_y * far_y) + far_z * far_z;
-        const uint in_tube = (uint)(root_of(start > end ? start : end) < group->safe[r]);
+        const uint in_clearance = (uint)(root_of(start > end ? start : end) < group->safe[r]);
 
         const uint to_x = rays->axis[0][r], to_y = rays->axis[1][r], to_z = rays->axis[2][r];
         const float shear_x = rays->shear[0][r], shear_y = rays->shear[1][r], shear_z = rays->shear[2][r];
@@ -119,7 +120,7 @@ DEVICE void test_held(HeldGroup* group) {
                                   & (uint)(e.v < -edge_margin * (magnitude_of(x0 - x2) + magnitude_of(y0 - y2)))
                                   & (uint)(e.w < -edge_margin * (magnitude_of(x1 - x0) + magnitude_of(y1 - y0)));
         const uint exits = within & (uint)(t >= 0.0f) & (uint) !(t > reach);
-        const uint known = in_tube & alone;
+        const uint known = in_clearance & alone;
         group->edge[0][r] = e.w; // as Face numbers them
         group->edge[1][r] = e.u;
         group->edge[2][r] = e.v;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that need not be cast again (docs/certified.md). A tube (tube.h) lasts until a point of the ray has moved by its
-// radius: until then the ray can meet only one triangle, or none. A triangle's cap is tested in each step (cap.h).
+// Rays that need not be cast again (docs/certified.md). A swept clearance (swept_clearance.h) lasts until a point of
+// the ray has moved by its radius: until then the ray can meet only one triangle, or none. A triangle's normal-cone
+// ball is tested in each step (normal_cone.h).
 
-#define WAIT_STEPS 3.0f     // before the next search, if the last tube was hardly wide enough for one step
+#define WAIT_STEPS 3.0f     // before the next search, if the last swept clearance was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the search radius
 
 // The place of a ray among those kept of its pair, which ascend by vertex_lane, or of the first one after it. likely:
@@ -27,12 +28,12 @@ DEVICE Held nothing_held(uint vertex_lane) {
 
 // Nothing was kept of the pair's rays, and nothing will be.
 DEVICE bool is_idle(READS(HeldRange) held_range) {
-    return held_range->count == 0u && held_range->radius <= 0.0f && held_range->tests_caps == 0u;
+    return held_range->count == 0u && held_range->radius <= 0.0f && held_range->tests_cones == 0u;
 }
 
-// Searches a tube around a ray that was cast. Returns what is kept of the ray.
-DEVICE_BATCH Held seek_tube(const RayArrays* arrays, const SourceRay* ray, const Closest* own,
-                            READS(HeldRange) held_range, READS(ShapeHeader) shape) {
+// Searches a swept clearance around a ray that was cast. Returns what is kept of the ray.
+DEVICE_BATCH Held seek_clearance(const RayArrays* arrays, const SourceRay* ray, const Closest* own,
+                                 READS(HeldRange) held_range, READS(ShapeHeader) shape) {
     Held held = nothing_held(NONE);
     for (int i = 0; i < 3; ++i) {
         held.position[i] = ray->position[i];
@@ -41,8 +42,8 @@ DEVICE_BATCH Held seek_tube(const RayArrays* arrays, const SourceRay* ray, const
     const float met = own->back < own->front ? own->back : own->front;
     const float end = met + held_range->radius < ray->reach ? met + held_range->radius : ray->reach;
     if (held_range->radius <= 0.0f || end >= UNBOUNDED) return held;
-    const Tube tube = tube_of(ray, end, held_range->radius);
-    const Neighbours found = search_tube(&tube, shape, arrays->memory);
+    const SweptClearance swept = swept_clearance_of(ray, end, held_range->radius);
+    const Neighbours found = search_clearance(&swept, shape, arrays->memory);
     const float safe = found.second - held_range->margin;
     if (safe > WORTH_HOLDING * held_range->radius) {
         held.safe = safe;
@@ -62,8 +63,8 @@ STRUCT(Holding) {
     WRITES(Held) after;
 };
 
-// Casts rays that neither a tube nor a cap decides. `after`, if their pair is not idle: what was kept of them becomes
-// what is kept from now on.
+// Casts rays that neither a swept clearance nor a normal-cone ball decides. `after`, if their pair is not idle: what
+// was kept of them becomes what is kept from now on.
 DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
     Closest own[RAYS_IN_GROUP];
     cast_group(&hold->all, own, waiting);
@@ -76,20 +77,20 @@ DEVICE_BATCH void cast_waiting(const Holding* hold, RayGroup* waiting) {
         READS(ShapeHeader) shape = waiting->shape[r];
         Held held = hold->after[at];
         const uint vertex_lane = held.vertex_lane;
-        const bool had_tube = held.safe > 0.0f;
-        const float waits = had_tube ? 0.0f : held.limit - 1.0f;
+        const bool had_clearance = held.safe > 0.0f;
+        const float waits = had_clearance ? 0.0f : held.limit - 1.0f;
         held.limit = waits;
-        const bool met = hit.triangle != NONE && held_range->tests_caps != 0u;
+        const bool met = hit.triangle != NONE && held_range->tests_cones != 0u;
         const uint lane_met = met ? AT(hold->all.memory, Face, shape->faces)[hit.triangle].triangle_lane : NONE;
-        // The cap of the triangle that the ray meets was tested and did not decide: an edge or the surface is near. A
-        // tube may.
-        const bool cap_failed = !had_tube && held.triangle == lane_met;
-        if (lane_met != NONE && !cap_failed
-            && is_in_cap(&source, hit.facing, held_range->margin, shape, hold->all.memory, lane_met)) {
+        // The normal-cone ball of the triangle that the ray meets was tested and did not decide: an edge or the surface
+        // is near. A swept clearance may.
+        const bool cone_failed = !had_clearance && held.triangle == lane_met;
+        if (lane_met != NONE && !cone_failed
+            && is_in_cone(&source, hit.facing, held_range->margin, shape, hold->all.memory, lane_met)) {
             held = nothing_held(vertex_lane);
             held.triangle = lane_met;
         } else if (!(waits > 0.0f)) {
-            held = seek_tube(&hold->all, &source, own + r, held_range, shape);
+            held = seek_clearance(&hold->all, &source, own + r, held_range, shape);
         }
         held.vertex_lane = vertex_lane;
         hold->after[at] = held;
@@ -104,11 +105,11 @@ DEVICE void cast_later(const Holding* hold, RayGroup* waiting, uint at, const So
     if (is_full(waiting)) cast_waiting(hold, waiting);
 }
 
-// The rays of a group that neither their tube nor a cap decides are cast.
+// The rays of a group that neither their swept clearance nor a normal-cone ball decides are cast.
 DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* waiting) {
     const RayGroup* rays = &group->rays;
     fetch_triangles(&hold->all, group);
-    test_tubes_and_caps(&hold->all, group);
+    test_clearances_and_cones(&hold->all, group);
     for (uint r = 0u; r < rays->count; ++r) {
         const uint at = rays->at[r];
         if (group->is_known[r] == 0u) {
@@ -126,22 +127,23 @@ DEVICE_BATCH void decide_held(const Holding* hold, HeldGroup* group, RayGroup* w
     group->rays.count = 0u;
 }
 
-// Adds a ray inside the bounds to the group if a tube or a cap may decide it. Returns whether it did.
+// Adds a ray inside the bounds to the group if a swept clearance or a normal-cone ball may decide it. Returns whether
+// it did.
 DEVICE bool add_if_kept(const Holding* hold, HeldGroup* group, uint at, const Ray ray, const SourceRay* source,
                         READS(ShapeHeader) shape, bool inside) {
     READS(HeldRange) held_range = hold->held_ranges + ray.pair;
     if (is_idle(held_range)) return false;
     READS(Held) own = hold->before + held_range->first;
     const uint place = find_held(own, held_range->count, ray.vertex_lane, at - held_range->now_first);
-    const bool capped = held_range->tests_caps != 0u;
+    const bool has_cones = held_range->tests_cones != 0u;
     Held known = nothing_held(ray.vertex_lane);
-    // The first rays of a pair seek their tubes in the course of four steps.
+    // The first rays of a pair seek their swept clearances in the course of four steps.
     if (held_range->count == 0u) known.limit = 1.0f + (float)(ray.vertex_lane & 3u);
     if (place < held_range->count && own[place].vertex_lane == ray.vertex_lane) known = own[place];
     hold->after[at] = known;
-    if (capped && known.safe <= 0.0f && known.triangle == NONE)
+    if (has_cones && known.safe <= 0.0f && known.triangle == NONE)
         known.triangle = triangle_nearby(own, held_range->count, place);
-    if (!inside || !(known.safe > 0.0f || (capped && known.triangle != NONE))) return false;
+    if (!inside || !(known.safe > 0.0f || (has_cones && known.triangle != NONE))) return false;
     add_held(&hold->all, group, at, source, &known, held_range, ray.pair, shape);
     return true;
 }

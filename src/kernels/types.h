@@ -17,8 +17,8 @@
 #define NODE_LANES 16
 #define VERTEX_LANES 16
 #define CLUSTER_LEVELS 4
-#define SEGMENT_WATCHES 32u // a bit each
-#define MASK_WORDS 4u       // of 64 blocks each, for each pair
+#define SEGMENT_CANDIDATES 32u // a bit each
+#define MASK_WORDS 4u          // of 64 blocks each, for each pair
 #define NODE_LEVELS 5
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
@@ -102,7 +102,7 @@ STRUCT(ShapeHeader) {
     ulong faces, face_normals; // by triangle; outward
     ulong outside_cells;       // a bit for each cell, x fastest
     ulong clearances;          // x fastest
-    ulong caps;                // by triangle_lane (cap.h); only where the host's memory is shared
+    ulong normal_cones;        // by triangle_lane (normal_cone.h); only where the host's memory is shared
     uint triangle_block_count;
     SourceTree vertices, edges;
     uint closed;
@@ -116,7 +116,7 @@ STRUCT(ShapeHeader) {
     float clearance_scale;                     // cells a metre
     float clearance_cell;                      // metres a cell
     float clearance_unit;                      // metres a step of the stored lengths
-    uint caps_pay;                             // most triangles have caps: it pays to test them
+    uint cones_pay;                            // most triangles have normal-cone balls: it pays to test them
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
 };
@@ -157,14 +157,14 @@ STRUCT(PairBlock) {
 WIRE_SIZE(PairBlock, 16);
 
 // A ray that is followed from step to step: its vertex, and the triangle it met last.
-STRUCT(Candidate) {
+STRUCT(CachedRay) {
     uint vertex_lane; // VERTEX_LANES * vertex block + lane
     uint triangle;
 };
-WIRE_SIZE(Candidate, 8);
+WIRE_SIZE(CachedRay, 8);
 
-// How a pair's rays ended. kept: candidates for the next step; predictions: those of them without contact. lost: walks
-// that ended nowhere. cast: rays cast in full, after such a walk or in a full look.
+// How a pair's rays ended. kept: cached rays for the next step; predictions: those of them without contact. lost: walks
+// that ended nowhere. cast: rays cast in full, after such a walk or in a full test.
 STRUCT(Followed) {
     uint kept;
     uint predictions;
@@ -174,17 +174,17 @@ STRUCT(Followed) {
 };
 WIRE_SIZE(Followed, 20);
 
-// A vertex block that its pair watches. lanes: vertices that could be in contact; their rays are decided in each step.
-// The others cannot be in contact before the pair's clock exceeds `wake`.
-STRUCT(Watch) {
+// A vertex block near its pair's target. lanes: vertices that could be in contact; their rays are decided in each step.
+// The others cannot be in contact before the pair's clock exceeds `valid_until`.
+STRUCT(CandidateBlock) {
     uint vertex_block; // of the source
-    float wake;        // metres
+    float valid_until; // metres
     uint lanes;
 };
-WIRE_SIZE(Watch, 12);
+WIRE_SIZE(CandidateBlock, 12);
 
-// Part of a pair's watches, at most SEGMENT_WATCHES, or of its candidates. now: its clock, metres. margin: the rounding
-// that a certificate must exceed, metres.
+// Part of a pair's candidates, at most SEGMENT_CANDIDATES, or of its cached rays. now: its clock, metres. margin: the
+// rounding that a certificate must exceed, metres.
 STRUCT(Segment) {
     uint pair;
     uint first, count;
@@ -193,38 +193,39 @@ STRUCT(Segment) {
 };
 WIRE_SIZE(Segment, 20);
 
-// The result of testing a segment's watches. wake: the least of theirs. blocks: number tested. rays: number to be
-// decided. casting: a bit for each watch that has rays.
-STRUCT(LookResult) {
+// The result of testing a segment's candidates. valid_until: the least of theirs. blocks: number tested. rays: number
+// to be decided. casting: a bit for each candidate that has rays.
+STRUCT(CandidateTest) {
     uint casting;
-    float wake;
+    float valid_until;
     uint blocks;
     uint rays;
 };
-WIRE_SIZE(LookResult, 16);
+WIRE_SIZE(CandidateTest, 16);
 
-// What is kept of a ray between steps. With a tube, one triangle or none decides it while no point of it has moved by
-// `safe`. Without a tube, its triangle's cap is tested, if it has one; else it is cast. Lengths along the ray count in
-// lengths of its direction.
+// What is kept of a ray between steps. With a swept clearance, one triangle or none decides it while no point of it has
+// moved by `safe`. Without a swept clearance, its triangle's normal-cone ball is tested, if it has one; else it is
+// cast. Lengths along the ray count in lengths of its direction.
 STRUCT(Held) {
-    uint vertex_lane;  // VERTEX_LANES * vertex block + lane
-    uint triangle;     // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
-    float safe;        // metres; 0: it has no tube
-    float limit;       // along the ray: where its tube ends; without a tube: steps until the next search
-    float position[3]; // at the tube search
+    uint vertex_lane; // VERTEX_LANES * vertex block + lane
+    uint triangle;    // TRIANGLE_LANES * block + lane of its shape, NONE: none is near, or none is known
+    float safe;       // metres; 0: it has no swept clearance
+    float
+        limit; // along the ray: where its swept clearance ends; without a swept clearance: steps until the next search
+    float position[3]; // when the clearance was searched
     float direction[3];
 };
 WIRE_SIZE(Held, 40);
 
 // The rays kept of a directed pair. first, count: those of the last step, in the array of Held; now_first: where those
-// of this step begin. margin: metres of rounding. radius: of the tubes to search, metres; 0: none, the pair is too
-// fast. tests_caps: 1: rays test the caps of the target.
+// of this step begin. margin: metres of rounding. radius: of the swept clearances to search, metres; 0: none, the pair
+// is too fast. tests_cones: 1: rays test the normal-cone balls of the target.
 STRUCT(HeldRange) {
     uint first, count; // Held
     uint now_first;
     float margin;
     float radius;
-    uint tests_caps;
+    uint tests_cones;
 };
 WIRE_SIZE(HeldRange, 24);
 

@@ -7,7 +7,7 @@
 #include "mesh/input_file.h"
 #include "mesh/nesting.h"
 #include "mesh/self_intersection.h"
-#include "real_text.h"
+#include "number_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/nesting.h"
 
+#include "mesh/degenerate.h"
 #include "mesh/measure.h"
-#include "mesh/useless.h"
 
 #include <algorithm>
 #include <array>

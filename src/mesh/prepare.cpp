@@ -4,11 +4,11 @@
 
 #include "executor/float_environment.h"
 #include "mesh/check.h"
+#include "mesh/degenerate.h"
 #include "mesh/input_file.h"
 #include "mesh/lowest_equal.h"
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
-#include "mesh/useless.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +51,9 @@ std::string counted(std::size_t count, const std::string& noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// Drops what drop_useless() finds, and reports how many.
+/// Drops what drop_degenerate() finds, and reports how many.
 void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
-    const Dropped dropped = drop_useless(prepared.triangles, vertices);
+    const Dropped dropped = drop_degenerate(prepared.triangles, vertices);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < prepared.triangles.size(); ++i) {
         if (dropped.triangles[i]) continue;

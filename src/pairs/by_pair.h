@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "give_back.h"
-
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -37,8 +35,6 @@ public:
     std::span<T> of(std::size_t directed) {
         return std::span(all_).subspan(first(directed), ends_[directed] - first(directed));
     }
-    /// After a step: frees memory that it hardly used.
-    void give_back() { raycontact::give_back(all_, ends_); }
 
 private:
     std::vector<T> all_;

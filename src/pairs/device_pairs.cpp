@@ -2,7 +2,7 @@
 #include "pairs/device_pairs.h"
 
 #include "device/launch.h"
-#include "give_back.h"
+#include "free_all.h"
 
 #include <algorithm>
 #include <array>

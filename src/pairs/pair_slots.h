@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "give_back.h"
+#include "free_all.h"
 #include "slot_pair.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "give_back.h"
+#include "free_all.h"
 #include "pairs/pair_slots.h"
 #include "platform/prefetch.h"
 
@@ -47,7 +47,9 @@ public:
         return static_cast<std::size_t>(at - open.begin());
     }
     /// Hands over what another table kept for a pair that the next match opens.
-    void put_in(const SlotPair& pair, const State& state, const Hot& hot) { incoming_.push_back({pair, state, hot}); }
+    void import_state(const SlotPair& pair, const State& state, const Hot& hot) {
+        incoming_.push_back({pair, state, hot});
+    }
 
     /// Of the i-th pair of the last match.
     State& state(std::size_t i) { return states_[slots_.slot(i)]; }
@@ -59,7 +61,7 @@ public:
     template <class Prefetch, class Wants, class Ask>
     void sift(std::uint32_t begin, std::uint32_t end, Prefetch&& prefetch, Wants&& wants, Ask&& ask) {
         constexpr std::uint32_t handful = 32, ahead = 8;
-        std::uint32_t awake[handful];
+        std::uint32_t due[handful];
         const auto send_for = [&](std::uint32_t i) {
             if (i < end) prefetch(i);
         };
@@ -70,9 +72,9 @@ public:
                 send_for(i + ahead);
                 if (!wants(i, hot(i))) continue;
                 prefetch_state(i);
-                awake[count++] = i;
+                due[count++] = i;
             }
-            for (std::uint32_t k = 0; k < count; ++k) ask(awake[k]);
+            for (std::uint32_t k = 0; k < count; ++k) ask(due[k]);
         }
     }
 

@@ -20,7 +20,8 @@ public:
     /// Throws std::length_error beyond 2^31 elements.
     Range allocate(std::uint32_t count) {
         if (count == 0) return {};
-        if (count > 1u << 30) throw std::length_error("a pair watches more than 2^30 vertex blocks; split its meshes");
+        if (count > 1u << 30)
+            throw std::length_error("a pair has more than 2^30 vertex blocks as candidates; split its meshes");
         const std::uint32_t capacity = std::bit_ceil(std::max(count, 4u));
         std::vector<std::uint32_t>& free = free_of(capacity);
         Range range{end_, capacity};
@@ -30,7 +31,7 @@ public:
         } else {
             if (end_ > (1u << 31) - capacity)
                 throw std::length_error(
-                    "the pairs of this scene watch more than 2^31 vertex blocks; give a step fewer");
+                    "the pairs of this scene have more than 2^31 vertex blocks as candidates; give a step fewer");
             end_ += capacity;
         }
         in_use_ += capacity;

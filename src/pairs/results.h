@@ -2,7 +2,6 @@
 #pragma once
 
 #include "device/array.h"
-#include "give_back.h"
 
 #include <algorithm>
 #include <span>
@@ -47,17 +46,10 @@ public:
     std::span<const T> values() const { return std::span(values_).first(count_); }
     /// There are none in this step, nor likely in the next.
     void rest() { count_ = expected_ = 0; }
-    /// After a step: frees memory that it hardly used.
-    void give_back() {
-        array_.give_back(expected_);
-        if (values_.size() > 4 * expected_) values_.resize(expected_);
-        count_ = std::min(count_, values_.size());
-        raycontact::give_back(values_);
-    }
 
 private:
     Array<T> array_;
-    std::vector<T> values_;    ///< shrinks in give_back() alone
+    std::vector<T> values_;
     std::size_t count_ = 0;    ///< of values_
     std::size_t read_ = 0;     ///< of this step
     std::size_t expected_ = 0; ///< in the next step, at most

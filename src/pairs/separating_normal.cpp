@@ -23,7 +23,7 @@ Vec3 least_way(const Supports& source, const Supports& target, const Pose& place
 } // namespace
 
 double SeparatingNormal::gap(const PlacedBody& a, const PlacedBody& b, double enough, bool on_way) {
-    const Accelerators *more_a = a.shape->accelerators(), *more_b = b.shape->accelerators();
+    const Accelerators *more_a = accelerators_of(*a.shape), *more_b = accelerators_of(*b.shape);
     if (more_a == nullptr || more_b == nullptr) return 0;
     const Supports &first = more_a->supports, &second = more_b->supports;
     const PairPlace now = place_pair(a.centred, b.centred, 0);

@@ -13,9 +13,8 @@ namespace raycontact {
 class SeparatingNormal {
 public:
     /// Metres by which the hulls are apart along it, at least; 0 or less where that is not known, as until both shapes
-    /// have accelerators. Looks for a better
-    /// direction where it is no more than `enough`. on_way: and stay so on their straight ways to the next step, each
-    /// in the other's frame.
+    /// have accelerators. Seeks a better direction where it is no more than `enough`. on_way: and stay so on their
+    /// straight ways to the next step, each in the other's frame.
     double gap(const PlacedBody& a, const PlacedBody& b, double enough, bool on_way);
 
 private:

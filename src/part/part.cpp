@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/part.h"
 
+#include "free_all.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -16,9 +18,9 @@ Part::Part(OpenDevice opened)
     : executor_(std::move(opened.executor)), device_(std::make_unique<CountingDevice>(std::move(opened.device))),
       shapes_(*device_), settings_(&before_any_step) {}
 
-void Part::give_back() {
-    pipeline_.give_back(update(bodies_, pairs_));
-    raycontact::give_back(placer_, edges_);
+void Part::trim() {
+    pipeline_.trim();
+    free_all(placer_, edges_);
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
@@ -49,7 +51,7 @@ void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>&
     edges_.run(now, found.contacts(), found.speculative(), found.asked(), contacts);
 }
 
-void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
+void Part::take_over(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {
     Adopted& added = *adopted_.emplace_back(std::make_unique<Adopted>());
     added.pairs.assign(pairs.begin(), pairs.end());
     const Update now = update(bodies_, added.pairs);
@@ -57,18 +59,18 @@ void Part::adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts
     std::vector<Contact> more;
     added.pipeline.end(now);
     place(now, added.pipeline, more);
-    pipeline_.put_in(now, added.pipeline.take_out(now, added.pairs));
+    pipeline_.import_state(now, added.pipeline.export_state(now, added.pairs));
     const auto old = static_cast<std::ptrdiff_t>(contacts.size());
     contacts.insert(contacts.end(), more.begin(), more.end());
     std::ranges::inplace_merge(contacts, contacts.begin() + old, {}, pair_of);
 }
 
-std::vector<std::byte> Part::take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
-    return pipeline_.take_out(update(bodies, pairs_), pairs);
+std::vector<std::byte> Part::export_state(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) {
+    return pipeline_.export_state(update(bodies, pairs_), pairs);
 }
 
-void Part::put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes) {
-    pipeline_.put_in(update(bodies, pairs_), bytes);
+void Part::import_state(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes) {
+    pipeline_.import_state(update(bodies, pairs_), bytes);
 }
 
 void Part::list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRay>& rays) {

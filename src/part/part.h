@@ -28,13 +28,13 @@ public:
     void end(std::vector<Contact>& contacts);
     /// After end(), in the same step: sorts in the contacts of pairs that are new to this part, because another one
     /// failed. The part has them from now on.
-    void adopt(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
+    void take_over(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
 
     /// The state kept for some pairs of the last step, for another part to go on with as this part would have. bodies
     /// as in the last step. Empty if the contacts do not depend on that state.
-    std::vector<std::byte> take_out(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs);
+    std::vector<std::byte> export_state(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs);
     /// Adds such state. Call it before the begin() that first has these pairs, with the same bodies.
-    void put_in(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
+    void import_state(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
 
     /// Adds the rays kept for the next step; bodies as in the last step.
     void list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRay>& rays);
@@ -44,8 +44,8 @@ public:
     /// The device's work since the last call.
     DeviceWork take_work();
 
-    /// After all of a step: frees memory that it hardly used.
-    void give_back();
+    /// After all of a step: frees what the next makes anew.
+    void trim();
     /// Forgets what the methods kept.
     void forget() { pipeline_.forget(); }
 

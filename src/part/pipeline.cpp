@@ -2,6 +2,7 @@
 #include "part/pipeline.h"
 
 #include "device/launch.h"
+#include "free_all.h"
 
 namespace raycontact {
 
@@ -32,24 +33,13 @@ void Pipeline::forget() {
     pairs_.clear();
 }
 
-void Pipeline::give_back(const Update& last) {
-    std::size_t rays = batch_.count.most;
-    switch (finds(last)) {
-    case Finds::standard:
-        standard_.give_back(batch_);
-        rays = batch_.sums[RayBatch::ray_sum].sums[0];
-        break;
-    case Finds::certified:
-        certified_.give_back();
-        break;
-    case Finds::coherent:
-        coherent_.give_back();
-        break;
-    }
-    if (casts_edges_) edges_.give_back();
-    if (casts_points_) points_.give_back();
-    batch_.give_back(rays);
-    raycontact::give_back(found_, local_, near_, near_points_, asked_, margins_, device_margins_, speculative_);
+void Pipeline::trim() {
+    standard_.trim();
+    certified_.trim();
+    coherent_.trim();
+    edges_ = NearRays(edges_.sources());
+    points_ = NearRays(points_.sources());
+    free_all(batch_, margins_, device_margins_, found_, local_, near_, near_points_, speculative_, asked_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -178,13 +168,13 @@ void Pipeline::list_asked(const Update& update) {
     }
 }
 
-std::vector<std::byte> Pipeline::take_out(const Update& last, std::span<const SlotPair> pairs) {
+std::vector<std::byte> Pipeline::export_state(const Update& last, std::span<const SlotPair> pairs) {
     if (finds(last) != Finds::coherent) return {};
-    return coherent_.take_out(last.device, pairs);
+    return coherent_.export_state(last.device, pairs);
 }
 
-void Pipeline::put_in(const Update& last, std::span<const std::byte> bytes) {
-    if (!bytes.empty()) coherent_.put_in(last.device, bytes);
+void Pipeline::import_state(const Update& last, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) coherent_.import_state(last.device, bytes);
 }
 
 void Pipeline::list_kept_rays(const Update& last, std::vector<KeptRay>& rays) {

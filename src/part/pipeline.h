@@ -31,15 +31,15 @@ public:
     std::span<const AskedPair> asked() const { return asked_; }
 
     /// As Part's.
-    std::vector<std::byte> take_out(const Update& last, std::span<const SlotPair> pairs);
-    void put_in(const Update& last, std::span<const std::byte> bytes);
+    std::vector<std::byte> export_state(const Update& last, std::span<const SlotPair> pairs);
+    void import_state(const Update& last, std::span<const std::byte> bytes);
 
     void list_kept_rays(const Update& last, std::vector<KeptRay>& rays);
 
     /// Adds what the last step did.
     void count(const Update& last, StepStats& stats) const;
-    /// After all of a step, with its update: frees memory that it hardly used. What the step found is gone.
-    void give_back(const Update& last);
+    /// After all of a step: frees what the next makes anew. What the step found is gone.
+    void trim();
     /// Forgets what the methods kept.
     void forget();
 

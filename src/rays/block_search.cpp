@@ -2,7 +2,6 @@
 #include "rays/block_search.h"
 
 #include "device/launch.h"
-#include "give_back.h"
 
 #include <algorithm>
 
@@ -66,14 +65,6 @@ void BlockSearch::find_now(const Update& update, const Array<kernels::DirectedPa
     make_room(update.device, sum.results);
     found_ = Count(sum.results);
     write(update, pairs, sum.items, horizons, {});
-}
-
-void BlockSearch::give_back(std::size_t used) {
-    counts_.give_back(pair_count_);
-    block_masks_.give_back(MASK_WORDS * pair_count_);
-    ray_counts_.give_back(used);
-    blocks_.give_back(used);
-    raycontact::give_back(safe_distances_, host_counts_, host_safe_distances_);
 }
 
 bool BlockSearch::had_room(Device& device, const kernels::Totals& sum) {

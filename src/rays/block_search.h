@@ -51,8 +51,6 @@ public:
         pair_count_ = 0;
         found_ = Count(0);
     }
-    /// After a step that found so many blocks: frees memory that it hardly used.
-    void give_back(std::size_t used);
     /// Of the last find.
     std::uint64_t bytes() const {
         return std::uint64_t{found_.most} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))

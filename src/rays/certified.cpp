@@ -2,7 +2,7 @@
 #include "rays/certified.h"
 
 #include "device/launch.h"
-#include "give_back.h"
+#include "free_all.h"
 #include "pairs/near_edges.h"
 #include "shape/shape_data.h"
 
@@ -16,22 +16,23 @@ namespace {
 // Lists made at once: for all pairs of a first step they would take as much memory as all that is kept.
 constexpr std::size_t lists_at_once = 1 << 15;
 
-static_assert(SEGMENT_WATCHES <= 8 * sizeof(kernels::LookResult::casting), "a bit for each watch of a segment");
+static_assert(SEGMENT_CANDIDATES <= 8 * sizeof(kernels::CandidateTest::casting),
+              "a bit for each candidate of a segment");
 
-std::size_t segments_of(std::uint32_t watches) {
-    return (watches + SEGMENT_WATCHES - 1) / SEGMENT_WATCHES;
+std::size_t segments_of(std::uint32_t candidates) {
+    return (candidates + SEGMENT_CANDIDATES - 1) / SEGMENT_CANDIDATES;
 }
 
 bool casts_all(const Update& update) {
     return update.settings.paper.caster == Caster::basic;
 }
 
-// A pair most of whose watched vertices have rays, many of them, and that moves too far for tubes, is left to
-// `standard` for some steps: each vertex is cast anyway.
+// A pair most of whose certified vertices have rays, many of them, and that moves too far for swept clearances, is left
+// to `standard` for some steps: each vertex is cast anyway.
 constexpr std::uint32_t steps_as_standard = 16, many_rays = 1024;
 
 bool spares_little(const Due& due) {
-    const Watched& own = *due.own;
+    const Candidates& own = *due.own;
     return own.rays.count > many_rays && 2 * own.rays.count > VERTEX_LANES * own.count && due.radius == 0;
 }
 
@@ -41,7 +42,7 @@ bool is_in_contact(const ByPair<kernels::LocalContact>& contacts, std::uint32_t 
 
 // The same as in the kernel (hold.h): nothing is known of the pair's rays, and nothing will be sought.
 bool is_idle(const kernels::HeldRange& held_range) {
-    return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_caps == 0;
+    return held_range.count == 0 && held_range.radius <= 0 && held_range.tests_cones == 0;
 }
 
 } // namespace
@@ -51,13 +52,13 @@ void CertifiedRays::clear() {
     pool_.clear();
     edges_.clear();
     points_.clear();
-    watches_ = {};
+    candidates_ = {};
     held_ = {};
     last_held_ = {};
 }
 
-void CertifiedRays::close(WatchedPair& state) {
-    for (Watched& own : state.directions) {
+void CertifiedRays::close(CertifiedPair& state) {
+    for (Candidates& own : state.directions) {
         pool_.release({own.first, own.capacity});
         own = {};
     }
@@ -67,7 +68,7 @@ void CertifiedRays::close(WatchedPair& state) {
 void CertifiedRays::list_slices() {
     stale_.clear();
     directed_.clear();
-    for (WakeUp::Slice& slice : wake_up_.slices()) {
+    for (DuePairs::Slice& slice : due_pairs_.slices()) {
         for (const std::uint32_t at : slice.stale) stale_.push_back({&slice, at});
         for (const std::uint32_t i : slice.as_standard) {
             if (table_.hot(i).open) close(table_.state(i));
@@ -95,7 +96,7 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<
     near_.find_now(update, wide_pairs_, stale.size(), horizons_, batch.totals, RayBatch::block_sum);
     for (std::size_t i = 0; i < stale.size(); ++i) {
         const Due& due = stale[i].due();
-        Watched& own = *due.own;
+        Candidates& own = *due.own;
         pool_.release({own.first, own.capacity});
         own.capacity = 0; // in case the next line throws
         const RangePool::Range range = pool_.allocate(near_.host_counts()[i]);
@@ -108,14 +109,15 @@ void CertifiedRays::make_lists(const Update& update, RayBatch& batch, std::span<
         }
     }
     if (near_.blocks().size() == 0) return;
-    watches_.extend(device, pool_.end());
-    launch<KernelId::begin_watches>(device, near_.blocks().size(), near_.blocks(), near_.firsts(), places_, watches_);
+    candidates_.extend(device, pool_.end());
+    launch<KernelId::begin_candidates>(device, near_.blocks().size(), near_.blocks(), near_.firsts(), places_,
+                                       candidates_);
 }
 
 // Places the pairs of the batch: those left to `standard`, then those that are due, with the segments of their blocks.
 void CertifiedRays::place(const Update& update) {
     std::size_t due_count = standard_count_, segment_count = 0;
-    for (WakeUp::Slice& slice : wake_up_.slices()) {
+    for (DuePairs::Slice& slice : due_pairs_.slices()) {
         slice.first = due_count;
         slice.segment_first = segment_count;
         due_count += slice.due.size();
@@ -129,14 +131,15 @@ void CertifiedRays::place(const Update& update) {
         place_source(source, target, pairs_.in_place()[i]);
         held_ranges_.in_place()[i] = {};
     });
-    wake_up_.each_slice(update.executor, [&](const WakeUp::Slice& slice) {
+    due_pairs_.each_slice(update.executor, [&](const DuePairs::Slice& slice) {
         std::copy(slice.places.begin(), slice.places.end(), pairs_.in_place().begin() + std::ptrdiff_t(slice.first));
         std::size_t i = slice.first, next = slice.segment_first;
         for (const Due& due : slice.due) {
             directed_[i] = due.directed;
-            for (std::uint32_t done = 0; done < due.own->count; done += SEGMENT_WATCHES)
+            for (std::uint32_t done = 0; done < due.own->count; done += SEGMENT_CANDIDATES)
                 segments_.in_place()[next++] = {static_cast<std::uint32_t>(i), due.own->first + done,
-                                                std::min(SEGMENT_WATCHES, due.own->count - done), due.now, due.margin};
+                                                std::min(SEGMENT_CANDIDATES, due.own->count - done), due.now,
+                                                due.margin};
             ++i;
         }
     });
@@ -148,14 +151,14 @@ void CertifiedRays::find_standard_rays(const Update& update, RayBatch& batch) {
     standard_.count_rays(update, pairs_, true, batch.totals, RayBatch::ray_sum, NONE - 1);
 }
 
-void CertifiedRays::look_at_blocks(const Update& update, RayBatch& batch) {
+void CertifiedRays::test_candidates(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     const std::size_t count = segments_.size();
-    looks_.resize(update.device, count);
-    look_rays_.resize(update.device, 1, count);
-    launch<KernelId::look_at_watches>(update.device, count, pairs_, arrays.headers, arrays.memory, segments_, watches_,
-                                      looks_, look_rays_.values());
-    look_rays_.scan(update.device, count, batch.totals, RayBatch::method_sum, NONE - 1);
+    tests_.resize(update.device, count);
+    test_rays_.resize(update.device, 1, count);
+    launch<KernelId::test_candidates>(update.device, count, pairs_, arrays.headers, arrays.memory, segments_,
+                                      candidates_, tests_, test_rays_.values());
+    test_rays_.scan(update.device, count, batch.totals, RayBatch::method_sum, NONE - 1);
 }
 
 // The rays of pairs left to `standard`, then those of blocks.
@@ -169,46 +172,46 @@ void CertifiedRays::write_rays(const Update& update, RayBatch& batch) {
     batch.count = Count(std::size_t{first} + sums[RayBatch::method_sum].results);
     batch.resize(device, batch.count.value);
     standard_.write_rays(update, batch.totals, RayBatch::ray_sum, 0, batch.rays);
-    launch<KernelId::write_watch_rays>(device, segments_.size(), first, segments_, watches_, looks_,
-                                       look_rays_.firsts(), batch.rays);
+    launch<KernelId::write_candidate_rays>(device, segments_.size(), first, segments_, candidates_, tests_,
+                                           test_rays_.firsts(), batch.rays);
     settle(update, first);
 }
 
 // Stores what the pairs keep of this step, and tells the rays of each pair where those of the last step are and how
-// wide a tube to seek.
+// wide a swept clearance to seek.
 void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     const bool holds = !casts_all(update); // something will be known of the rays afterwards
-    const auto looks = looks_.in_place();
-    const auto firsts = look_rays_.firsts().in_place();
+    const auto tests = tests_.in_place();
+    const auto firsts = test_rays_.firsts().in_place();
     const auto held_ranges = held_ranges_.in_place();
-    wake_up_.each_slice(update.executor, [&](WakeUp::Slice& slice) {
+    due_pairs_.each_slice(update.executor, [&](DuePairs::Slice& slice) {
         std::size_t segment = slice.segment_first, i = slice.first;
         slice.blocks = 0;
         for (const Due& due : slice.due) {
-            Watched& own = *due.own;
-            const std::uint32_t ray = segment < looks.size() ? first_ray + firsts[segment] : 0;
+            Candidates& own = *due.own;
+            const std::uint32_t ray = segment < tests.size() ? first_ray + firsts[segment] : 0;
             const std::size_t end = segment + segments_of(own.count);
             kernels::HeldRange& held_range = held_ranges[i++];
             held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
-                          due.tests_caps};
+                          due.tests_cones};
             // For an idle pair nothing was known and nothing is sought, so nothing is known afterwards.
             own.rays = {ray, 0, holds && !is_idle(held_range)};
-            own.wake = own.expiry;
+            own.valid_until = own.expiry;
             for (; segment < end; ++segment) {
-                own.wake = std::min(own.wake, double(looks[segment].wake));
-                own.rays.count += looks[segment].rays;
-                slice.blocks += looks[segment].blocks;
+                own.valid_until = std::min(own.valid_until, double(tests[segment].valid_until));
+                own.rays.count += tests[segment].rays;
+                slice.blocks += tests[segment].blocks;
             }
             // The two directions of a pair are in one slice.
             Slack& slack = table_.hot(due.directed / 2);
-            slack.metres = std::min(slack.metres, own.wake - double(due.now));
+            slack.metres = std::min(slack.metres, own.valid_until - double(due.now));
             slack.casts = slack.casts || own.rays.count > 0;
             if (spares_little(due)) table_.state(due.directed / 2).as_standard = steps_as_standard;
         }
     });
 }
 
-// Decides most rays by the one triangle that each can meet (docs/certified.md). A watched vertex may have left the
+// Decides most rays by the one triangle that each can meet (docs/certified.md). A certified vertex may have left the
 // bounds; the kernels of both casters test that.
 void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     Device& device = update.device;
@@ -226,15 +229,15 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
 void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     open_pairs_ = update.pairs.size();
     batch.resize(update.device, 0);
-    // What the few that are left know is worth less than the memory: they are looked at anew.
+    // What the few that are left know is worth less than the memory: they are tested anew.
     if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
-    table_.match(update.pairs, [this](WatchedPair& state) {
+    table_.match(update.pairs, [this](CertifiedPair& state) {
         close(state);
         edges_.release(state);
         points_.release(state);
         state.as_standard = 0;
     });
-    wake_up_.run(update, table_);
+    due_pairs_.run(update, table_);
     list_slices();
     if (stale_.empty()) {
         near_.rest();
@@ -244,7 +247,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
         make_lists(update, batch, std::span(stale_).subspan(done).first(std::min(lists_at_once, stale_.size() - done)));
     place(update);
     find_standard_rays(update, batch);
-    look_at_blocks(update, batch);
+    test_candidates(update, batch);
     write_rays(update, batch);
     batch.pairs = &pairs_;
     batch.directed = directed_;
@@ -267,10 +270,10 @@ NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& k
 
 void CertifiedRays::find_points(const Update& update, RayBatch& batch) {
     searches_.clear();
-    for (const WakeUp::Slice& slice : wake_up_.slices())
+    for (const DuePairs::Slice& slice : due_pairs_.slices())
         for (const DueNear& due : slice.near) {
             const Slack& slack = table_.hot(due.pair);
-            const WatchedPair& state = table_.state(due.pair);
+            const CertifiedPair& state = table_.state(due.pair);
             if (!due.points) continue;
             searches_.push_back(search_of(due, state.points, due.moves, double(slack.margin)));
         }
@@ -282,14 +285,14 @@ void CertifiedRays::find_points(const Update& update, RayBatch& batch) {
 // What only vertices need tell is not sought: of a pair in contact edges that hide little.
 void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch) {
     searches_.clear();
-    for (const WakeUp::Slice& slice : wake_up_.slices())
+    for (const DuePairs::Slice& slice : due_pairs_.slices())
         for (const DueNear& due : slice.near) {
             Slack& slack = table_.hot(due.pair);
             const bool in_contact = is_in_contact(contacts, due.pair);
             if (!due.edges && (in_contact || slack.all)) continue;
             const auto [first, second] = update.pairs[due.pair];
             const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
-            WatchedPair& state = table_.state(due.pair);
+            CertifiedPair& state = table_.state(due.pair);
             const KeptNear before = state.edges;
             slack.apart = false;
             slack.edges = never;
@@ -306,28 +309,27 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
 
 void CertifiedRays::count(const RayBatch& batch, StepStats& stats) const {
     std::uint64_t blocks = standard_.blocks().size();
-    for (const WakeUp::Slice& slice : wake_up_.slices()) blocks += slice.blocks;
-    const std::uint64_t watched = batch.count.value - standard_sums_.results;
+    for (const DuePairs::Slice& slice : due_pairs_.slices()) blocks += slice.blocks;
+    const std::uint64_t certified = batch.count.value - standard_sums_.results;
     stats.details.vertices += VERTEX_LANES * blocks;
-    stats.details.rays += watched + standard_sums_.sums[1];
+    stats.details.rays += certified + standard_sums_.sums[1];
     stats.details.pairs_full += stale_.size() + standard_count_;
     stats.details.pairs_as_standard += standard_count_;
-    stats.details.pairs_asleep += 2 * open_pairs_ - directed_.size();
-    stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::Watch)
+    stats.details.pairs_skipped += 2 * open_pairs_ - directed_.size();
+    stats.pair_bytes += table_.bytes() + pool_.in_use() * sizeof(kernels::CandidateBlock)
                         + 2 * held_.size() * sizeof(kernels::Held) + batch.count.value * RayBatch::bytes_of_ray
                         + (directed_.size() - standard_count_) * (sizeof(Due) + sizeof(kernels::DirectedPair))
                         + directed_.size() * (sizeof(kernels::DirectedPair) + sizeof(kernels::HeldRange))
-                        + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::LookResult))
+                        + segments_.size() * (sizeof(kernels::Segment) + sizeof(kernels::CandidateTest))
                         + standard_.bytes() + edges_.bytes() + points_.bytes() + near_.bytes();
 }
 
 // Not the rays held: the next step needs them.
-void CertifiedRays::give_back() {
-    look_rays_.give_back(segments_.size());
-    near_.give_back(near_.found());
-    standard_.give_back(standard_.blocks().size());
-    raycontact::give_back(wake_up_, edges_, points_, searches_, stale_, directed_, pairs_, segments_, looks_,
-                          held_ranges_, wide_pairs_, horizons_, places_, last_held_);
+void CertifiedRays::trim() {
+    free_all(due_pairs_, searches_, stale_, directed_, pairs_, segments_, tests_, held_ranges_, test_rays_, wide_pairs_,
+             horizons_, places_, near_, standard_);
+    edges_.trim();
+    points_.trim();
 }
 
 } // namespace raycontact

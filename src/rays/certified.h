@@ -4,18 +4,18 @@
 #include "pairs/by_pair.h"
 #include "pairs/range_pool.h"
 #include "rays/block_search.h"
+#include "rays/due_pairs.h"
 #include "rays/near_lists.h"
 #include "rays/ray_batch.h"
-#include "rays/wake_up.h"
 
 #include <raycontact/scene.h>
 
 namespace raycontact {
 
 /// The rays of a step by the certified method: those of `standard` that could be contacts, and hardly any other
-/// (docs/certified.md). Each directed pair watches the vertex blocks within some distance of its target. A block, and a
-/// pair, sleeps until the pair has moved as far as the nearest vertex was from touching. Pairs for which this does
-/// not pay off are left to `standard`. Needs memory that host and device share.
+/// (docs/certified.md). Each directed pair candidates the vertex blocks within some distance of its target. A block,
+/// and a pair, is due once the pair has moved as far as the nearest vertex was from touching. Pairs for which this
+/// does not pay off are left to `standard`. Needs memory that host and device share.
 class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).
@@ -35,31 +35,31 @@ public:
 
     /// Adds what the last step did.
     void count(const RayBatch& batch, StepStats& stats) const;
-    /// After a step: frees memory that it hardly used.
-    void give_back();
+    /// After a step: frees what the next makes anew.
+    void trim();
 
 private:
     struct Stale {
-        WakeUp::Slice* slice;
+        DuePairs::Slice* slice;
         std::uint32_t at; ///< index in slice->due
         Due& due() const { return slice->due[at]; }
     };
 
     static NearLists::Search search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin);
-    void close(WatchedPair& state);
+    void close(CertifiedPair& state);
     void list_slices();
     void make_lists(const Update& update, RayBatch& batch, std::span<const Stale> stale);
     void place(const Update& update);
     void find_standard_rays(const Update& update, RayBatch& batch);
-    void look_at_blocks(const Update& update, RayBatch& batch);
+    void test_candidates(const Update& update, RayBatch& batch);
     void write_rays(const Update& update, RayBatch& batch);
     void settle(const Update& update, std::uint32_t first_ray);
     void decide(const Update& update, RayBatch& batch);
 
-    WatchedPairs table_;
-    WakeUp wake_up_;
-    NearLists edges_{BlockSearch::Sources::edges, &WatchedPair::edges, &Slack::edges};
-    NearLists points_{BlockSearch::Sources::points, &WatchedPair::points, &Slack::points};
+    CertifiedPairs table_;
+    DuePairs due_pairs_;
+    NearLists edges_{BlockSearch::Sources::edges, &CertifiedPair::edges, &Slack::edges};
+    NearLists points_{BlockSearch::Sources::points, &CertifiedPair::points, &Slack::points};
     std::vector<NearLists::Search> searches_;
     RangePool pool_;
     std::vector<Stale> stale_;
@@ -70,14 +70,14 @@ private:
 
     Array<kernels::DirectedPair> pairs_; ///< of directed_
     Array<kernels::Segment> segments_;
-    Array<kernels::LookResult> looks_;
+    Array<kernels::CandidateTest> tests_;
     Array<kernels::HeldRange> held_ranges_; ///< of directed_
-    Columns look_rays_;
+    Columns test_rays_;
     Array<kernels::DirectedPair> wide_pairs_; ///< by index of some stale pairs, like the next two
     Array<float> horizons_;
     Array<kernels::uint> places_;
     BlockSearch near_, standard_;
-    Array<kernels::Watch> watches_;
+    Array<kernels::CandidateBlock> candidates_;
     Array<kernels::Held> held_, last_held_;
 };
 

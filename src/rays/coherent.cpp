@@ -2,7 +2,7 @@
 #include "rays/coherent.h"
 
 #include "device/launch.h"
-#include "give_back.h"
+#include "free_all.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -35,25 +35,25 @@ T take_bytes(std::span<const std::byte>& bytes) {
     return value;
 }
 
-// Cost of a full look that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
+// Cost of a full test that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
 // ratio.
-constexpr double cost_of_look[] = {12, 6}; // iterative, predictive
+constexpr double cost_of_test[] = {12, 6}; // iterative, predictive
 // Share of the smaller body's diagonal: a pair that moves farther than this in a step is not worth following.
 constexpr double farthest = 0.015;
 
-// How far a pair may move before its next full look, metres, if no setting says so. A longer distance saves full looks
+// How far a pair may move before its next full test, metres, if no setting says so. A longer distance saves full tests
 // but follows more rays, since it must predict farther ahead. The counted costs of both decide, by one factor at each
-// look: counts, not times, so that equal input gives equal results. speed: metres a step. last: the distance of the
-// last look, below 0 if there was none. look_cost: what that look cost, in rays; follows: rays followed since.
-double next_threshold(const PlacedBody& a, const PlacedBody& b, double speed, double last, double look_cost,
+// test: counts, not times, so that equal input gives equal results. speed: metres a step. last: the distance of the
+// last test, below 0 if there was none. test_cost: what that test cost, in rays; follows: rays followed since.
+double next_threshold(const PlacedBody& a, const PlacedBody& b, double speed, double last, double test_cost,
                       double follows, bool predictive) {
     const double least = 0.001 * smaller_size(a, b), most = farthest * smaller_size(a, b);
-    // Too fast to be followed: a full look in every step. (With `predictive` such pairs do not come here.)
+    // Too fast to be followed: a full test in every step. (With `predictive` such pairs do not come here.)
     if (speed > most) return 0.2 * least;
     double threshold = 4 * speed;
     if (last >= least) {
-        const double looks = cost_of_look[predictive ? 1 : 0] + look_cost;
-        threshold = last * std::clamp(std::sqrt(looks / std::max(follows, 1e-3)), 0.5, 2.0);
+        const double tests = cost_of_test[predictive ? 1 : 0] + test_cost;
+        threshold = last * std::clamp(std::sqrt(tests / std::max(follows, 1e-3)), 0.5, 2.0);
     }
     return std::clamp(threshold, least, most);
 }
@@ -66,8 +66,8 @@ bool is_too_fast_to_predict(const PlacedBody& a, const PlacedBody& b, double spe
 
 } // namespace
 
-// Decides for one pair, in double, whether it is looked at in full or followed.
-void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
+// Decides for one pair, in double, whether it is tested in full or followed.
+void CoherentRays::choose_turn(const Update& update, std::uint32_t i) {
     const SlotPair& pair = update.pairs[i];
     const Motion& motion = update.motion;
     const Settings& settings = update.settings;
@@ -76,16 +76,16 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
     const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
     const bool predictive = settings.method == Method::predictive;
     if (predictive && !settings.paper.displacement_threshold && is_too_fast_to_predict(a, b, motion.pair_speed(pair))) {
-        turns_[i] = Turn::look;
+        turns_[i] = Turn::test;
         state = {};
         state.culling = -1;
         table_.hot(i) = {};
         return;
     }
     const PairPlace now = place_pair(a.centred, b.centred, motion.pair_shear(pair));
-    if (state.threshold >= 0) { // it was looked at before
+    if (state.threshold >= 0) { // it was tested before
         const auto moved = displacement_bounds(state.reference, now, a.shape->data().reach, b.shape->data().reach);
-        // The paper: a full look once the displacement exceeds the threshold, or is not a number. It is put off while
+        // The paper: a full test once the displacement exceeds the threshold, or is not a number. It is put off while
         // it would find nothing.
         const double allowed = std::max(state.threshold, state.safe);
         if (moved[0] <= allowed && moved[1] <= allowed) {
@@ -93,14 +93,14 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
             return;
         }
     }
-    turns_[i] = Turn::look;
+    turns_[i] = Turn::test;
     state.reference = now;
-    const double follows = double(step_ - state.looked) * (kept[0].count + kept[1].count);
-    state.looked = step_;
+    const double follows = double(step_ - state.tested) * (kept[0].count + kept[1].count);
+    state.tested = step_;
     state.threshold = left =
         settings.paper.displacement_threshold
             ? *settings.paper.displacement_threshold
-            : next_threshold(a, b, motion.pair_speed(pair), state.threshold, state.look_cost, follows, predictive);
+            : next_threshold(a, b, motion.pair_speed(pair), state.threshold, state.test_cost, follows, predictive);
     state.safe = state.culling = 0;
     if (predictive)
         state.culling = std::min(settings.paper.culling_distance ? *settings.paper.culling_distance
@@ -108,7 +108,7 @@ void CoherentRays::wake_pair(const Update& update, std::uint32_t i) {
                                  farthest_ahead);
 }
 
-void CoherentRays::wake_up(const Update& update) {
+void CoherentRays::choose_turns(const Update& update) {
     const Settings& settings = update.settings;
     const auto pair_count = static_cast<std::uint32_t>(update.pairs.size());
     const bool predictive = settings.method == Method::predictive;
@@ -120,12 +120,12 @@ void CoherentRays::wake_up(const Update& update) {
             return !(hot.slack >= 0);
         };
         const auto prefetch = [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); };
-        table_.sift(begin, end, prefetch, wants, [&](std::uint32_t i) { wake_pair(update, i); });
+        table_.sift(begin, end, prefetch, wants, [&](std::uint32_t i) { choose_turn(update, i); });
     });
 
     directed_.clear();
     for (std::uint32_t i = 0; i < pair_count; ++i)
-        if (turns_[i] == Turn::look) directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
+        if (turns_[i] == Turn::test) directed_.insert(directed_.end(), {2 * i, 2 * i + 1});
     full_count_ = directed_.size();
     for (std::uint32_t i = 0; i < pair_count; ++i)
         for (std::uint32_t d = 0; turns_[i] == Turn::follow && d < 2; ++d)
@@ -154,7 +154,7 @@ void CoherentRays::wake_up(const Update& update) {
 }
 
 // Pairs without a block near either surface.
-void CoherentRays::let_sleep() {
+void CoherentRays::skip_apart() {
     for (std::size_t i = 0; i < full_count_; i += 2) {
         PairState& state = table_.state(directed_[i] / 2);
         if (state.threshold < 0 || near_.host_counts()[i] != 0 || near_.host_counts()[i + 1] != 0) continue;
@@ -166,7 +166,7 @@ void CoherentRays::let_sleep() {
     }
 }
 
-// Full looks first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
+// Full tests first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
 void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     const ShapeStore::Arrays& arrays = update.arrays();
     Device& device = update.device;
@@ -179,7 +179,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     const Array<float> no_horizons;
     near_.find_now(update, device_wide_, full_count_, skip_outside ? device_reaches_ : no_horizons, batch.totals,
                    RayBatch::block_sum);
-    if (skip_outside) let_sleep();
+    if (skip_outside) skip_apart();
     const Array<kernels::PairBlock>& blocks = near_.blocks();
     sums_.vertices = VERTEX_LANES * blocks.size();
     full_rays_ = 0;
@@ -213,8 +213,8 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
                                       batch.rays, starts_);
     segments_.write(device, host_segments_);
     segment_firsts_.write(device, host_firsts_);
-    launch<KernelId::copy_candidates>(device, host_segments_.size(), segments_, segment_firsts_, candidates_,
-                                      batch.rays, starts_);
+    launch<KernelId::copy_cached_rays>(device, host_segments_.size(), segments_, segment_firsts_, cached_, batch.rays,
+                                       starts_);
 }
 
 void CoherentRays::follow(const Update& update, RayBatch& batch) {
@@ -234,21 +234,21 @@ void CoherentRays::follow(const Update& update, RayBatch& batch) {
         run.operator()<KernelId::follow_rays_bvh>();
 }
 
-// The candidates of the next step, and what each pair's rays came to.
-void CoherentRays::list_candidates(const Update& update, RayBatch& batch) {
+// The cached of the next step, and what each pair's rays came to.
+void CoherentRays::list_cached_rays(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     host_ranges_.assign(2 * directed_.size(), 0);
     ranges_.write(device, host_ranges_);
     launch<KernelId::find_ranges>(device, batch.count, batch.rays, ranges_);
     followed_.resize(device, directed_.size());
     kept_counts_.resize(device, 1, directed_.size());
-    candidates_.resize(device, batch.rays.size());
-    launch<KernelId::count_candidates>(device, directed_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
-                                       kept_counts_.values());
+    cached_.resize(device, batch.rays.size());
+    launch<KernelId::count_cached_rays>(device, directed_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
+                                        kept_counts_.values());
     if (batch.rays.size() == 0) return;
-    kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::method_sum, candidates_.size());
-    launch<KernelId::write_candidates>(device, directed_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
-                                       candidates_);
+    kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::method_sum, cached_.size());
+    launch<KernelId::write_cached_rays>(device, directed_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
+                                        cached_);
 }
 
 void CoherentRays::keep(const Update& update) {
@@ -262,7 +262,7 @@ void CoherentRays::keep(const Update& update) {
         own.first = first;
         own.count = sum.kept;
         if (i < full_count_) {
-            double& cost = table_.state(directed_[i] / 2).look_cost;
+            double& cost = table_.state(directed_[i] / 2).test_cost;
             cost = (directed_[i] % 2 == 0 ? 0 : cost) + 2.0 * sum.cast;
         }
         first += sum.kept;
@@ -272,7 +272,7 @@ void CoherentRays::keep(const Update& update) {
         cast += sum.cast;
     }
     sums_.walk_casts = cast - full_rays_;
-    candidates_kept_ = first;
+    cached_count_ = first;
 }
 
 void CoherentRays::cast(const Update& update, RayBatch& batch) {
@@ -280,98 +280,94 @@ void CoherentRays::cast(const Update& update, RayBatch& batch) {
     ++step_;
     open_pairs_ = update.pairs.size();
     table_.match(update.pairs, [](PairState&) {});
-    wake_up(update);
+    choose_turns(update);
     batch.resize(update.device, 0);
     find_rays(update, batch);
     batch.pairs = &device_pairs_;
     batch.directed = directed_;
     follow(update, batch);
-    list_candidates(update, batch);
+    list_cached_rays(update, batch);
 }
 
-std::vector<kernels::Candidate> CoherentRays::read_candidates(Device& device) {
-    std::vector<kernels::Candidate> candidates(candidates_kept_);
-    const Piece piece = candidates_.piece(candidates);
-    if (!candidates.empty()) device.queue().read({&piece, 1});
-    return candidates;
+std::vector<kernels::CachedRay> CoherentRays::read_cached_rays(Device& device) {
+    std::vector<kernels::CachedRay> cached(cached_count_);
+    const Piece piece = cached_.piece(cached);
+    if (!cached.empty()) device.queue().read({&piece, 1});
+    return cached;
 }
 
 // Of one direction of a pair. Without any, `first` may be of a list that is gone.
-std::span<const kernels::Candidate> CoherentRays::candidates_of(const Kept& own,
-                                                                std::span<const kernels::Candidate> all) {
+std::span<const kernels::CachedRay> CoherentRays::cached_of(const Kept& own, std::span<const kernels::CachedRay> all) {
     return own.count > 0 ? all.subspan(own.first, own.count) : all.first(0);
 }
 
 void CoherentRays::list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
                                   std::vector<KeptRay>& rays) {
-    const std::vector<kernels::Candidate> candidates = read_candidates(device);
+    const std::vector<kernels::CachedRay> cached = read_cached_rays(device);
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
         for (std::uint32_t d = 0; place && d < 2; ++d) {
             const Kept& own = table_.hot(*place).kept[d];
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
             const auto& blocks = source.shape->data().vertex_blocks;
-            for (const auto& [lane, triangle] : candidates_of(own, candidates))
+            for (const auto& [lane, triangle] : cached_of(own, cached))
                 rays.push_back({pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], triangle});
         }
     }
 }
 
-std::vector<std::byte> CoherentRays::take_out(Device& device, std::span<const SlotPair> pairs) {
+std::vector<std::byte> CoherentRays::export_state(Device& device, std::span<const SlotPair> pairs) {
     std::vector<std::byte> bytes;
-    const std::vector<kernels::Candidate> candidates = read_candidates(device);
+    const std::vector<kernels::CachedRay> cached = read_cached_rays(device);
     for (const SlotPair& pair : pairs) {
         const std::optional<std::size_t> place = table_.place(pair);
         if (!place) continue;
         Moving moving{pair.first, pair.second, table_.state(*place), table_.hot(*place)};
-        moving.state.looked = step_ - moving.state.looked; // as long ago; every device counts its own steps
+        moving.state.tested = step_ - moving.state.tested; // as long ago; every device counts its own steps
         put_bytes(bytes, moving);
         for (const Kept& own : moving.hot.kept)
-            for (const kernels::Candidate& candidate : candidates_of(own, candidates)) put_bytes(bytes, candidate);
+            for (const kernels::CachedRay& ray : cached_of(own, cached)) put_bytes(bytes, ray);
     }
     return bytes;
 }
 
-void CoherentRays::put_in(Device& device, std::span<const std::byte> bytes) {
-    candidates_.extend(device, candidates_kept_);
-    std::vector<kernels::Candidate> candidates;
+void CoherentRays::import_state(Device& device, std::span<const std::byte> bytes) {
+    cached_.extend(device, cached_count_);
+    std::vector<kernels::CachedRay> cached;
     while (!bytes.empty()) {
         auto moving = take_bytes<Moving>(bytes);
-        moving.state.looked = step_ - moving.state.looked;
+        moving.state.tested = step_ - moving.state.tested;
         for (Kept& own : moving.hot.kept) {
-            own.first = static_cast<std::uint32_t>(candidates_kept_ + candidates.size());
-            for (std::uint32_t i = 0; i < own.count; ++i) candidates.push_back(take_bytes<kernels::Candidate>(bytes));
+            own.first = static_cast<std::uint32_t>(cached_count_ + cached.size());
+            for (std::uint32_t i = 0; i < own.count; ++i) cached.push_back(take_bytes<kernels::CachedRay>(bytes));
         }
-        table_.put_in({moving.first, moving.second}, moving.state, moving.hot);
+        table_.import_state({moving.first, moving.second}, moving.state, moving.hot);
     }
-    candidates_.append(device, std::span<const kernels::Candidate>(candidates));
-    candidates_kept_ += candidates.size();
+    cached_.append(device, std::span<const kernels::CachedRay>(cached));
+    cached_count_ += cached.size();
 }
 
 void CoherentRays::count(StepStats& stats) const {
     stats.details.vertices += sums_.vertices;
     stats.details.rays += sums_.rays;
     stats.details.pairs_full += full_count_;
-    stats.details.pairs_asleep += 2 * open_pairs_ - directed_.size();
+    stats.details.pairs_skipped += 2 * open_pairs_ - directed_.size();
     stats.details.walks += sums_.walks;
     stats.details.walks_lost += sums_.walks_lost;
     stats.details.walk_casts += sums_.walk_casts;
     stats.details.predictions += sums_.predictions;
-    stats.pair_bytes += table_.bytes() + turns_.size() + candidates_kept_ * sizeof(kernels::Candidate)
+    stats.pair_bytes += table_.bytes() + turns_.size() + cached_count_ * sizeof(kernels::CachedRay)
                         + (2 * directed_.size() + 2 * full_count_) * sizeof(kernels::DirectedPair)
                         + directed_.size() * (2 * sizeof(float) + 2 * sizeof(kernels::Followed))
                         + (sums_.walks + full_rays_) * (RayBatch::bytes_of_ray + 3 * sizeof(kernels::uint))
                         + near_.bytes();
 }
 
-// Not the candidates: the next step needs them.
-void CoherentRays::give_back() {
-    kept_counts_.give_back(directed_.size());
-    near_.give_back(near_.blocks().size());
-    raycontact::give_back(turns_, directed_, host_pairs_, wide_pairs_, cullings_, reaches_, margins_, host_segments_,
-                          host_firsts_, host_ranges_, host_followed_, device_pairs_, device_wide_, device_cullings_,
-                          device_reaches_, device_margins_, segment_firsts_, ranges_, starts_, nexts_, hows_, segments_,
-                          followed_);
+void CoherentRays::trim() {
+    free_all(turns_, directed_, host_pairs_, wide_pairs_, cullings_, reaches_, margins_, host_segments_, host_firsts_,
+             host_ranges_, host_followed_, device_pairs_, device_wide_, device_cullings_, device_reaches_,
+             device_margins_, kept_counts_, segment_firsts_, ranges_, starts_, nexts_, hows_, near_, segments_,
+             followed_);
 }
 
 } // namespace raycontact

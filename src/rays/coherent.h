@@ -21,7 +21,7 @@ struct KeptRay {
 };
 
 /// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
-/// that moved less than a threshold since its last full look follows the rays it kept; others get a full look. If the
+/// that moved less than a threshold since its last full test follows the rays it kept; others get a full test. If the
 /// library chooses the threshold of `predictive`, pairs too fast to be followed are cast in full.
 class CoherentRays {
 public:
@@ -31,9 +31,9 @@ public:
     void clear() { table_.clear(); }
 
     /// The state kept for some pairs of the last step, for another part to go on with. Between two steps.
-    std::vector<std::byte> take_out(Device& device, std::span<const SlotPair> pairs);
+    std::vector<std::byte> export_state(Device& device, std::span<const SlotPair> pairs);
     /// Adds such state, before the step that first has these pairs.
-    void put_in(Device& device, std::span<const std::byte> bytes);
+    void import_state(Device& device, std::span<const std::byte> bytes);
 
     /// Adds what is kept for some pairs of the last step; bodies as in it.
     void list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
@@ -41,45 +41,45 @@ public:
 
     /// Adds what the last step did.
     void count(StepStats& stats) const;
-    /// After a step: frees memory that it hardly used.
-    void give_back();
+    /// After a step: frees what the next makes anew.
+    void trim();
 
 private:
-    enum class Turn : std::uint8_t { follow, look };
-    void wake_pair(const Update& update, std::uint32_t i);
-    void wake_up(const Update& update);
+    enum class Turn : std::uint8_t { follow, test };
+    void choose_turn(const Update& update, std::uint32_t i);
+    void choose_turns(const Update& update);
     void find_rays(const Update& update, RayBatch& batch);
-    void let_sleep();
+    void skip_apart();
     void follow(const Update& update, RayBatch& batch);
-    void list_candidates(const Update& update, RayBatch& batch);
-    /// The rays that one direction of a pair keeps: a range of candidates_.
+    void list_cached_rays(const Update& update, RayBatch& batch);
+    /// The rays that one direction of a pair keeps: a range of cached_.
     struct Kept {
         std::uint32_t first = 0, count = 0;
     };
     struct PairState {
-        PairPlace reference;      ///< where the bodies were when the pair was last looked at in full
-        double threshold = -1;    ///< metres, of that look; below 0: there was none
+        PairPlace reference;      ///< where the bodies were when the pair was last tested in full
+        double threshold = -1;    ///< metres, of that test; below 0: there was none
         double safe = 0;          ///< metres that the pair could move then before any contact, if it found no block
         double culling = 0;       ///< metres, length of predictive rays; below 0: too fast to be followed
-        double look_cost = 0;     ///< what that look cost, in rays
-        std::uint64_t looked = 0; ///< its step
+        double test_cost = 0;     ///< what that test cost, in rays
+        std::uint64_t tested = 0; ///< its step
     };
     struct Hot {
         double slack = -1; ///< metres that the pair may move, by a cheap bound, before the exact one is asked
         Kept kept[2];
     };
-    struct Moving { ///< a pair between two devices; its candidates follow
+    struct Moving { ///< a pair between two devices; its cached follow
         BodySlot first, second;
         PairState state;
         Hot hot;
     };
-    std::vector<kernels::Candidate> read_candidates(Device& device);
-    static std::span<const kernels::Candidate> candidates_of(const Kept& own, std::span<const kernels::Candidate> all);
+    std::vector<kernels::CachedRay> read_cached_rays(Device& device);
+    static std::span<const kernels::CachedRay> cached_of(const Kept& own, std::span<const kernels::CachedRay> all);
     Kept& kept(std::uint32_t directed) { return table_.hot(directed / 2).kept[directed % 2]; }
 
     PairTable<PairState, Hot> table_;
     std::vector<Turn> turns_;             ///< per pair
-    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: full looks, then what is followed
+    std::vector<std::uint32_t> directed_; ///< directed indices of the batch: full tests, then what is followed
     std::size_t full_count_ = 0;          ///< of directed_
     std::vector<kernels::DirectedPair> host_pairs_, wide_pairs_;
     std::vector<float> cullings_, reaches_, margins_; ///< of directed_, of the full ones, of the full ones
@@ -87,7 +87,7 @@ private:
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;
     StepDetails sums_;
-    std::uint64_t full_rays_ = 0, candidates_kept_ = 0, open_pairs_ = 0;
+    std::uint64_t full_rays_ = 0, cached_count_ = 0, open_pairs_ = 0;
     std::uint64_t step_ = 0;
 
     Array<kernels::DirectedPair> device_pairs_, device_wide_;
@@ -96,7 +96,7 @@ private:
     Array<kernels::uint> segment_firsts_, ranges_, starts_, nexts_, hows_;
     BlockSearch near_;
     Array<kernels::Segment> segments_;
-    Array<kernels::Candidate> candidates_;
+    Array<kernels::CachedRay> cached_;
     Array<kernels::Followed> followed_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rays/near_lists.h"
 
-#include "give_back.h"
+#include "free_all.h"
 #include "shape/shape_data.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ void NearLists::clear() {
     free_all(edges_);
 }
 
-void NearLists::find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
+void NearLists::find(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch) {
     if (due.empty()) {
         resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
         directed_.clear();
@@ -32,13 +32,13 @@ void NearLists::find(const Update& update, std::span<const Search> due, WatchedP
         find_some(update, due.subspan(first, std::min(pairs_at_once, due.size() - first)), table, batch);
 }
 
-void NearLists::find_some(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch) {
+void NearLists::find_some(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch) {
     const bool move = std::ranges::any_of(due, &Search::moves);
     resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
     next_.resize(update.device, move ? pairs_.size() : 0);
     directed_.resize(2 * due.size());
     std::iota(directed_.begin(), directed_.end(), 0U);
-    const bool points = kept_ == &WatchedPair::points;
+    const bool points = kept_ == &CertifiedPair::points;
     update.executor.each(due.size(), 128, [&](std::uint32_t k) {
         for (std::uint32_t side = 0; side < 2; ++side) {
             const auto [source, target] = directed_bodies(update.bodies, update.pairs, 2 * due[k].pair + side);
@@ -65,7 +65,7 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Wat
             {double(due[k].ahead), rays_.clear(2 * k, due[k].ahead, update.bodies[b].shape->data().header.tolerance),
              rays_.clear(2 * k + 1, due[k].ahead, update.bodies[a].shape->data().header.tolerance)});
         table.hot(due[k].pair).*slack_ = edge_share * (double(due[k].margin) + clear);
-        WatchedPair& pair = table.state(due[k].pair);
+        CertifiedPair& pair = table.state(due[k].pair);
         release(pair);
         KeptNear& kept = pair.*kept_;
         kept.counts = {static_cast<std::uint32_t>(found_.of(2 * k).size()),
@@ -85,8 +85,9 @@ std::uint64_t NearLists::bytes() const {
            + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
 }
 
-void NearLists::give_back() {
-    raycontact::give_back(directed_, pairs_, next_, margins_, ahead_, least_, rays_, found_);
+void NearLists::trim() {
+    free_all(directed_, pairs_, next_, margins_, ahead_, least_, found_);
+    rays_ = NearRays(rays_.sources());
 }
 
 } // namespace raycontact

@@ -3,8 +3,8 @@
 
 #include "pairs/by_pair.h"
 #include "pairs/range_pool.h"
+#include "rays/due_pairs.h"
 #include "rays/near_rays.h"
-#include "rays/wake_up.h"
 
 namespace raycontact {
 
@@ -20,35 +20,35 @@ public:
         float least;         ///< metres: edges that hide less may be left out (docs/edges.md)
         bool moves;          ///< what they come near on their way to the next step is needed
     };
-    NearLists(BlockSearch::Sources sources, KeptNear WatchedPair::*kept, double Slack::*slack)
+    NearLists(BlockSearch::Sources sources, KeptNear CertifiedPair::*kept, double Slack::*slack)
         : rays_(sources), kept_(kept), slack_(slack) {}
 
     /// Uses the batch's sums of edges, or of points.
-    void find(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch);
-    std::array<std::span<kernels::NearEdge>, 2> of(const WatchedPair& pair) {
+    void find(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch);
+    std::array<std::span<kernels::NearEdge>, 2> of(const CertifiedPair& pair) {
         const KeptNear& kept = pair.*kept_;
         const std::span all = std::span(edges_).subspan(kept.first, kept.count());
         return {all.first(kept.counts[0]), all.subspan(kept.counts[0])};
     }
-    void release(WatchedPair& pair) {
+    void release(CertifiedPair& pair) {
         pool_.release({(pair.*kept_).first, (pair.*kept_).capacity});
         pair.*kept_ = {};
     }
     void clear();
 
     std::uint64_t bytes() const;
-    /// After a step: frees memory that it hardly used. Not what is kept.
-    void give_back();
+    /// After a step: frees what the next makes anew.
+    void trim();
 
 private:
-    void find_some(const Update& update, std::span<const Search> due, WatchedPairs& table, RayBatch& batch);
+    void find_some(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch);
 
     std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
     Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
     Array<kernels::DirectedPair> next_;   ///< where they will be, if any moves
     Array<float> margins_, ahead_, least_;
     NearRays rays_;
-    KeptNear WatchedPair::*kept_;
+    KeptNear CertifiedPair::*kept_;
     double Slack::*slack_;
     ByPair<kernels::NearEdge> found_;
     RangePool pool_;

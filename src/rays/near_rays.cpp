@@ -65,12 +65,4 @@ std::uint64_t NearRays::bytes() const {
            + found_.values().size_bytes();
 }
 
-void NearRays::give_back() {
-    search_.give_back(block_count_);
-    rays_.give_back(ray_count_);
-    hits_.give_back(ray_count_);
-    counts_.give_back(ray_count_);
-    raycontact::give_back(margins_, horizons_, half_way_, found_);
-}
-
 } // namespace raycontact

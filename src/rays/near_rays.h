@@ -12,6 +12,7 @@ namespace raycontact {
 class NearRays {
 public:
     explicit NearRays(BlockSearch::Sources sources) : search_(sources), sources_(sources) {}
+    BlockSearch::Sources sources() const { return sources_; }
     /// By directed pair, metres; each may be empty.
     struct Reach {
         const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
@@ -35,8 +36,6 @@ public:
     /// Instead of a cast: there is nothing to do in this step.
     void rest();
     std::uint64_t bytes() const;
-    /// After a step: frees memory that it hardly used.
-    void give_back();
 
 private:
     RayBatch::Sum sum(RayBatch::Sum of_edges) const;

@@ -34,12 +34,6 @@ struct RayBatch {
         if (totals.size() == 0) totals.write(device, sums);
     }
 
-    /// After a step of so many rays: frees memory that it hardly used.
-    void give_back(std::size_t used) {
-        rays.give_back(used);
-        hits.give_back(used);
-        outcomes.give_back(used);
-    }
     static constexpr std::uint64_t bytes_of_ray =
         sizeof(kernels::Ray) + sizeof(kernels::Hit) + 4 * sizeof(kernels::uint);
 

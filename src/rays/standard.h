@@ -25,8 +25,8 @@ public:
 
     /// Adds what the last step did.
     void count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const;
-    /// After a step: frees memory that it hardly used.
-    void give_back(const RayBatch& batch) { search_.give_back(batch.sums[RayBatch::block_sum].sums[0]); }
+    /// After a step: frees what the next makes anew.
+    void trim() { search_ = BlockSearch(); }
 
 private:
     DevicePairs pairs_;

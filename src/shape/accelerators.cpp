@@ -9,7 +9,7 @@ namespace raycontact {
 
 std::uint64_t Accelerators::bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return sizeof *this + bytes(caps) + bytes(outside_cells) + bytes(clearances) + supports.bytes();
+    return sizeof *this + bytes(normal_cones) + bytes(outside_cells) + bytes(clearances) + supports.bytes();
 }
 
 std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, Executor& executor,
@@ -22,12 +22,12 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     build_outside_grid(shape, *made, stop);
     if (stop.stop_requested()) return nullptr;
     build_clearance_grid(shape, *made, executor, stop);
-    build_caps(shape, *made, executor, stop);
+    build_normal_cones(shape, *made, executor, stop);
     made->supports = Supports(shape, executor, stop);
     if (stop.stop_requested()) return nullptr;
     made->header.outside_cells = host_place(made->outside_cells);
     made->header.clearances = host_place(made->clearances);
-    made->header.caps = host_place(made->caps);
+    made->header.normal_cones = host_place(made->normal_cones);
     return made;
 }
 
@@ -38,6 +38,14 @@ bool AcceleratorSlot::make(const ShapeData& shape, Executor& executor, const std
     made_ = build_accelerators(shape, executor, stop);
     ready_.store(made_.get(), std::memory_order_release);
     return made_ != nullptr;
+}
+
+const Accelerators* accelerators_of(const Shape& shape) {
+    return shape.data().accelerators->get();
+}
+
+bool prepare(const Shape& shape, Executor& executor, const std::stop_token& stop) {
+    return shape.data().accelerators->make(shape.data(), executor, stop);
 }
 
 } // namespace raycontact

@@ -17,7 +17,7 @@ namespace raycontact {
 /// long to make as the shape itself, so it is made when a shape proves to be met again, or by Shape::prepare().
 struct Accelerators {
     kernels::ShapeHeader header;              ///< the shape's, with these
-    std::vector<kernels::uint> caps;          ///< of the triangle blocks, TRIANGLE_LANES each; empty: none
+    std::vector<kernels::uint> normal_cones;  ///< of the triangle blocks, TRIANGLE_LANES each; empty: none
     std::vector<kernels::uint> outside_cells; ///< a bit for each cell of the outside grid
     std::vector<kernels::uint> clearances;    ///< a ball for each cell of the clearance grid
     Supports supports;
@@ -42,6 +42,11 @@ private:
     std::unique_ptr<const Accelerators> made_;
     std::atomic<const Accelerators*> ready_{nullptr};
 };
+
+/// Null until a shape is prepared.
+const Accelerators* accelerators_of(const Shape& shape);
+/// Shape::prepare() on these threads. False if it was asked to stop.
+bool prepare(const Shape& shape, Executor& executor, const std::stop_token& stop);
 
 /// Calls work(i) for each i below `count` on the executor's threads until all are done, or it is asked to stop.
 template <class Work>

@@ -23,8 +23,8 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 /// Fills component_vertices. Needs vertex_triangle.
 void find_components(ShapeData& shape);
 
-/// Fills hair_moves; needs the vertices' normals.
-void find_hair_moves(ShapeData& shape);
+/// Fills perturbations; needs the vertices' normals.
+void find_perturbations(ShapeData& shape);
 
 /// How far the ray from each vertex along its inward normal travels inside its own mesh before it leaves, metres: the
 /// closest face met from inside, without the triangles around the vertex. +inf if there is none, 0 if the ray points
@@ -46,14 +46,15 @@ void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::s
 /// Fills `clearances` and its part of the header: for each cubic cell around the shape the largest useful ball that no
 /// surface enters, and whether it is certainly outside (closed, outward meshes only). One look-up tells how far a
 /// vertex can move before it could touch (docs/certified.md). No contact depends on it; a coarser grid only makes pairs
-/// wake up earlier.
+/// be due earlier.
 void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
 
 /// The one of a single cell, which every shape has: that a point outside the box is outside, and how far.
 void set_box_clearance(kernels::ShapeHeader& header);
 
-/// Fills the caps of the triangle blocks (kernels/cap.h) with lower bounds; 0 for needles, for triangles larger than
-/// their cap, and if the mesh is not closed and outward. Needs the tree and the header's flags and tolerance.
-void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
+/// Fills the normal-cone balls of the triangle blocks (kernels/normal_cone.h) with lower bounds; 0 for needles, for
+/// triangles larger than their normal-cone ball, and if the mesh is not closed and outward. Needs the tree and the
+/// header's flags and tolerance.
+void build_normal_cones(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
 
 } // namespace raycontact

@@ -184,7 +184,7 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
     return found.face == NONE ? NearestFace() : found;
 }
 
-NearestFace nearest_way_out(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known) {
+NearestFace nearest_exit(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known) {
     constexpr double sideways = 1e-6;
     return nearest_of_faces(mesh, point, 0, known, [&](std::uint32_t face) {
         const Vec3 n = area_normal(mesh, face);

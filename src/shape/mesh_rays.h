@@ -65,7 +65,7 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
 
 /// The nearest of the faces by which a vertex at `point` can leave along `out`: they have it behind them and look along
 /// `out` (unit), by more than rounding. No farther than `known`, which is one that counts in any case.
-NearestFace nearest_way_out(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known);
+NearestFace nearest_exit(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known);
 
 /// What of a triangle is nearest to a point.
 struct NearestPoint {

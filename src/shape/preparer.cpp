@@ -2,6 +2,7 @@
 #include "shape/preparer.h"
 
 #include "executor/executor.h"
+#include "shape/accelerators.h"
 
 #include <exception>
 #include <optional>
@@ -35,7 +36,7 @@ void Preparer::serve(const std::stop_token& stop) {
         }
         try {
             if (!executor) executor.emplace(threads_, -1, Executor::Priority::low);
-            shape->prepare(*executor, stop);
+            prepare(*shape, *executor, stop);
         } catch (const std::exception&) {
             // No memory or threads. Steps go on without; they are slower and find the same contacts.
         }

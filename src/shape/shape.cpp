@@ -89,8 +89,9 @@ void find_slivers(ShapeData& shape, std::span<const Vec3> normals, double grow, 
 
 } // namespace
 
-Shape::Shape(std::unique_ptr<ShapeData> data)
-    : data_(std::move(data)), accelerators_(std::make_unique<AcceleratorSlot>()) {}
+Shape::Shape(std::unique_ptr<Data> data) : data_(std::move(data)) {
+    data_->accelerators = std::make_shared<AcceleratorSlot>();
+}
 Shape::~Shape() = default;
 
 std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads) {
@@ -124,7 +125,7 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     find_sharp_edges(shape, normals);
     find_components(shape);
     shape.vertex_normals = angle_weighted_normals(shape, normals, executor);
-    find_hair_moves(shape);
+    find_perturbations(shape);
     shape.vertex_areas = measure_areas(shape);
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
@@ -160,16 +161,10 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
 void Shape::prepare(std::uint32_t threads) const {
     if (is_prepared()) return;
     Executor executor(triangles().size() < few_triangles ? 1 : threads);
-    accelerators_->make(*data_, executor, {});
-}
-bool Shape::prepare(Executor& executor, const std::stop_token& stop) const {
-    return accelerators_->make(*data_, executor, stop);
+    raycontact::prepare(*this, executor, {});
 }
 bool Shape::is_prepared() const {
-    return accelerators() != nullptr;
-}
-const Accelerators* Shape::accelerators() const {
-    return accelerators_->get();
+    return accelerators_of(*this) != nullptr;
 }
 
 const std::string& Shape::name() const {
@@ -232,11 +227,11 @@ std::uint64_t Shape::memory_bytes() const {
     const ShapeData& d = *data_;
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
-           + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.hair_moves)
+           + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.perturbations)
            + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks)
            + bytes(d.file_vertices) + bytes(d.slivers.triangle_blocks) + bytes(d.slivers.nodes) + bytes(d.flat)
            + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
-           + (is_prepared() ? accelerators()->bytes() : 0);
+           + (is_prepared() ? accelerators_of(*this)->bytes() : 0);
 }
 
 } // namespace raycontact

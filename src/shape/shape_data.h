@@ -6,6 +6,7 @@
 #include <raycontact/shape.h>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace raycontact {
@@ -19,8 +20,11 @@ kernels::ulong host_place(const std::vector<T>& values) {
     return reinterpret_cast<std::uintptr_t>(values.data()) / sizeof(kernels::ulong);
 }
 
+struct Accelerators;
+class AcceleratorSlot;
+
 /// Everything a shape is made of. The kernel arrays use offsets from their own beginning.
-struct ShapeData : TriangleTree {
+struct Shape::Data : TriangleTree {
     PreparedMesh mesh; ///< vertices replaced by centre + float32 offset
     /// As they were before that, for exact queries; empty where no coordinate was changed. 24 bytes a vertex.
     std::vector<Vec3> file_vertices;
@@ -38,8 +42,8 @@ struct ShapeData : TriangleTree {
     /// Per triangle and edge of which it is the lowest triangle: how deep an overlap can be that the edge alone
     /// crosses, metres (docs/edges.md).
     std::vector<std::array<float, 3>> hides;
-    std::vector<Vec3> hair_moves;               ///< per vertex, how the edges' rule moves it, in hairs (docs/edges.md)
-    std::vector<std::uint32_t> vertex_triangle; ///< the lowest triangle of each vertex
+    std::vector<Vec3> perturbations; ///< per vertex, how the edges' rule moves it, in perturbations (docs/edges.md)
+    std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
     bool rays_end = true;  ///< every vertex's inward ray ends in the mesh
@@ -77,6 +81,9 @@ struct ShapeData : TriangleTree {
         return !flat.empty() && std::binary_search(flat.begin(), flat.end(), triangle);
     }
     Vec3 corner(std::uint32_t triangle, std::size_t k) const { return point(mesh.triangles[triangle][k]); }
+
+    std::shared_ptr<AcceleratorSlot> accelerators; ///< see accelerators_of()
 };
+using ShapeData = Shape::Data;
 
 } // namespace raycontact

@@ -70,7 +70,7 @@ bool ShapeStore::pack() {
 
 void ShapeStore::upload(Entry& entry) {
     const ShapeData& data = entry.shape->data();
-    const Accelerators* more = entry.shape->accelerators();
+    const Accelerators* more = accelerators_of(*entry.shape);
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
     if (!device_.traits().shares_memory) {
         static const std::vector<kernels::uint> none;
@@ -79,7 +79,7 @@ void ShapeStore::upload(Entry& entry) {
              array(data.vertex_blocks, header.vertex_blocks), array(data.clusters, header.clusters),
              array(more != nullptr ? more->clearances : data.clearances, header.clearances),
              array(more != nullptr ? more->outside_cells : none, header.outside_cells));
-        header.caps = 0; // of no use there
+        header.normal_cones = 0; // of no use there
     }
     headers_.reserve(headers_.size() + 1);
     arrays_.headers.append(device_, std::span(&header, 1));
@@ -94,8 +94,8 @@ void ShapeStore::accelerate() {
     if (plain_ == 0) return;
     for (const Shape* shape : order_) {
         Entry& entry = entries_.at(shape);
-        if (!entry.plain || shape->accelerators() == nullptr) continue;
-        upload_accelerators(entry, *shape->accelerators());
+        if (!entry.plain || accelerators_of(*shape) == nullptr) continue;
+        upload_accelerators(entry, *accelerators_of(*shape));
         entry.plain = false;
         --plain_;
     }
@@ -113,7 +113,7 @@ void ShapeStore::upload_accelerators(Entry& entry, const Accelerators& more) {
         header.vertex_blocks = before.vertex_blocks;
         header.clusters = before.clusters;
         copy(array(more.clearances, header.clearances), array(more.outside_cells, header.outside_cells));
-        header.caps = 0;
+        header.normal_cones = 0;
     }
     device_.queue().write(*arrays_.headers.buffer(), entry.index * sizeof header, &header, sizeof header);
     headers_[entry.index] = header;

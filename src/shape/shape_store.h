@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/array.h"
+#include "shape/shape_data.h"
 
 #include <raycontact/shape.h>
 

@@ -61,10 +61,10 @@ std::vector<float> measure_areas(const ShapeData& shape) {
     return areas;
 }
 
-void find_hair_moves(ShapeData& shape) {
-    shape.hair_moves.resize(shape.points.size());
+void find_perturbations(ShapeData& shape) {
+    shape.perturbations.resize(shape.points.size());
     for (std::uint32_t v = 0; v < shape.points.size(); ++v)
-        shape.hair_moves[v] = 0.01 * shaken(v) - shape.vertex_normals[v];
+        shape.perturbations[v] = 0.01 * shaken(v) - shape.vertex_normals[v];
 }
 
 } // namespace raycontact

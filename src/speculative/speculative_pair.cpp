@@ -19,9 +19,9 @@ constexpr double least_sine = 1e-3;
 // Of a pair that goes farther than this in a step, in diagonals of the smaller body, only edges that hide much are
 // asked.
 constexpr double far = 0.2;
-// Edges touch, by PairEdges, from where they pass each other though both bodies are moved inward by a hair and shaken.
-// Until they are so many hairs deep, they are near.
-constexpr double hairs_until_touching = 2.2;
+// Edges touch, by PairEdges, from where they pass each other though both bodies are moved inward by a perturbation and
+// shaken. Until they are so many perturbations deep, they are near.
+constexpr double perturbations_until_touching = 2.2;
 
 // Calls visit(edge or vertex, its near faces) for each.
 template <class Visit>
@@ -55,7 +55,7 @@ Vec3 border_normal(const ShapeData& mesh, std::uint32_t face, std::uint32_t edge
 
 // The nearest point of the target within the margin, if the vertex is outside there.
 std::optional<Approach> nearest(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& p, double margin,
-                                double hair) {
+                                double perturbation) {
     double least2 = margin * margin;
     Box within = box_of(p, p, margin);
     std::uint32_t face = NONE;
@@ -80,18 +80,19 @@ std::optional<Approach> nearest(const ShapeData& target, std::span<const NearEdg
         return Approach{face, own, gap};
     }
     const Vec3 out = border_normal(target, face, best.edges);
-    if (gap <= hair) return Approach{face, own, gap};
+    if (gap <= perturbation) return Approach{face, own, gap};
     if (!(dot(off, out) > 0)) return std::nullopt;
     return Approach{face, (1 / gap) * off, gap};
 }
 
-// The first face on a vertex's way, if it comes from outside: from a hair behind, so that one on the surface counts.
+// The first face on a vertex's way, if it comes from outside: from a perturbation behind, so that one on the surface
+// counts.
 std::optional<Approach> first_met(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& from,
-                                  const Vec3& to, double hair) {
+                                  const Vec3& to, double perturbation) {
     const Vec3 way = to - from;
     const double size = length(way);
-    if (!(size > hair)) return std::nullopt;
-    const Box passed = box_of(from, to, hair);
+    if (!(size > perturbation)) return std::nullopt;
+    const Box passed = box_of(from, to, perturbation);
     double first = 1;
     std::uint32_t face = NONE;
     for (const NearEdge& near : faces) {
@@ -103,7 +104,7 @@ std::optional<Approach> first_met(const ShapeData& target, std::span<const NearE
         const double volume = u + v + w;
         if (volume == 0) continue;
         const double at = (u * dot(p, way) + v * dot(q, way) + w * dot(r, way)) / (volume * size * size);
-        if (at < -hair / size || at > first || (at == first && near.face > face)) continue;
+        if (at < -perturbation / size || at > first || (at == first && near.face > face)) continue;
         first = at;
         face = near.face;
     }
@@ -168,7 +169,7 @@ std::array<OneWay, 2> sides_of(const SpeculativePair& pair) {
             OneWay{b, a, pair.now.pose_of_second(), pair.next.pose_of_second(), pair.ways[1] > pair.margin}};
 }
 
-double hair_of(const SpeculativePair& pair) {
+double perturbation_of(const SpeculativePair& pair) {
     return 1e-7 * smaller_size(pair.a, pair.b);
 }
 
@@ -182,7 +183,7 @@ SpeculativePair::SpeculativePair(const PlacedBody& first, const PlacedBody& seco
 void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& near,
                                const std::array<std::span<const std::uint32_t>, 2>& touching,
                                std::vector<FeatureContact>& found) {
-    const double hair = hair_of(pair);
+    const double perturbation = perturbation_of(pair);
     const auto sides = sides_of(pair);
     for (const Side body : {Side::a, Side::b}) {
         const auto own = static_cast<std::size_t>(body);
@@ -191,9 +192,10 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
             if (std::ranges::binary_search(touching[own], v)) return;
             const Vec3 point = side.source.point(v), p = transform_point(side.now, point);
             std::optional<Approach> approach;
-            if (side.moves) approach = first_met(side.target, faces, p, transform_point(side.next, point), hair);
+            if (side.moves)
+                approach = first_met(side.target, faces, p, transform_point(side.next, point), perturbation);
             if (!approach) {
-                approach = nearest(side.target, faces, p, pair.margin, hair);
+                approach = nearest(side.target, faces, p, pair.margin, perturbation);
                 const Vec3 outward = rotated(side.now.rotation, side.source.vertex_normals[v]);
                 if (!approach || !(dot(outward, approach->normal) < -sideways)) return;
             }
@@ -207,7 +209,7 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                             std::vector<FeatureContact>& found) {
     const OneWay side = sides_of(pair)[0];
     const ShapeData &a = side.source, &b = side.target;
-    const double size = smaller_size(pair.a, pair.b), hair = hair_of(pair);
+    const double size = smaller_size(pair.a, pair.b), perturbation = perturbation_of(pair);
     const bool few = told || std::ranges::max(pair.ways) > far * size;
     if (few && !hides_more(pair.a, pair.b, least_hidden_beside)) return;
     const double hidden = few ? least_hidden_beside * size : -1;
@@ -256,9 +258,9 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                         const auto at = nearest_within(edge.ends[0] + t * edge.ways[0], direction, q, beside);
                         if (!at) continue;
                         Vec3 n = unit(cross(direction, beside));
-                        const double coming = dot(n, edge.ways[0] + (*at)[0] * turn);
-                        if (coming > 0) n = -1.0 * n;
-                        if (coming == 0 || !is_in_arcs(n, direction)) continue;
+                        const double lean = dot(n, edge.ways[0] + (*at)[0] * turn);
+                        if (lean > 0) n = -1.0 * n;
+                        if (lean == 0 || !is_in_arcs(n, direction)) continue;
                         tell(n, *at);
                         return true;
                     }
@@ -273,7 +275,8 @@ void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEd
                 if (across != NONE) out = out + unit(area_normal(b, across));
                 if (dot(n, out) < 0) n = -1.0 * n;
                 const double gap = gap_along(n, *at);
-                if (gap >= -hairs_until_touching * hair && gap <= pair.margin && is_in_arcs(n, along)) tell(n, *at);
+                if (gap >= -perturbations_until_touching * perturbation && gap <= pair.margin && is_in_arcs(n, along))
+                    tell(n, *at);
             }
     });
 }

@@ -49,9 +49,4 @@ void SpeculativeVertices::clear() {
     ends_.clear();
 }
 
-void SpeculativeVertices::give_back() {
-    for (Block& block : blocks_) raycontact::give_back(block.found, block.touching[0], block.touching[1]);
-    raycontact::give_back(found_, ends_);
-}
-
 } // namespace raycontact

@@ -23,8 +23,6 @@ public:
                              : std::span(found_).subspan(ends_[i], ends_[i + 1] - ends_[i]);
     }
     void clear();
-    /// After a step: frees memory that it hardly used.
-    void give_back();
 
 private:
     /// Some pairs.

@@ -161,7 +161,7 @@ TEST_F(Clash, TheSamePartTwice) {
     const json found = only_clash({"all.gltf"});
     EXPECT_EQ(found["a"], "p #1");
     EXPECT_EQ(found["duplicate"], true);
-    EXPECT_NEAR(found["depth"].get<double>(), 1, 1e-5) << "a whole part deep, not a hair";
+    EXPECT_NEAR(found["depth"].get<double>(), 1, 1e-5) << "a whole part deep, not next to nothing";
     EXPECT_NE(run({"all.gltf"}).out.find("(the same part in the same place)"), std::string::npos);
 }
 

@@ -47,7 +47,7 @@ TEST_F(Run, HasItsKeys) {
                             "walk_casts",
                             "predictions",
                             "pairs_full",
-                            "pairs_asleep",
+                            "pairs_skipped",
                             "pairs_as_standard",
                             "pair_bytes_max",
                             "contacts_new",
@@ -81,7 +81,7 @@ TEST_F(Run, HasItsKeys) {
     EXPECT_GE(run_log["rays"].get<int>(), run_log["contacts"].get<int>());
     EXPECT_GT(run_log["penetration_max"].get<double>(), 0);
     EXPECT_GT(run_log["pairs_full"].get<int>(), 0);
-    EXPECT_GT(run_log["pairs_asleep"].get<int>(), 0); // while they fall side by side
+    EXPECT_GT(run_log["pairs_skipped"].get<int>(), 0); // while they fall side by side
     EXPECT_GT(run_log["pair_bytes_max"].get<int>(), 0);
     EXPECT_EQ(run_log["walks"], 0);
     // Each contact comes once before it goes, and some are there at the end.
@@ -106,7 +106,7 @@ TEST_F(Run, SameSeedSameHash) {
 TEST_F(Run, CertifiedAndStandardRunAlike) {
     const json certified = run({}), standard = run({"--method", "standard"});
     EXPECT_EQ(standard["method"], "standard");
-    EXPECT_EQ(standard["pairs_asleep"], 0);
+    EXPECT_EQ(standard["pairs_skipped"], 0);
     for (const char* key : {"hash", "contacts", "contacts_new", "contacts_lost", "ray_length", "pairs_max"})
         EXPECT_EQ(certified[key], standard[key]) << key;
     EXPECT_LT(certified["rays_cast"].get<int>(), standard["rays_cast"].get<int>());
@@ -150,7 +150,7 @@ TEST_F(Run, OutHoldsTheReport) {
          {"pairs", "rays", "contacts", "step_ms", "narrow_ms", "ray_length_m", "penetration_max_m", "median_speed_m_s"})
         EXPECT_TRUE(rows.front().contains(column)) << column;
     for (const char* column : {"rays", "rays_cast", "contacts", "walks", "walks_lost", "walk_casts", "predictions",
-                               "pairs_full", "pairs_asleep", "pairs_as_standard", "contacts_new", "contacts_lost"})
+                               "pairs_full", "pairs_skipped", "pairs_as_standard", "contacts_new", "contacts_lost"})
         EXPECT_EQ(sum_of(rows, column), log[column].get<double>()) << column;
     EXPECT_EQ(largest_of(rows, "pair_bytes"), log["pair_bytes_max"].get<double>());
 }

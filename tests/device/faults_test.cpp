@@ -3,8 +3,8 @@
 // after it, too.
 #include "device/fake.h"
 #include "device/moving_crowd.h"
+#include "narrow_phase.h"
 #include "prepared_shape.h"
-#include "step.h"
 
 #include <gtest/gtest.h>
 

@@ -228,9 +228,9 @@ TEST(parts, of_different_devices_hand_pairs_over) {
                 }
                 (is_elsewhere[i] ? away : stay).push_back(pairs[i]);
             }
-            const auto going = on_cpu.take_out(bodies, go), coming = elsewhere.take_out(bodies, come);
-            elsewhere.put_in(bodies, going);
-            on_cpu.put_in(bodies, coming);
+            const auto going = on_cpu.export_state(bodies, go), arriving = elsewhere.export_state(bodies, come);
+            elsewhere.import_state(bodies, going);
+            on_cpu.import_state(bodies, arriving);
             for (PlacedBody& body : bodies) {
                 body.pose.translation = body.pose.translation + crowd.speed * random.in_ball();
                 body.centred = centred_pose(*body.shape, body.pose);

@@ -31,7 +31,7 @@ Outline e_outline(double width, double height, double thick); ///< open to the r
 Outline shifted(Outline outline, double x, double y);
 
 /// Two parts in one frame that overlap by `overlap` along x and are flush otherwise: faces of both lie in one plane,
-/// and every other way out is longer.
+/// and every other exit is longer.
 struct FlushPair {
     Mesh a, b;
     double overlap = 0;

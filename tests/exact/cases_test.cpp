@@ -54,7 +54,7 @@ Pose about_z(double tangent, const Vec3& where) {
     return pose;
 }
 
-double hair(const Case& c) {
+double perturbation(const Case& c) {
     const auto size = [](const Shape& s) { return length(s.box_max() - s.box_min()); };
     return 1e-7 * std::min(size(*c.a), size(*c.b));
 }
@@ -158,11 +158,13 @@ std::string text(double x) {
     return out;
 }
 
-// Between touching and this, in hairs, any answer will do; depths of what touches must not exceed it either.
+// Between touching and this, in perturbations, any answer will do; depths of what touches must not exceed it either.
 constexpr double touching = 4;
 
 Answer answer_for(const Case& c, double overlap) {
-    return overlap > touching * hair(c) ? Answer::yes : overlap < -touching * hair(c) ? Answer::no : Answer::either;
+    return overlap > touching * perturbation(c)    ? Answer::yes
+           : overlap < -touching * perturbation(c) ? Answer::no
+                                                   : Answer::either;
 }
 
 std::vector<Mesh> solids() {
@@ -260,7 +262,7 @@ TEST(exact_cases, crossed_bars) {
                    Answer::either,
                    0};
             c.answer = answer_for(c, overlap);
-            c.deepest = std::max(1.001 * overlap, touching * hair(c));
+            c.deepest = std::max(1.001 * overlap, touching * perturbation(c));
             trial.ask(c);
         }
 }
@@ -324,7 +326,7 @@ TEST(exact_cases, ridges_that_cross_are_told_though_a_pillar_touches) {
     }
 }
 
-// Concave edges of the tray lie in the cube along its whole side: no face of the cube is a way out for all of them.
+// Concave edges of the tray lie in the cube along its whole side: no face of the cube is a exit for all of them.
 TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
     const auto tray = Shape::make(tray_mesh()), cube = box(0.3, 0.3, 0.3);
     ASSERT_TRUE(tray->report().closed && tray->report().outward);
@@ -341,7 +343,7 @@ TEST(exact_cases, a_cube_in_the_corner_of_a_tray) {
         }
 }
 
-// Both ends of a body are pressed into opposite walls: two places, each with its own way out, though one flat rim, long
+// Both ends of a body are pressed into opposite walls: two places, each with its own exit, though one flat rim, long
 // edges and the diagonals of flat faces run from one to the other.
 TEST(exact_cases, a_body_pressed_between_two_walls) {
     const auto tray = Shape::make(tray_mesh());
@@ -384,7 +386,7 @@ TEST(exact_cases, cone_through_plate) {
             c.pose_b.rotation = {1, 0, 0, 0, -1, 0, 0, 0, -1};
             c.pose_b.translation = {0.013, 0.007, 0.05 - out + 1};
             c.answer = answer_for(c, out);
-            c.deepest = std::max(1.001 * std::min(out, 0.1), touching * hair(c));
+            c.deepest = std::max(1.001 * std::min(out, 0.1), touching * perturbation(c));
             trial.ask(c);
         }
     }
@@ -405,21 +407,22 @@ TEST(exact_cases, aligned_cubes) {
                        Answer::either,
                        0};
                 c.answer = answer_for(c, overlap);
-                c.deepest = std::max(1.0001 * overlap + hair(c), touching * hair(c));
+                c.deepest = std::max(1.0001 * overlap + perturbation(c), touching * perturbation(c));
                 trial.ask(c);
             }
 }
 
-// The end of a bar on a plate of nearly its own width: overlaps of a few hairs, and the ways out beside are far.
+// The end of a bar on a plate of nearly its own width: overlaps of a few perturbations, and the exits beside are far.
 TEST(exact_cases, bar_on_plate) {
     Trial trial;
     const auto bar = box(0.1, 0.1, 1), plate = box(0.1003, 0.08, 0.0003);
-    for (const double hairs : {-5.0, -1.0, 0.0, 0.5, 1.0, 1.2, 1.5, 1.8, 2.0, 2.2, 3.0, 5.0, 10.0, 100.0}) {
-        Case c{"a bar on a plate, overlap " + text(hairs) + " hairs", bar, plate, {}, Answer::either, 0};
-        const double overlap = hairs * hair(c);
+    for (const double perturbations : {-5.0, -1.0, 0.0, 0.5, 1.0, 1.2, 1.5, 1.8, 2.0, 2.2, 3.0, 5.0, 10.0, 100.0}) {
+        Case c{
+            "a bar on a plate, overlap " + text(perturbations) + " perturbations", bar, plate, {}, Answer::either, 0};
+        const double overlap = perturbations * perturbation(c);
         c.pose_b = at(0, 0, 1.0003 - overlap);
         c.answer = answer_for(c, overlap);
-        c.deepest = std::max(1.0001 * overlap + hair(c), touching * hair(c));
+        c.deepest = std::max(1.0001 * overlap + perturbation(c), touching * perturbation(c));
         trial.ask(c);
     }
 }
@@ -430,7 +433,7 @@ TEST(exact_cases, shared_faces) {
     const auto prism = Shape::make(prism_solid(6, 0.5, 0.5));
     const auto ask = [&](const char* name, const ShapePtr& a, const ShapePtr& b, const Pose& pose) {
         Case c{name, a, b, pose, Answer::either, 0};
-        c.deepest = touching * hair(c);
+        c.deepest = touching * perturbation(c);
         trial.ask(c);
     };
     ask("a cube on a cube", cube, cube, at(0, 0, 1));
@@ -444,7 +447,7 @@ TEST(exact_cases, shared_faces) {
     ask("a turned cube on a plate", plate, cube, about_z(0.4, {0.1, 0.2, 0.55}));
     ask("prisms end to end", prism, prism, at(0, 0, 1));
     ask("a prism on a cube", cube, prism, at(0.1, 0, 1));
-    // From inside, too, touching is a matter of a hair: the smaller lies in the larger, whole.
+    // From inside, too, touching is a matter of a perturbation: the smaller lies in the larger, whole.
     for (const Vec3& where : {Vec3{0, 0, 0.25}, Vec3{0.25, 0, 0.25}, Vec3{0.25, 0.25, 0.25}}) {
         Case c{"a small cube in a cube, at its wall", cube, small, {}, Answer::yes, 0.76};
         c.pose_b.translation = where;
@@ -456,7 +459,7 @@ TEST(exact_cases, shared_faces) {
            at(0, 0, 0.125),
            Answer::either,
            0};
-    c.deepest = touching * hair(c);
+    c.deepest = touching * perturbation(c);
     trial.ask(c);
 }
 
@@ -484,7 +487,7 @@ TEST(exact_cases, parallel_edges) {
                 }
                 c.answer = answer_for(c, overlap);
                 // A piece of an edge can be as long as the wedge is wide.
-                c.deepest = std::max(1.5 * overlap + 1e-6, touching * hair(c));
+                c.deepest = std::max(1.5 * overlap + 1e-6, touching * perturbation(c));
                 trial.ask(c);
             }
         }

@@ -340,7 +340,7 @@ TEST(agreement, exact_coincidences) {
     Counts edges;
     run(place, 3000, edges, Features::edges);
     std::printf("[ counts   ] %s\n", edges.edges.summary().c_str());
-    EXPECT_LT(edges.edges.wrong, edges.edges.contacts / 100); // rays along edges, hits a hair away
+    EXPECT_LT(edges.edges.wrong, edges.edges.contacts / 100); // rays along edges, hits next to nothing away
     EXPECT_GE(edges.edges.contacts, 2000u);
 }
 

@@ -231,10 +231,10 @@ TEST(certified, bodies_that_stand_still) {
     EXPECT_GT(still_steps, 100u);
 }
 
-// Bodies that tremble by less than any block could wake up for: their rays are decided, and no block is looked at.
+// Bodies that tremble by less than any block could be due for: their rays are decided, and no block is looked at.
 TEST(certified, bodies_that_tremble) {
     Counts counts;
-    std::uint64_t asleep = 0, contacts = 0;
+    std::uint64_t skipped = 0, contacts = 0;
     for (std::uint64_t i = 0; i < 20; ++i) {
         Random random(first_seed() + 850000 + i);
         Triplet triplet(some_settings(random), 0.05, "trembling " + std::to_string(i));
@@ -253,17 +253,17 @@ TEST(certified, bodies_that_tremble) {
             triplet.step(counts);
             triplet.each([&](Scene& scene) {
                 if (scene.settings().method != Method::certified || scene.stats().details.vertices > 0) return;
-                asleep += scene.stats().details.rays > 0 ? 1 : 0;
+                skipped += scene.stats().details.rays > 0 ? 1 : 0;
                 contacts += scene.contacts().size();
             });
         }
         ++counts.episodes;
     }
     report("trembling", counts, 1e4);
-    expect_many("without a block looked at", asleep, 200, contacts);
+    expect_many("without a block looked at", skipped, 200, contacts);
 }
 
-// Shapes that go take others to new places in the store while pairs of those are asleep.
+// Shapes that go take others to new places in the store while pairs of those are skipped.
 TEST(certified, packed_shapes) {
     Counts counts;
     for (std::uint64_t i = 0; i < 20; ++i) {

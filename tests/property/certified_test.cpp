@@ -214,7 +214,8 @@ TEST(certified, dense_crowds) {
     report("dense crowds", counts, wanted);
 }
 
-// Fine meshes that just touch, at paces between which caps come to be asked and cease to be (0.25 % of the size).
+// Fine meshes that just touch, at paces between which normal-cone balls come to be asked and cease to be (0.25 % of the
+// size).
 TEST(certified, fine_meshes_that_creep) {
     const double wanted = 0.05 * decisions_wanted();
     Counts counts;

@@ -347,9 +347,9 @@ TEST(coherence, whatever_happens) {
     EXPECT_GT(c.successors, 100u);
 }
 
-// With a threshold of 0 every pair that moves is looked at in full, but for those known to be farther apart than they
+// With a threshold of 0 every pair that moves is tested in full, but for those known to be farther apart than they
 // moved: so nothing may be missed.
-TEST(coherence, a_pair_sleeps_no_longer_than_it_may) {
+TEST(coherence, a_pair_is_skipped_no_longer_than_it_may) {
     std::uint64_t contacts = 0, looks = 0, ordered = 0;
     constexpr Course ways[] = {Course::approach, Course::drift, Course::approach, Course::mixed, Course::approach};
     for (std::uint64_t i = 0; i < 70; ++i) {

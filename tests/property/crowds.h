@@ -36,7 +36,7 @@ enum class Course {
     drift,    ///< slowly, turning slowly, and back
     jitter,   ///< about one place, by anything from a rounding to a thousandth of its size
     spin,     ///< in place, always the same way
-    creep,    ///< at a pace and a way that change now and then, about the fastest at which caps are asked
+    creep,    ///< at a pace and a way that change now and then, about the fastest at which normal-cone balls are asked
     approach, ///< into its place and out again
     tumble,   ///< by a large part of its size and any angle, every step
     still,    ///< not a bit

@@ -194,7 +194,7 @@ std::vector<double> counters(const StepStats& s) {
                                      s.details.rays_cast,
                                      s.details.side_tests,
                                      s.details.pairs_full,
-                                     s.details.pairs_asleep,
+                                     s.details.pairs_skipped,
                                      s.details.pairs_as_standard,
                                      s.details.walks,
                                      s.details.walks_lost,
@@ -209,14 +209,15 @@ std::vector<double> counters(const StepStats& s) {
     return all;
 }
 
-// Bodies of fine meshes that creep, and now and then all go faster than caps are asked.
+// Bodies of fine meshes that creep, and now and then all go faster than normal-cone balls are asked.
 TEST(determinism, threads_change_no_counter_where_caps_are_asked) {
     struct Step {
         std::vector<Contact> contacts;
         std::vector<double> counted;
     };
     Shapes shapes;
-    for (const char* kind : {"sphere", "torus", "knot"}) // of which cap_test says that caps are asked
+    for (const char* kind :
+         {"sphere", "torus", "knot"}) // of which normal_cone_test says that normal-cone balls are asked
         shapes.push_back(prepared_shape(scenes::scene_model(kind, 4000).mesh));
     std::vector<Step> first;
     for (const std::uint32_t count : {1u, 2u, 3u, 5u}) {

@@ -103,12 +103,14 @@ public:
 private:
     std::optional<Expected> ask(std::size_t v, const Vec3& p, bool moves, bool& sure) {
         const Solid& target = view_.target.solid;
-        const double hair = 3e-7 * view_.size();
+        const double perturbation = 3e-7 * view_.size();
         if (moves) {
             const Vec3 to = view_.at_then(view_.source.solid.vertices[v]), direction = unit(to - p);
             const double way = length(to - p);
             const Hit hit = caster_.closest(p, direction), behind = caster_.closest(p, -direction);
-            if (behind.distance < hair || hit.distance < hair || std::abs(hit.distance - way) < hair) sure = false;
+            if (behind.distance < perturbation || hit.distance < perturbation
+                || std::abs(hit.distance - way) < perturbation)
+                sure = false;
             if (hit.triangle != Hit::none && hit.distance <= way && !hit.from_inside) {
                 const Vec3& n = target.face_normals[hit.triangle];
                 if (-dot(n, direction) < 1e-5) sure = false;
@@ -123,7 +125,7 @@ private:
             least = length(p - q);
             at = q;
         }
-        if (std::abs(least - margin_) < hair || least < 10 * hair) sure = false;
+        if (std::abs(least - margin_) < perturbation || least < 10 * perturbation) sure = false;
         if (least > margin_) return std::nullopt;
         const Vec3 n = unit(p - at);
         const double facing = dot(view_.turned(view_.source.solid.vertex_normals[v]), n);
@@ -248,7 +250,7 @@ private:
         const Solid& target = view_.target.solid;
         const Segment now = place(e, 0), next = place(e, 1);
         const Segment other{target.vertices[g.from], target.vertices[g.to] - target.vertices[g.from]};
-        const double hair = 3e-7 * view_.size();
+        const double perturbation = 3e-7 * view_.size();
         double s = 0, u = 0;
         const auto told = [&](const Vec3& n) {
             const Vec3 point = now.from + s * now.along;
@@ -260,20 +262,21 @@ private:
             const Vec3 way = (next.from - now.from) + s * (next.along - now.along);
             Vec3 n = unit(cross(then.along, other.along));
             if (dot(n, way) > 0) n = -n;
-            if (std::abs(dot(n, way)) < hair) sure = false;
+            if (std::abs(dot(n, way)) < perturbation) sure = false;
             if (!in_arcs(e, g, n, then.along, other.along, sure)) continue;
             if (t < 1e-4 || t > 1 - 1e-4) sure = false;
             return told(n);
         }
-        if (moves && std::abs(volume(e, other, 0)) < hair * length(cross(now.along, other.along))) sure = false;
-        if (moves && std::abs(volume(e, other, 1)) < hair * length(cross(next.along, other.along))) sure = false;
+        if (moves && std::abs(volume(e, other, 0)) < perturbation * length(cross(now.along, other.along))) sure = false;
+        if (moves && std::abs(volume(e, other, 1)) < perturbation * length(cross(next.along, other.along)))
+            sure = false;
         if (!nearest(now, other, s, u, sure)) return std::nullopt;
         Vec3 n = unit(cross(now.along, other.along));
         Vec3 out = target.face_normals[g.faces[0]];
         if (g.faces[1] != none) out = out + target.face_normals[g.faces[1]];
         if (dot(n, out) < 0) n = -n;
         const double gap = dot(n, (now.from + s * now.along) - (other.from + u * other.along));
-        if (std::abs(gap) < hair || std::abs(gap - margin_) < hair) sure = false;
+        if (std::abs(gap) < perturbation || std::abs(gap - margin_) < perturbation) sure = false;
         if (!(gap >= 0 && gap <= margin_) || !in_arcs(e, g, n, now.along, other.along, sure)) return std::nullopt;
         return told(n);
     }

@@ -57,11 +57,11 @@ Settings some_settings(Random& random) {
 void report(const char* what, const Counts& c, double wanted) {
     const std::uint64_t wrong = c.missed + c.invented + c.other;
     std::printf("[ counts   ] %s: %llu decisions in %llu steps of %llu scenes, %llu contacts; certified cast %.2f %%, "
-                "%.1f %% of the pairs asleep; wrong %llu (%llu missed, %llu invented, %llu other)\n",
+                "%.1f %% of the pairs skipped; wrong %llu (%llu missed, %llu invented, %llu other)\n",
                 what, static_cast<unsigned long long>(c.decisions), static_cast<unsigned long long>(c.steps),
                 static_cast<unsigned long long>(c.episodes), static_cast<unsigned long long>(c.contacts),
                 c.decisions ? 100.0 * static_cast<double>(c.cast) / static_cast<double>(c.decisions) : 0.0,
-                c.pairs ? 100.0 * static_cast<double>(c.asleep) / static_cast<double>(c.pairs) : 0.0,
+                c.pairs ? 100.0 * static_cast<double>(c.skipped) / static_cast<double>(c.pairs) : 0.0,
                 static_cast<unsigned long long>(wrong), static_cast<unsigned long long>(c.missed),
                 static_cast<unsigned long long>(c.invented), static_cast<unsigned long long>(c.other));
     EXPECT_EQ(wrong, 0u) << c.first;
@@ -79,7 +79,7 @@ void Triplet::count(Counts& counts) {
     counts.contacts += standard_.contacts().size();
     counts.cast += own_.stats().details.rays_cast;
     counts.pairs += 2 * own_.stats().pairs;
-    counts.asleep += own_.stats().details.pairs_asleep;
+    counts.skipped += own_.stats().details.pairs_skipped;
     for (const Scene* scene : {&own_, &told_}) compare(*scene, counts);
     ++steps_;
 }

@@ -22,10 +22,10 @@ std::uint64_t first_seed();
 
 struct Counts {
     std::uint64_t episodes = 0, steps = 0;
-    std::uint64_t decisions = 0;         ///< rays of the standard scenes; each certified scene has to come to the same
-    std::uint64_t contacts = 0;          ///< of the standard scenes
-    std::uint64_t cast = 0;              ///< rays cast by the first certified scene
-    std::uint64_t pairs = 0, asleep = 0; ///< directed pairs of that scene
+    std::uint64_t decisions = 0;          ///< rays of the standard scenes; each certified scene has to come to the same
+    std::uint64_t contacts = 0;           ///< of the standard scenes
+    std::uint64_t cast = 0;               ///< rays cast by the first certified scene
+    std::uint64_t pairs = 0, skipped = 0; ///< directed pairs of that scene
     std::uint64_t missed = 0, invented = 0, other = 0;
     std::string first; ///< of the wrong ones, in words
 };

@@ -58,8 +58,8 @@ const std::vector<std::string> settings_keys{"method",
                                              "max_contacts_per_pair",
                                              "max_contacts"};
 const std::vector<std::string> summed{
-    "rays",         "rays_cast",     "contacts",        "walks",        "walks_lost",
-    "walk_casts",   "predictions",   "pairs_full",      "pairs_asleep", "pairs_as_standard",
+    "rays",         "rays_cast",     "contacts",        "walks",         "walks_lost",
+    "walk_casts",   "predictions",   "pairs_full",      "pairs_skipped", "pairs_as_standard",
     "contacts_new", "contacts_lost", "contacts_reduced"};
 
 } // namespace

@@ -45,19 +45,19 @@ struct Bounds {
     }
 };
 
-struct WayOut {
+struct Exit {
     std::uint32_t triangle;
     Vec3 off; ///< from the vertex to the nearest point
 };
 
 // The nearest of the triangle that was hit and of all that look along the ray and have the vertex behind them, by more
 // than `by` of 1 and of the diagonal.
-WayOut way_out(const Solid& target, const Vec3& p, const Vec3& inward, std::uint32_t hit, double by) {
+Exit exit_along(const Solid& target, const Vec3& p, const Vec3& inward, std::uint32_t hit, double by) {
     const auto off = [&](std::uint32_t t) {
         const auto& [a, b, c] = target.triangles[t];
         return closest_on_triangle(p, target.vertices[a], target.vertices[b], target.vertices[c]) - p;
     };
-    WayOut best{hit, off(hit)};
+    Exit best{hit, off(hit)};
     for (std::uint32_t t = 0; t < target.triangles.size(); ++t) {
         const Vec3 n = target.face_normals[t];
         if (!(dot(n, inward) > 1e-6 + by)
@@ -96,11 +96,11 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
             if (direction == Direction::weighted) ray.weight = source.vertex_areas[v];
             ray.least_depth = ray.depth;
             if (direction == Direction::refined) {
-                const WayOut way = way_out(target, origin, inward, hit.triangle, 1e-7);
+                const Exit way = exit_along(target, origin, inward, hit.triangle, 1e-7);
                 ray.triangle = way.triangle;
                 ray.depth = length(way.off);
                 ray.normal = rotate(target_pose, unit(way.off));
-                ray.least_depth = length(way_out(target, origin, inward, hit.triangle, -1e-7).off);
+                ray.least_depth = length(exit_along(target, origin, inward, hit.triangle, -1e-7).off);
             }
         }
         rays.push_back(ray);

@@ -42,15 +42,15 @@ struct Body {
     Pose pose; ///< in that frame
     std::vector<Edge> edges;
     std::vector<std::vector<const Edge*>> around; ///< each face
-    std::vector<Vec3> vertices, normals;          ///< moved by a hair; of faces
+    std::vector<Vec3> vertices, normals;          ///< moved by a perturbation; of faces
     std::map<std::uint32_t, double> contact;      ///< vertices in contact: their depth
     RayCaster caster;
 
-    Body(const Solid& s, const Pose& p, double hair, double shaken)
+    Body(const Solid& s, const Pose& p, double perturbation, double shaken)
         : solid(s), pose(p), edges(edges_of(s)), around(s.triangles.size()), caster(s) {
         for (std::uint32_t v = 0; v < s.vertices.size(); ++v)
             vertices.push_back(p.translation
-                               + rotate(p, s.vertices[v] + hair * (shaken * shake(v) - s.vertex_normals[v])));
+                               + rotate(p, s.vertices[v] + perturbation * (shaken * shake(v) - s.vertex_normals[v])));
         for (const Vec3& n : s.face_normals) normals.push_back(rotate(p, n));
         for (const Edge& e : edges)
             for (const std::uint32_t f : e.faces)
@@ -60,7 +60,7 @@ struct Body {
     std::array<Vec3, 2> normals_at(const Edge& e) const {
         return {normals[e.faces[0]], normals[e.faces[e.faces[1] == none ? 0 : 1]]};
     }
-    Hit way_out(const Vec3& from, const Vec3& way) {
+    Hit exit_along(const Vec3& from, const Vec3& way) {
         const Hit hit = caster.closest(rotate_back(pose, from - pose.translation), rotate_back(pose, way));
         return hit.triangle != Hit::none && hit.from_inside ? hit : Hit{Hit::none, 0, false};
     }
@@ -136,10 +136,10 @@ struct Region {
             if (dot(n, way) > (best == Vec3{} ? least : dot(best, way)) && depth(n) <= deep) best = n;
         return best;
     }
-    Vec3 way(double hair) const {
+    Vec3 way(double perturbation) const {
         const double least = least_depth();
-        const bool thin = least < depth(unit(area)) / 2 - 5 * hair;
-        return thin ? most_along(unit(area), 1.1 * least + hair, -2) : unit(area);
+        const bool thin = least < depth(unit(area)) / 2 - 5 * perturbation;
+        return thin ? most_along(unit(area), 1.1 * least + perturbation, -2) : unit(area);
     }
 };
 
@@ -151,7 +151,7 @@ struct Found {
 
 class PairOfBodies {
 public:
-    PairOfBodies(Body& a, Body& b, double hair) : bodies_{&a, &b}, hair_(hair) {
+    PairOfBodies(Body& a, Body& b, double perturbation) : bodies_{&a, &b}, perturbation_(perturbation) {
         for (const std::size_t side : {0u, 1u})
             for (const Edge& edge : bodies_[side]->edges) pierce(side, edge);
     }
@@ -250,7 +250,7 @@ private:
             const auto counts = [&](std::size_t i) {
                 const Edge& e = *crossings_[i].edge;
                 const auto& contact = bodies_[crossings_[i].side]->contact;
-                return e.hides > (contact.contains(e.from) || contact.contains(e.to) ? 1e6 : 1e5) * hair_;
+                return e.hides > (contact.contains(e.from) || contact.contains(e.to) ? 1e6 : 1e5) * perturbation_;
             };
             if (!std::any_of(loop.crossings.begin(), loop.crossings.end(), counts)) continue;
             for (const std::size_t i : loop.crossings) kept.push_back(crossings_[i]);
@@ -359,7 +359,7 @@ private:
         Found found{dot(gap, n), x.point, n};
         if (length(cross(e_a, e_b)) > 0.05 && dot(n, s) >= 0.5 && angle(n, out) < angle(n_b[0], out) + 0.1
             && angle(-n, n_a[0] + n_a[1]) < angle(n_a[0], n_a[0] + n_a[1]) + 0.1) {
-            if (dot(n, region.way(hair_)) <= 0.1) return {};
+            if (dot(n, region.way(perturbation_)) <= 0.1) return {};
             const Vec3 start = bodies_[0]->vertices[x.edge->from], across = cross(e_b, n);
             const double at = dot(y.point - start, across) / dot(whole, across); // nearest to b's line
             found.point = start + std::clamp(at, x.leaves ? 0.0 : x.at, x.leaves ? x.at : 1.0) * whole;
@@ -369,15 +369,16 @@ private:
                 if (dot(face, s) > std::max(0.8, dot(found.way, s))) found.way = face;
             found.depth = std::min({dot(gap, found.way), length(cross(gap, e_a)), length(cross(gap, e_b))});
         }
-        if (found.depth <= 0.1 * hair_ || found.depth < region.deepest / 2) return {};
-        if (region.least_depth() < found.depth / (region.flush > region.whole / 10 ? 1.25 : 2) - 5 * hair_) return {};
+        if (found.depth <= 0.1 * perturbation_ || found.depth < region.deepest / 2) return {};
+        if (region.least_depth() < found.depth / (region.flush > region.whole / 10 ? 1.25 : 2) - 5 * perturbation_)
+            return {};
         return found;
     }
 
     // From a little inside the piece.
-    Hit way_out(const Piece& piece, const Vec3& point, const Vec3& way) const {
+    Hit exit_along(const Piece& piece, const Vec3& point, const Vec3& way) const {
         const Vec3 from = point + 1e-3 * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
-        return bodies_[1 - piece.side]->way_out(from, piece.side == 0 ? way : -way);
+        return bodies_[1 - piece.side]->exit_along(from, piece.side == 0 ? way : -way);
     }
 
     void give_deep(std::map<Key, Found>& all, bool all_speak) {
@@ -389,7 +390,7 @@ private:
                     pieces.push_back(p);
             std::vector<std::pair<Key, Found>> deep;
             const auto add = [&](const Piece& piece, const Vec3& point, const Vec3& way, double depth, const Hit& hit) {
-                if (depth <= std::max(region.told, 0.1 * hair_) || hit.triangle == Hit::none) return;
+                if (depth <= std::max(region.told, 0.1 * perturbation_) || hit.triangle == Hit::none) return;
                 const Vec3 out = point + (piece.side == 0 ? depth : -depth) * way;
                 const Edge* other = bodies_[1 - piece.side]->nearest_edge(hit.triangle, out);
                 deep.push_back(piece.side == 0 ? std::pair(Key{piece.edge, other}, Found{depth, point, way})
@@ -408,7 +409,7 @@ private:
 
     template <class Add>
     void ask_deeper(const Region& region, const std::vector<Piece>& pieces, Add add) const {
-        Vec3 way = region.way(hair_);
+        Vec3 way = region.way(perturbation_);
         if (region.told >= region.depth(way) / 2) return;
         const Vec3 face = region.most_along(way, region.depth(way), 0.8);
         if (region.flush > region.whole / 10 && face != Vec3{}) way = face;
@@ -421,7 +422,7 @@ private:
             for (const Vec3& p : points) {
                 const double most =
                     piece.side == 0 ? region.highest(way) - dot(p, way) : region.highest(-way) + dot(p, way);
-                const Hit hit = way_out(piece, p, way), in = way_out(piece, p, out);
+                const Hit hit = exit_along(piece, p, way), in = exit_along(piece, p, out);
                 add(piece, p, way, std::min({most, hit.distance, in.triangle == Hit::none ? inf : in.distance}), hit);
             }
         }
@@ -436,7 +437,7 @@ private:
             for (const Vec3& n : {face, -face}) {
                 double most = 0;
                 for (const Piece& piece : pieces)
-                    for (const Vec3& end : piece.ends) most = std::max(most, way_out(piece, end, n).distance);
+                    for (const Vec3& end : piece.ends) most = std::max(most, exit_along(piece, end, n).distance);
                 if (most <= 0 || most > 1.001 * least) continue;
                 if (most >= 0.999 * least && dot(n, preferred) <= dot(way, preferred)) continue;
                 way = n;
@@ -444,13 +445,13 @@ private:
             }
         for (const Piece& piece : pieces)
             for (const Vec3& end : piece.ends) {
-                const Hit hit = way_out(piece, end, way);
+                const Hit hit = exit_along(piece, end, way);
                 add(piece, end, way, hit.distance, hit);
             }
     }
 
     std::array<Body*, 2> bodies_;
-    double hair_;
+    double perturbation_;
     std::vector<Crossing> crossings_; ///< of an edge in a row, along it
     std::vector<Link> links_;
     std::vector<Loop> loops_;
@@ -495,14 +496,14 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
         for (std::size_t k = 0; k < 3; ++k)
             a_in_b.rotation[i] += pose_b.rotation[3 * k + i / 3] * pose_a.rotation[3 * k + i % 3];
     }
-    const double hair = 1e-7 * std::min(a.diagonal, b.diagonal);
-    Body of_a(a, a_in_b, hair, 0.01), of_b(b, {}, hair, -0.01);
+    const double perturbation = 1e-7 * std::min(a.diagonal, b.diagonal);
+    Body of_a(a, a_in_b, perturbation, 0.01), of_b(b, {}, perturbation, -0.01);
     for (const CastRay& r : cast_all(a, pose_a, b, pose_b))
         if (r.contact) of_a.contact[r.vertex] = r.depth;
     for (const CastRay& r : cast_all(b, pose_b, a, pose_a))
         if (r.contact) of_b.contact[r.vertex] = r.depth;
     std::vector<ReferenceContact> contacts;
-    PairOfBodies pair(of_a, of_b, hair);
+    PairOfBodies pair(of_a, of_b, perturbation);
     if (pair.crosses()) {
         for (const auto& [edges, c] : pair.contacts())
             contacts.push_back({Side::a, FeatureKind::edges, edges.first->number, edges.second->number, c.point, -c.way,

@@ -255,7 +255,7 @@ TEST(reference_edges, of_flush_boxes) {
     }
 }
 
-// The loops on both sides of a plate cancel: one of the two ways out, and no contact the other way.
+// The loops on both sides of a plate cancel: one of the two exits, and no contact the other way.
 TEST(reference_edges, of_a_bar_through_a_plate) {
     const Solid plate = solid(box_mesh({1, 1, 0.0625})), bar = solid(box_mesh({0.125, 0.25, 1}));
     const auto contacts = find_edges(plate, {}, bar, at(0.01, 0.02, 0.03));
@@ -395,7 +395,7 @@ TEST(reference_rays, never_slip_through_an_edge) {
     RayCaster caster(box);
     Random random(11);
     int aimed = 0;
-    for (int k = 0; k < 20000; ++k) { // from inside at vertices and points of edges: always a way out
+    for (int k = 0; k < 20000; ++k) { // from inside at vertices and points of edges: always a exit
         const auto& edge = box.edges[random.below(static_cast<std::uint32_t>(box.edges.size()))];
         const double s = k % 2 ? 0 : random.uniform();
         const Vec3 goal = (1 - s) * box.vertices[edge[0]] + s * box.vertices[edge[1]];

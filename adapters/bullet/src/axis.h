@@ -19,7 +19,7 @@ struct WayOut {
     std::uint32_t triangle = 0; ///< of the shape
 };
 
-/// An axis that runs through a mesh while its ends do not tell: one way out for each of its pieces inside, the shortest
+/// An axis that runs through a mesh while its ends do not tell: one exit for each of its pieces inside, the shortest
 /// of those along the faces where it enters and leaves and those past an edge beside it. `known[k]`: what is behind the
 /// surface at end k has its contact already, as always with a closed mesh.
 void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,

@@ -12,7 +12,7 @@ namespace {
 int face_under(const btVector3& low, const btVector3& high, const btVector3& half) {
     int face = -1;
     for (int k = 0; k < 3; ++k) {
-        // Beyond both faces, or neither, says nothing; the middle keeps the way out plain.
+        // Beyond both faces, or neither, says nothing; the middle keeps the exit plain.
         const bool above = high[k] > half[k], below = low[k] < -half[k];
         if (!above && !below) continue;
         if (face >= 0 || (above && below) || (above ? low[k] < 0 : high[k] > 0)) return -1;

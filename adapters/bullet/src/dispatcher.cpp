@@ -147,7 +147,7 @@ struct CollisionDispatcher::State {
         objects.faults().set_callback(print);
     }
 
-    void look_at_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher* asker);
+    void read_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher* asker);
     bool is_ours(btBroadphasePair& pair);
     void visit(btBroadphasePair& pair, const btDispatcherInfo& info);
     void ask(btBroadphasePair& pair, const btDispatcherInfo& info);
@@ -212,7 +212,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     const std::uint64_t made_before = s.objects.shapes().made();
     s.objects.sweep();
     s.objects.look_ahead(s.scene.settings().is_speculative() ? info.m_timeStep : 0, s.dispatch);
-    s.look_at_world(cache, info, dispatcher);
+    s.read_world(cache, info, dispatcher);
 
     struct Visit final : btOverlapCallback {
         State& state;
@@ -264,8 +264,8 @@ void CollisionDispatcher::attach(btCollisionWorld& world) {
 }
 
 // Before the pairs are visited: it may find more of them.
-void CollisionDispatcher::State::look_at_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info,
-                                               btDispatcher* asker) {
+void CollisionDispatcher::State::read_world(const btOverlappingPairCache* cache, const btDispatcherInfo& info,
+                                            btDispatcher* asker) {
     if (world == nullptr || cache != world_cache) return;
     if (info.m_useContinuous) objects.kinematics().sweep(*world, asker);
     const btCollisionObjectArray& all = world->getCollisionObjectArray();

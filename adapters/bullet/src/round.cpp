@@ -210,7 +210,7 @@ void Neighbourhood::of_side(const btVector3& a, const btVector3& b, std::vector<
     }
 }
 
-/// An end so deep inside that no surface is in its reach: the nearest way out, found by growing steps.
+/// An end so deep inside that no surface is in its reach: the nearest exit, found by growing steps.
 void deep_end(const Converted& mesh, const btVector3& centre, btScalar limit, std::vector<Found>& out) {
     if (!contains(*mesh.shape, to_vec(centre))) return;
     const btScalar size = btScalar(mesh.shape->radius()), most = 4 * size + limit;
@@ -313,7 +313,7 @@ struct Way {
     btVector3 from[2], by[2];
 };
 
-constexpr int most_looks = 64;
+constexpr int most_steps = 64;
 constexpr btScalar glancing = btScalar(0.1); // sine
 constexpr int coming = 1 << 20;              // apart from the places that are near now
 
@@ -323,7 +323,7 @@ std::optional<RoundContact> touch_on(const Converted& mesh, Round round, const W
     const btScalar length = btSqrt(btMax(way.by[0].length2(), way.by[1].length2()));
     static thread_local std::vector<RoundContact> places;
     btScalar part = 0;
-    for (int look = 0; look < most_looks && part < 1; ++look) {
+    for (int i = 0; i < most_steps && part < 1; ++i) {
         for (int e = 0; e < 2; ++e) round.ends[e] = way.from[e] + part * way.by[e];
         round_contacts(mesh, btTransform::getIdentity(), round, btTransform::getIdentity(), (1 - part) * length,
                        places);
@@ -334,7 +334,7 @@ std::optional<RoundContact> touch_on(const Converted& mesh, Round round, const W
         }
         if (nearest == nullptr) return std::nullopt;
         if (nearest->distance <= touching) {
-            if (look == 0) return std::nullopt; // it touches already
+            if (i == 0) return std::nullopt; // it touches already
             // The place of the axis that comes there, and what is below it now: a push there does not turn a ball.
             const btVector3 axis = round.ends[1] - round.ends[0];
             const btScalar along =

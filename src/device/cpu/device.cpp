@@ -86,11 +86,11 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::hold_rays:
     case KernelId::follow_rays_bvh:
         return 128;
-    case KernelId::look_at_watches:
+    case KernelId::test_candidates:
         return 16;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
-    case KernelId::begin_watches:
+    case KernelId::begin_candidates:
     case KernelId::count_rays:
     case KernelId::count_edges:
     case KernelId::count_near_rays:
@@ -98,11 +98,11 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::place_pairs:
     case KernelId::find_margins:
     case KernelId::write_edges:
-    case KernelId::write_watch_rays:
+    case KernelId::write_candidate_rays:
     case KernelId::write_near_rays:
-    case KernelId::copy_candidates:
-    case KernelId::count_candidates:
-    case KernelId::write_candidates:
+    case KernelId::copy_cached_rays:
+    case KernelId::count_cached_rays:
+    case KernelId::write_cached_rays:
         return 256;
     default:
         return 4096;

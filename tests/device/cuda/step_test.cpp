@@ -3,7 +3,7 @@
 #include "device/cuda/fake_machine.h"
 
 #include "device/moving_crowd.h"
-#include "step.h"
+#include "narrow_phase.h"
 
 using namespace raycontact;
 using device_test::MovingCrowd;

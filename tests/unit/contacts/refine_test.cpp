@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direction `refined` where the face that a ray meets is not the way out. agreement_test holds it against brute force.
+// Direction `refined` where the face that a ray meets is not the exit. agreement_test holds it against brute force.
 #include "reference/meshes.h"
 #include "reference/vector.h"
 

@@ -17,7 +17,7 @@ std::uint32_t outward_once_prepared(const Mesh& mesh, Check check) {
     const auto shape = Shape::make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, check));
     EXPECT_EQ(shape->data().header.outward != 0, check == Check::full && shape->report().outward);
     shape->prepare();
-    return shape->accelerators()->header.outward;
+    return accelerators_of(*shape)->header.outward;
 }
 
 TEST(Check, TopologyIsTheSame) {

@@ -79,9 +79,10 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
                 }
                 (on_b[i] ? of_b : of_a).push_back(crowd.pairs[i]);
             }
-            const auto state_a = a->take_out(crowd.seen_by(*a), to_b), state_b = b->take_out(crowd.seen_by(*b), to_a);
-            a->put_in(crowd.seen_by(*a), state_b);
-            b->put_in(crowd.seen_by(*b), state_a);
+            const auto state_a = a->export_state(crowd.seen_by(*a), to_b),
+                       state_b = b->export_state(crowd.seen_by(*b), to_a);
+            a->import_state(crowd.seen_by(*a), state_b);
+            b->import_state(crowd.seen_by(*b), state_a);
             bytes += state_a.size() + state_b.size();
 
             crowd.move(step % 5 == 4 ? 0.004 : 0.0004);

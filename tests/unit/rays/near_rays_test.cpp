@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every edge that crosses a face in double is found in float32, wherever a hair moves the vertices; few others are.
+// Every edge that crosses a face in double is found in float32, wherever a perturbation moves the vertices; few others
+// are.
 #include "mesh/vector.h"
 #include "part/pipeline.h"
 #include "shape/shape_data.h"
@@ -86,15 +87,16 @@ private:
 
 using Found = std::set<std::pair<std::uint32_t, std::uint32_t>>; // edge, face
 
-// By brute force; each vertex is moved by a hair in any direction.
+// By brute force; each vertex is moved by a perturbation in any direction.
 Found crossings(const PlacedBody& source, const PlacedBody& target, Random& random) {
     const ShapeData &from = source.shape->data(), &to = target.shape->data();
     const Pose pose = relative_pose(target.centred, source.centred);
-    const double hair = 1e-7 * smaller_size(source, target);
+    const double perturbation = 1e-7 * smaller_size(source, target);
     std::vector<Vec3> own, other;
     for (std::uint32_t v = 0; v < from.points.size(); ++v)
-        own.push_back(transform_point(pose, from.point(v)) + hair * random.direction());
-    for (std::uint32_t v = 0; v < to.points.size(); ++v) other.push_back(to.point(v) + hair * random.direction());
+        own.push_back(transform_point(pose, from.point(v)) + perturbation * random.direction());
+    for (std::uint32_t v = 0; v < to.points.size(); ++v)
+        other.push_back(to.point(v) + perturbation * random.direction());
     Found found;
     for (std::uint32_t t = 0; t < from.mesh.triangles.size(); ++t)
         for (std::uint32_t c = 0; c < 3; ++c) {

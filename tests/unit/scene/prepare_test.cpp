@@ -6,6 +6,7 @@
 #include "reference/random.h"
 #include "reference/vector.h"
 #include "scenes/models/model.h"
+#include "shape/accelerators.h"
 
 #include <gtest/gtest.h>
 
@@ -32,9 +33,9 @@ TEST(Prepare, BelongsToTheShapeAndIsMadeOnce) {
     EXPECT_FALSE(shape->is_prepared());
     shape->prepare();
     EXPECT_TRUE(shape->is_prepared());
-    const auto* made = shape->accelerators();
+    const auto* made = accelerators_of(*shape);
     shape->prepare(2);
-    EXPECT_EQ(shape->accelerators(), made);
+    EXPECT_EQ(accelerators_of(*shape), made);
     EXPECT_GT(shape->memory_bytes(), before);
 }
 

@@ -5,11 +5,11 @@
 
 namespace raycontact {
 
-/// A shape's data with its accelerators in place, as the kernels see them. The outside grid and the caps are the
-/// shape's own.
+/// A shape's data with its accelerators in place, as the kernels see them. The outside grid and the normal-cone balls
+/// are the shape's own.
 inline ShapeData accelerated(const Shape& shape) {
     shape.prepare();
-    const Accelerators& more = *shape.accelerators();
+    const Accelerators& more = *accelerators_of(shape);
     ShapeData data = shape.data();
     data.header = more.header;
     data.clearances = more.clearances;

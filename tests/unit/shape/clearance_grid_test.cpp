@@ -136,7 +136,7 @@ TEST(ClearanceGrid, AHollowIsNotOutside) {
     EXPECT_GT(found.distance[0], 0.1f);
 }
 
-// A vertex that is no number, of an empty lane, is never awake and never inside.
+// A vertex that is no number, of an empty lane, is never due and never inside.
 TEST(ClearanceGrid, EmptyLanesAreSafe) {
     const auto shape = Shape::make(l_prism_mesh());
     Point3f nothing[VERTEX_LANES];

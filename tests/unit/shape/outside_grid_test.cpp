@@ -21,7 +21,7 @@ TEST(OutsideGrid, HoldsTheCellOfTheUpperCorner) {
     for (int i = 1; i <= 200; ++i) {
         const auto shape = Shape::make(cube(0.01 * i));
         shape->prepare();
-        const kernels::ShapeHeader& header = shape->accelerators()->header;
+        const kernels::ShapeHeader& header = accelerators_of(*shape)->header;
         ASSERT_GT(header.grid_size[0], 0u);
         for (int axis = 0; axis < 3; ++axis) // as the kernels look it up
             EXPECT_LT(static_cast<int>((header.high[axis] - header.grid_low[axis]) * header.grid_scale),

@@ -75,7 +75,7 @@ void expect_copies(const ShapeStore& store, Device& device, const std::vector<st
         expect_copied(memory, header.face_normals, data.face_normals);
         expect_copied(memory, header.vertex_blocks, data.vertex_blocks);
         expect_copied(memory, header.clusters, data.clusters);
-        const Accelerators* more = one->accelerators();
+        const Accelerators* more = accelerators_of(*one);
         expect_copied(memory, header.clearances, more != nullptr ? more->clearances : data.clearances);
         if (more != nullptr) expect_copied(memory, header.outside_cells, more->outside_cells);
     }

@@ -28,7 +28,7 @@ TEST(Supports, ReachNoLessThanAnyVertexAndHardlyMore) {
     for (const auto& shape : reference::crowd_shapes(reference::Kind::sizes, 0.1)) {
         shape->prepare();
         const ShapeData& data = shape->data();
-        const Supports& supports = shape->accelerators()->supports;
+        const Supports& supports = accelerators_of(*shape)->supports;
         for (int i = 0; i < 3000; ++i) {
             Vec3 direction = random.direction();
             // On and near the borders of the cube's faces and of the grid's cells, too.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rays/wake_up.h"
+#include "rays/due_pairs.h"
 
-#include "give_back.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
 
@@ -14,12 +13,12 @@ namespace {
 // Shares of the smaller body's size:
 constexpr double fastest = 0.006;    // a step: a list would not last long enough to pay for itself
 constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to triangle
-// Share of the tube's radius a step: faster pairs seek no tubes.
+// Share of the swept clearance's radius a step: faster pairs seek no swept clearances.
 constexpr double slow = 0.15;
 
 // How far beyond the bounds a new list reaches: the way of some steps, between the lengths that `bench sweep` found
 // best for a pile and for fast bodies.
-double look_ahead(double size, double speed) {
+double reach_of_lists(double size, double speed) {
     return std::max(0.015 * size,
                     std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed
 }
@@ -30,8 +29,8 @@ double longest_clock(const PlacedBody& target) {
 }
 
 // Metres around a ray to search for triangles. Within the length of a triangle the surface mostly faces one way; a
-// wider tube only finds more triangles to test.
-double tube_radius(double size, const ShapeData& target) {
+// wider swept clearance only finds more triangles to test.
+double clearance_radius(double size, const ShapeData& target) {
     return std::min(size / 128, target.grain);
 }
 
@@ -41,9 +40,9 @@ bool ends_before(const Update& update, const PlacedBody& source, const PlacedBod
     return source.shape->data().rays_end || update.shapes.headers()[target.shape_index].outward != 0;
 }
 
-// Where the hulls are apart, nothing touches: no ray need be looked at until they may meet. Nothing of speculative
-// contacts is asked here, so that rays are the same with and without. False: they must be looked at.
-bool let_rays_sleep(const Update& update, const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack) {
+// Where the hulls are apart, nothing touches: no ray is due until they may meet. Nothing of speculative
+// contacts is asked here, so that rays are the same with and without. False: they are due.
+bool extend_rays(const Update& update, const PlacedBody& a, const PlacedBody& b, CertifiedPair& state, Slack& slack) {
     constexpr double wanted = 0.005; // of the size
     if (!ends_before(update, a, b) || !ends_before(update, b, a)) return false;
     const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a));
@@ -60,8 +59,8 @@ bool is_inside_its_hull(const Update& update, const PlacedBody& body) {
 }
 
 // The same of what is near, now and, if the pair hurries, on its way.
-bool let_near_sleep(const Update& update, const PlacedBody& a, const PlacedBody& b, WatchedPair& state, Slack& slack,
-                    bool hurries) {
+bool extend_near(const Update& update, const PlacedBody& a, const PlacedBody& b, CertifiedPair& state, Slack& slack,
+                 bool hurries) {
     if (!is_inside_its_hull(update, a) || !is_inside_its_hull(update, b)) return false;
     const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin);
     const double gap = state.normal_of_near.gap(a, b, needed, hurries);
@@ -76,10 +75,10 @@ bool let_near_sleep(const Update& update, const PlacedBody& a, const PlacedBody&
 } // namespace
 
 // Decides for one pair, in double, what is due.
-void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice) {
+void DuePairs::check_pair(const Update& update, CertifiedPairs& table, std::uint32_t i, double speed, Slice& slice) {
     const std::optional<double>& threshold = update.settings.paper.displacement_threshold;
     const SlotPair& pair = update.pairs[i];
-    WatchedPair& state = table.state(i);
+    CertifiedPair& state = table.state(i);
     Slack& slack = table.hot(i);
     const PlacedBody* body[2] = {&update.bodies[pair.first], &update.bodies[pair.second]};
     const double size = smaller_size(*body[0], *body[1]);
@@ -88,52 +87,52 @@ void WakeUp::wake_pair(const Update& update, WatchedPairs& table, std::uint32_t 
     std::array<double, 2> moved{0, 0};
     if (!fresh)
         moved = displacement_bounds(state.reference, now, body[0]->shape->data().reach, body[1]->shape->data().reach);
-    bool stale[2] = {}, wakes[2] = {};
+    bool stale[2] = {}, is_due[2] = {};
     slack.metres = never;
     slack.open = true;
     slack.casts = false;
     for (std::size_t d = 0; d < 2; ++d) {
-        Watched& own = state.directions[d];
+        Candidates& own = state.directions[d];
         const double clock = own.clock + moved[d];
         // Written so that a clock that is NaN, for bodies beyond the range of squares, makes the list stale.
         stale[d] = fresh || !(clock < own.expiry);
         // The same comparison as in the kernel: blocks are tested only at the reference pose.
-        wakes[d] = stale[d] || !(double(static_cast<float>(clock)) < own.wake);
+        is_due[d] = stale[d] || !(double(static_cast<float>(clock)) < own.valid_until);
         slack.casts = slack.casts || own.rays.count > 0;
-        if (!wakes[d]) slack.metres = std::min(slack.metres, std::min(own.wake, own.expiry) - clock);
+        if (!is_due[d]) slack.metres = std::min(slack.metres, std::min(own.valid_until, own.expiry) - clock);
     }
-    const bool any_wakes = wakes[0] || wakes[1], any_stale = stale[0] || stale[1];
-    if (!any_wakes && !slack.casts) return;
+    const bool any_due = is_due[0] || is_due[1], any_stale = stale[0] || stale[1];
+    if (!any_due && !slack.casts) return;
 
     if (any_stale) state.speed = fresh ? speed : 0.75 * state.speed + 0.25 * speed;
-    if (any_wakes) state.reference = now;
+    if (any_due) state.reference = now;
     for (std::uint32_t d = 0; d < 2; ++d) {
         const PlacedBody &source = *body[d], &target = *body[1 - d];
-        Watched& own = state.directions[d];
+        Candidates& own = state.directions[d];
         const double clock = own.clock + moved[d];
-        if (any_wakes) own.clock = clock;
+        if (any_due) own.clock = clock;
         if (stale[d]) {
             own.clock = 0;
-            own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : look_ahead(size, state.speed);
+            own.expiry = threshold ? std::min(*threshold, longest_clock(target)) : reach_of_lists(size, state.speed);
             slice.stale.add() = slice.due.size();
         }
-        if (!wakes[d] && own.rays.count == 0) continue;
+        if (!is_due[d] && own.rays.count == 0) continue;
         Due& due = slice.due.add();
         due.own = &own;
         due.directed = 2 * i + d;
         due.now = static_cast<float>(stale[d] ? 0 : clock);
         due.margin = static_cast<float>(rounding_margin(source, target));
-        const double radius = tube_radius(size, target.shape->data());
+        const double radius = clearance_radius(size, target.shape->data());
         due.radius = speed < slow * radius ? static_cast<float>(radius) : 0;
-        due.tests_caps = speed < unhurried * size ? update.shapes.headers()[target.shape_index].caps_pay : 0;
+        due.tests_cones = speed < unhurried * size ? update.shapes.headers()[target.shape_index].cones_pay : 0;
         due.longest = longest_clock(target);
         place_source(source, target, d == 0 ? now.pose : now.pose_of_second(), slice.places.add());
     }
 }
 
 // The cheap bound comes first; most pairs at rest need no more.
-void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
-                        Slice& slice) {
+void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uint32_t begin, std::uint32_t end,
+                           Slice& slice) {
     const bool speculative = update.settings.is_speculative();
     const bool edges = update.settings.features == Features::edges;
     // A pair that hurries needs what its whole way passes.
@@ -155,37 +154,36 @@ void WakeUp::wake_slice(const Update& update, WatchedPairs& table, std::uint32_t
         const SlotPair& pair = update.pairs[i];
         const double speed = update.motion.pair_speed(pair);
         const double size = smaller_size(update.bodies[pair.first], update.bodies[pair.second]);
-        WatchedPair& state = table.state(i);
+        CertifiedPair& state = table.state(i);
         Slack& slack = table.hot(i);
         const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
         const bool may_hurry = !update.settings.paper.displacement_threshold;
-        const bool rays_sleep = !slack.casts && (slack.metres > 0 || let_rays_sleep(update, a, b, state, slack));
-        if (!rays_sleep && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
+        const bool rays_valid = !slack.casts && (slack.metres > 0 || extend_rays(update, a, b, state, slack));
+        if (!rays_valid && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
-        } else if (!rays_sleep) {
-            wake_pair(update, table, i, speed, slice);
+        } else if (!rays_valid) {
+            check_pair(update, table, i, speed, slice);
         }
         if (!edges && !speculative) return;
         if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
         const double way = way_of(i, slack);
         const DueNear due{
             i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0};
-        if ((due.points || due.edges) && !slack.casts && let_near_sleep(update, a, b, state, slack, way > 0)) return;
+        if ((due.points || due.edges) && !slack.casts && extend_near(update, a, b, state, slack, way > 0)) return;
         if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };
     table.sift(
         begin, end, [&](std::uint32_t i) { update.motion.prefetch(update.pairs[i]); }, wants, ask);
 }
 
-void WakeUp::run(const Update& update, WatchedPairs& table) {
+void DuePairs::run(const Update& update, CertifiedPairs& table) {
     const auto count = static_cast<std::uint32_t>(update.pairs.size());
     slice_count_ = (count + slice_size - 1) / slice_size;
     if (slices_.size() < slice_count_) {
         const std::size_t room = slice_count_ + slice_count_ / 2;
         rooms_ = std::make_unique_for_overwrite<Room[]>(room);
         slices_.resize(room);
-        most_due_ = 0;
     }
     update.executor.each(slice_count_, 1, [&](std::uint32_t s) {
         Slice& slice = slices_[s];
@@ -195,19 +193,8 @@ void WakeUp::run(const Update& update, WatchedPairs& table) {
         slice.stale = List(room.stale);
         slice.as_standard = List(room.as_standard);
         slice.near = List(room.near);
-        wake_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
+        check_slice(update, table, s * slice_size, std::min((s + 1) * slice_size, count), slice);
     });
-}
-
-void WakeUp::give_back() {
-    std::size_t due = 0;
-    for (const Slice& slice : slices()) due += slice.due.size() + slice.near.size();
-    most_due_ = std::max(most_due_, due);
-    if (slices_.size() * sizeof(Room) < 1 << 20 || most_due_ <= 4 * due) return;
-    rooms_.reset();
-    free_all(slices_);
-    slice_count_ = 0;
-    most_due_ = 0;
 }
 
 } // namespace raycontact

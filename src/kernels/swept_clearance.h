@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The neighbourhood of a ray, up to a little behind its hit: the nearest triangle, and the distance of all others.
 
-STRUCT(Tube) {
+STRUCT(SweptClearance) {
     float origin[3];
     float along[3], u[3], v[3]; // unit vectors, square to each other
     float length;
     float radius;
-    float box[6]; // around the tube: lower x y z, upper x y z
+    float box[6]; // around the swept clearance: lower x y z, upper x y z
 };
 
 // The triangle nearest to the ray, and how far the ray is from every other. triangle_lane: TRIANGLE_LANES * block +
@@ -17,32 +17,32 @@ STRUCT(Neighbours) {
 };
 
 // end: in lengths of the ray's direction.
-DEVICE Tube tube_of(const SourceRay* ray, float end, float radius) {
-    Tube tube;
-    tube.radius = radius;
+DEVICE SweptClearance swept_clearance_of(const SourceRay* ray, float end, float radius) {
+    SweptClearance swept;
+    swept.radius = radius;
     const float* d = ray->direction;
     // Rotations are rigid only to 1e-4: the direction is not quite a unit vector, and distances count in its lengths.
     const float size = root_of((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
     for (int i = 0; i < 3; ++i) {
-        tube.origin[i] = ray->position[i];
-        tube.along[i] = d[i] / size;
+        swept.origin[i] = ray->position[i];
+        swept.along[i] = d[i] / size;
     }
-    tube.length = end * size;
-    const float ax = magnitude_of(tube.along[0]), ay = magnitude_of(tube.along[1]), az = magnitude_of(tube.along[2]);
+    swept.length = end * size;
+    const float ax = magnitude_of(swept.along[0]), ay = magnitude_of(swept.along[1]), az = magnitude_of(swept.along[2]);
     const int across = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
     const int next = across == 2 ? 0 : across + 1, last = next == 2 ? 0 : next + 1;
-    const float side = 1.0f / root_of(tube.along[next] * tube.along[next] + tube.along[last] * tube.along[last]);
-    tube.u[across] = 0.0f;
-    tube.u[next] = -(tube.along[last] * side);
-    tube.u[last] = tube.along[next] * side;
+    const float side = 1.0f / root_of(swept.along[next] * swept.along[next] + swept.along[last] * swept.along[last]);
+    swept.u[across] = 0.0f;
+    swept.u[next] = -(swept.along[last] * side);
+    swept.u[last] = swept.along[next] * side;
     for (int i = 0; i < 3; ++i) {
         const int j = i == 2 ? 0 : i + 1, k = j == 2 ? 0 : j + 1;
-        tube.v[i] = tube.along[j] * tube.u[k] - tube.along[k] * tube.u[j];
-        const float last_point = tube.origin[i] + tube.length * tube.along[i];
-        tube.box[i] = (tube.origin[i] < last_point ? tube.origin[i] : last_point) - radius;
-        tube.box[3 + i] = (tube.origin[i] > last_point ? tube.origin[i] : last_point) + radius;
+        swept.v[i] = swept.along[j] * swept.u[k] - swept.along[k] * swept.u[j];
+        const float last_point = swept.origin[i] + swept.length * swept.along[i];
+        swept.box[i] = (swept.origin[i] < last_point ? swept.origin[i] : last_point) - radius;
+        swept.box[3 + i] = (swept.origin[i] > last_point ? swept.origin[i] : last_point) + radius;
     }
-    return tube;
+    return swept;
 }
 
 // Separation of the origin from a 2D triangle along the normal of its edge from a to b; c is the third corner.
@@ -56,14 +56,14 @@ DEVICE float edge_gap(float au, float av, float bu, float bv, float cu, float cv
 
 // A triangle is at least as far from the axis as along any separating direction. It tries the axis, the triangle's
 // normal and, seen along the axis, the normals of its edges. Any direction is valid, so rounding one does no harm.
-DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlock) block, uint index) {
+DEVICE void nearest_lanes(Neighbours* found, const SweptClearance* swept, READS(TriangleBlock) block, uint index) {
     float apart[TRIANGLE_LANES];
     int nearer[TRIANGLE_LANES];
-    const float ox = tube->origin[0], oy = tube->origin[1], oz = tube->origin[2];
-    const float dx = tube->along[0], dy = tube->along[1], dz = tube->along[2];
-    const float px = tube->u[0], py = tube->u[1], pz = tube->u[2];
-    const float qx = tube->v[0], qy = tube->v[1], qz = tube->v[2];
-    const float length = tube->length, bound = found->second;
+    const float ox = swept->origin[0], oy = swept->origin[1], oz = swept->origin[2];
+    const float dx = swept->along[0], dy = swept->along[1], dz = swept->along[2];
+    const float px = swept->u[0], py = swept->u[1], pz = swept->u[2];
+    const float qx = swept->v[0], qy = swept->v[1], qz = swept->v[2];
+    const float length = swept->length, bound = found->second;
     FOR_LANES(k, TRIANGLE_LANES) {
         const float ax = block->corner[0][k] - ox, ay = block->corner[1][k] - oy, az = block->corner[2][k] - oz;
         const float bx = block->corner[3][k] - ox, by = block->corner[4][k] - oy, bz = block->corner[5][k] - oz;
@@ -110,15 +110,15 @@ DEVICE void nearest_lanes(Neighbours* found, const Tube* tube, READS(TriangleBlo
     }
 }
 
-// Child boxes that may reach into the tube. A long tube's own box holds much of a fine mesh; seen along the axis, few
-// boxes are near it.
-DEVICE uint children_in_tube(const Tube* tube, READS(Node) node) {
-    const float ux = tube->u[0], uy = tube->u[1], uz = tube->u[2];
-    const float vx = tube->v[0], vy = tube->v[1], vz = tube->v[2];
+// Child boxes that may reach into the swept clearance. A long swept clearance's own box holds much of a fine mesh; seen
+// along the axis, few boxes are near it.
+DEVICE uint children_in_clearance(const SweptClearance* swept, READS(Node) node) {
+    const float ux = swept->u[0], uy = swept->u[1], uz = swept->u[2];
+    const float vx = swept->v[0], vy = swept->v[1], vz = swept->v[2];
     const float aux = magnitude_of(ux), auy = magnitude_of(uy), auz = magnitude_of(uz);
     const float avx = magnitude_of(vx), avy = magnitude_of(vy), avz = magnitude_of(vz);
-    const float ox = 2.0f * tube->origin[0], oy = 2.0f * tube->origin[1], oz = 2.0f * tube->origin[2];
-    const float twice = 2.0f * tube->radius;
+    const float ox = 2.0f * swept->origin[0], oy = 2.0f * swept->origin[1], oz = 2.0f * swept->origin[2];
+    const float twice = 2.0f * swept->radius;
     int within[NODE_LANES];
     FOR_LANES(k, NODE_LANES) {
         // Everything doubled: twice the middle, and the sides.
@@ -130,25 +130,25 @@ DEVICE uint children_in_tube(const Tube* tube, READS(Node) node) {
         const float most_v = ((avx * sx + avy * sy) + avz * sz) + twice;
         within[k] = -(int)((u <= most_u) & (v <= most_v));
     }
-    return pack_sixteen(within) & children_in(tube->box, node);
+    return pack_sixteen(within) & children_in(swept->box, node);
 }
 
-// Searches all triangles in the tube.
-DEVICE_CALL Neighbours search_tube(const Tube* tube, READS(ShapeHeader) shape, READS(ulong) memory) {
+// Searches all triangles in the swept clearance.
+DEVICE_CALL Neighbours search_clearance(const SweptClearance* swept, READS(ShapeHeader) shape, READS(ulong) memory) {
     Neighbours found;
-    found.least = found.second = tube->radius;
+    found.least = found.second = swept->radius;
     found.triangle_lane = NONE;
     READS(Node) tree = AT(memory, Node, shape->nodes);
     READS(TriangleBlock) blocks = AT(memory, TriangleBlock, shape->triangle_blocks);
-    Descent way = {0u, 0u, children_in_tube(tube, tree)};
+    Descent way = {0u, 0u, children_in_clearance(swept, tree)};
     for (;;) {
         while (way.children != 0u) {
             const uint child = next_child(&way, tree);
             if ((child & LEAF) != 0u) {
                 const uint index = child & ~LEAF;
-                nearest_lanes(&found, tube, blocks + index, index);
+                nearest_lanes(&found, swept, blocks + index, index);
             } else {
-                go_down(&way, child, children_in_tube(tube, tree + child));
+                go_down(&way, child, children_in_clearance(swept, tree + child));
             }
         }
         if (way.at == 0u) return found;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays known by a triangle's cap meet what a cast says that they meet, and keep to all that the proof asks of them
-// (docs/certified.md): what a cast says differs so seldom near the limits that it alone would miss a limit left out.
+// Rays known by a triangle's normal-cone ball meet what a cast says that they meet, and keep to all that the proof asks
+// of them (docs/certified.md): what a cast says differs so seldom near the limits that it alone would miss a limit left
+// out.
 #include "pairs/rounding.h"
 #include "property/crowds.h"
 #include "scenes/models/model.h"
-#include "unit/rays/aimed_ray.h"
+#include "shape/accelerators.h"
+#include "unit/kernels/aimed_ray.h"
 #include "unit/shape/accelerated.h"
 
 #include <algorithm>
@@ -22,8 +24,8 @@ struct Counts {
     std::uint64_t askew = 0, near_edge = 0, near_surface = 0; ///< known against a premise of the proof
 };
 
-// No more than the cosine of the ray and any normal in the cap; -1: the ray begins outside. Half of what is kept from
-// the rim for rounding may be used up.
+// No more than the cosine of the ray and any normal in the normal-cone ball; -1: the ray begins outside. Half of what
+// is kept from the rim for rounding may be used up.
 double least_facing(const ShapeData& target, std::uint32_t triangle_lane, const Vec3& from, double along,
                     double margin) {
     const auto corner = corners(target, triangle_lane);
@@ -31,7 +33,7 @@ double least_facing(const ShapeData& target, std::uint32_t triangle_lane, const 
     const auto radii = cap_radii(target, triangle_lane);
     if (far >= radii[1]) return -1;
     const double angle = std::acos(std::min(along, 1.0));
-    return std::cos(angle + std::acos(double(far < radii[0] ? CAP_NARROW_COSINE : CAP_WIDE_COSINE)));
+    return std::cos(angle + std::acos(double(far < radii[0] ? CONE_NARROW_COSINE : CONE_WIDE_COSINE)));
 }
 
 void count_against_premises(const ShapeData& target, std::uint32_t triangle_lane,
@@ -41,7 +43,7 @@ void count_against_premises(const ShapeData& target, std::uint32_t triangle_lane
     const Vec3 p = vec(ray.position), d = (1 / length(vec(ray.direction))) * vec(ray.direction);
     const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]), n = (1 / length(normal)) * normal;
     const double facing = least_facing(target, triangle_lane, p, dot(n, d), margin);
-    counts.askew += !(facing > double(CAP_LEAST_FACING) + 0.5 * double(CAP_LOST_OF_FACING));
+    counts.askew += !(facing > double(CONE_LEAST_FACING) + 0.5 * double(CONE_LOST_OF_FACING));
     const double t = dot(corner[0] - p, n) / dot(d, n);
     // Of 4 tolerances in the plane of the ray test more than half are left square to the ray.
     for (std::size_t k = 0; k < 3; ++k) {
@@ -58,7 +60,7 @@ void examine(const Shape& shape, int rays, Random& random, Counts& counts) {
     const double margin = rounding_margin(body, body);
     const kernels::HeldRange asks = held_range(margin, 0, true);
     for (int i = 0; i < rays; ++i) {
-        const auto aimed = aim_at_cap(target, margin, random);
+        const auto aimed = aim_at_cone(target, margin, random);
         if (!aimed) continue;
         const kernels::Held held = known_triangle(target, aimed->triangle_lane, random);
         ++counts.rays;
@@ -92,19 +94,19 @@ void expect(const char* name, const Counts& counts) {
     EXPECT_GT(counts.stepped, counts.rays / 100);
 }
 
-TEST(Cap, DecidesAsACastDoes) {
+TEST(NormalCone, DecidesAsACastDoes) {
     Random random(12);
     for (const char* kind : {"sphere", "torus", "knot"}) {
         Counts counts;
         const auto shape = Shape::make(scenes::scene_model(kind, 4000).mesh);
-        EXPECT_NE(accelerated(*shape).header.caps_pay, 0u) << kind;
+        EXPECT_NE(accelerated(*shape).header.cones_pay, 0u) << kind;
         examine(*shape, 150000, random, counts);
         expect(kind, counts);
     }
 }
 
-// Coarse meshes have few caps, and `certified` does not ask them; what is said is as true.
-TEST(Cap, OfCoarseMeshesToo) {
+// Coarse meshes have few normal-cone balls, and `certified` does not ask them; what is said is as true.
+TEST(NormalCone, OfCoarseMeshesToo) {
     Random random(13);
     for (const Kind kind : {Kind::concave, Kind::cavities, Kind::slivers}) {
         Counts counts;
@@ -113,13 +115,13 @@ TEST(Cap, OfCoarseMeshesToo) {
     }
 }
 
-TEST(Cap, NothingIsSaidWhereTheInsideIsNotKnown) {
+TEST(NormalCone, NothingIsSaidWhereTheInsideIsNotKnown) {
     for (const Kind kind : {Kind::open, Kind::crossing})
         for (const auto& shape : crowd_shapes(kind, 1)) {
             if (shape->data().header.outward != 0) continue;
             shape->prepare();
-            EXPECT_EQ(shape->accelerators()->header.caps_pay, 0u);
-            EXPECT_TRUE(shape->accelerators()->caps.empty());
+            EXPECT_EQ(accelerators_of(*shape)->header.cones_pay, 0u);
+            EXPECT_TRUE(accelerators_of(*shape)->normal_cones.empty());
         }
 }
 

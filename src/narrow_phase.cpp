@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "step.h"
+#include "narrow_phase.h"
 
 #include "device/device.h"
-#include "give_back.h"
 #include "platform/system.h"
 #include "schedule/moving_pairs.h"
 
@@ -81,22 +80,29 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
     stats.contacts = contacts.size() - stats.contacts_speculative;
     for (const Contact& contact : reducer_.left_out())
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
-    give_back(contacts);
-    trim(stats.pair_bytes);
+    trim(stats.pair_bytes, contacts);
     stats.narrow_ms = milliseconds_since(start);
 }
 
-// The allocator keeps what was freed in small pieces. Once much of it is free it goes back to the system, and again
-// after the next step, which frees the lists of what was lost.
-void NarrowPhase::trim(std::uint64_t pair_bytes) {
+// Once much less is kept for pairs than was, what a step makes anew is freed as well. The allocator keeps what was
+// freed in small pieces: it goes back to the system, and again after the next step, which frees the lists of what was
+// lost.
+void NarrowPhase::trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts) {
     constexpr std::uint64_t much = 16 << 20;
     most_bytes_ = std::max(most_bytes_, pair_bytes);
     if (most_bytes_ > 2 * pair_bytes + much) {
         most_bytes_ = pair_bytes;
         trims_ = 2;
     }
-    if (trims_ == 0) return;
+    trimmed_ = trims_ > 0;
+    if (!trimmed_) return;
     --trims_;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (parts_.has(i)) parts_[i].trim();
+    for (Found& found : found_) found.contacts.shrink_to_fit();
+    changes_.trim();
+    reducer_.trim();
+    contacts.shrink_to_fit();
     platform::trim_heap();
 }
 
@@ -113,7 +119,7 @@ void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, s
 std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& failed, StepStats& stats) {
     const auto given = give_away(failed, stats);
     return parts_.run([&](std::size_t number) {
-        if (!given[number].empty()) parts_[number].adopt(given[number], found_[number].contacts);
+        if (!given[number].empty()) parts_[number].take_over(given[number], found_[number].contacts);
     });
 }
 
@@ -131,8 +137,8 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     const auto start = Clock::now();
     const auto moving = choose_moving(assignment_.pairs_of(move.from), found_[move.from].contacts, move.share);
     std::vector<std::byte> state;
-    auto failed = parts_.only(move.from, [&] { state = parts_[move.from].take_out(bodies, moving.pairs); });
-    if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].put_in(bodies, state); });
+    auto failed = parts_.only(move.from, [&] { state = parts_[move.from].export_state(bodies, moving.pairs); });
+    if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].import_state(bodies, state); });
     if (failed.empty()) {
         assignment_.move(moving.pairs, move.to);
         stats.details.pairs_moved += moving.pairs.size();
@@ -183,8 +189,6 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
         work = parts_[i].take_work();
         work.load = load_of(stats) - before;
         work.ms = found_[i].ms;
-        parts_[i].give_back();
-        give_back(found_[i].contacts);
         balance_.record(i, work.load, work.ms);
     }
     balance_.end_step(pair_count);

@@ -38,9 +38,9 @@ inline kernels::prototype::SourceRay prototype_ray(const Vec3& position, const V
     return ray;
 }
 
-/// Of a pair of which nothing was held. radius: of tubes to be sought.
-inline kernels::HeldRange held_range(double margin, double radius, bool tests_caps) {
-    return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), tests_caps ? 1u : 0u};
+/// Of a pair of which nothing was held. radius: of swept clearances to be sought.
+inline kernels::HeldRange held_range(double margin, double radius, bool tests_cones) {
+    return {0, 0, 0, static_cast<float>(margin), static_cast<float>(radius), tests_cones ? 1u : 0u};
 }
 
 /// What is said of a held ray, and the place of the triangle that says it.
@@ -72,7 +72,7 @@ inline std::optional<Said> ask(const kernels::prototype::SourceRay& moved, const
     for (std::uint32_t i = 0; i <= lane; ++i)
         add_held(&arrays, &group, 0, &moved, &held, &held_range, 0, &target.header);
     fetch_triangles(&arrays, &group);
-    test_tubes_and_caps(&arrays, &group);
+    test_clearances_and_cones(&arrays, &group);
     return said_of(arrays, group, lane);
 }
 
@@ -87,12 +87,12 @@ inline kernels::Hit cast(const kernels::prototype::SourceRay& ray, const ShapeDa
     return kernels::prototype::decide(&arrays, CASTER_BVH, &ray, &met, &target.header);
 }
 
-/// What is held of a ray that was cast, if a tube was wide enough.
+/// What is held of a ray that was cast, if a swept clearance was wide enough.
 inline kernels::Held held_after_cast(const kernels::prototype::SourceRay& ray, const ShapeData& target,
                                      const kernels::HeldRange& held_range) {
     const kernels::prototype::Closest met = closest(ray, target);
     const kernels::prototype::RayArrays arrays = arrays_of(target);
-    return kernels::prototype::seek_tube(&arrays, &ray, &met, &held_range, &target.header);
+    return kernels::prototype::seek_clearance(&arrays, &ray, &met, &held_range, &target.header);
 }
 
 inline bool differ(const kernels::Hit& said, const kernels::Hit& truth) {

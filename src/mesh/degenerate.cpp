@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/useless.h"
+#include "mesh/degenerate.h"
 
 #include "mesh/disjoint_sets.h"
 #include "mesh/lowest_equal.h"
@@ -151,7 +151,7 @@ private:
 
     bool closed(Edge e) const { return at_.at(e).size() % 2 == 0; }
 
-    void take_out(std::uint32_t t) {
+    void remove(std::uint32_t t) {
         drop(t);
         is_candidate_[t] = 0;
         for (const Edge e : edges_of(t)) std::erase(at_.at(e), t);
@@ -189,7 +189,7 @@ private:
             }
             for (const std::uint32_t t : group) {
                 chosen_[t] = 0;
-                if (!any) take_out(t);
+                if (!any) remove(t);
             }
         }
     }
@@ -210,7 +210,7 @@ private:
             open.pop_back();
             if (!is_candidate_[t] || std::ranges::count_if(edges_of(t), [&](Edge e) { return closed(e); }) > 1)
                 continue;
-            take_out(t);
+            remove(t);
             for_each_neighbour(t, is_candidate_, [&](std::uint32_t other) { open.push_back(other); });
         }
     }
@@ -274,7 +274,7 @@ bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
     return has_repeated(triangle) || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
 }
 
-Dropped drop_useless(std::vector<Triangle>& triangles, std::span<const Vec3> vertices) {
+Dropped drop_degenerate(std::vector<Triangle>& triangles, std::span<const Vec3> vertices) {
     return Dropper(triangles, vertices).find();
 }
 

@@ -150,7 +150,7 @@ void compare(const Asked& asked, const HeldGroup& group, std::uint32_t lane, con
 
 TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
     Random random(16);
-    const kernels::HeldRange no_caps{};
+    const kernels::HeldRange no_cones{};
     for (const Floats kind : {Floats::ordinary, Floats::on_a_grid, Floats::odd}) {
         Counts counts;
         HeldGroup group{};
@@ -162,7 +162,7 @@ TEST(HeldGroup, SaysOfEachRayWhatTheRayTestSays) {
                 std::vector<Asked> all;
                 for (std::uint32_t i = 0; i < count; ++i) {
                     const Asked& asked = all.emplace_back(any_ray(kind, ground, random));
-                    add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_caps, 0, &ground.shapes[asked.target]);
+                    add_held(&arrays, &group, i, &asked.ray, &asked.held, &no_cones, 0, &ground.shapes[asked.target]);
                 }
                 fetch_triangles(&arrays, &group);
                 test_held(&group);

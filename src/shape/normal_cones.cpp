@@ -16,7 +16,7 @@ using kernels::uint;
 constexpr double largest = 65535;         // steps: an eighth of the diagonal
 constexpr double least_height = 64;       // of tolerances: float32 may get a narrower triangle's normal wrong
 constexpr double beyond_own_corners = 16; // of tolerances
-constexpr double fine = 0.75;             // of the triangles have caps if testing them pays
+constexpr double fine = 0.75;             // of the triangles have normal-cone balls if testing them pays
 
 /// Directions within an angle, less than a right one, of an axis; cosine <= 0: any direction.
 struct Cone {
@@ -30,18 +30,18 @@ struct Cone {
     }
 };
 
-class Caps {
+class NormalCones {
 public:
-    Caps(const ShapeData& shape, std::span<const Vec3> normals)
+    NormalCones(const ShapeData& shape, std::span<const Vec3> normals)
         : shape_(shape), normals_(normals), cones_(shape.nodes.size()) {
         std::vector<uint> below;
         find_cones(0, below);
     }
 
-    /// Writes the caps of a block; returns how many of its triangles have one.
+    /// Writes the normal-cone balls of a block; returns how many of its triangles have one.
     std::size_t write(std::uint32_t block, Accelerators& to) const {
-        std::size_t with_cap = 0;
-        const double tolerance = shape_.header.tolerance, unit = double(CAP_UNIT_TOLERANCES) * tolerance;
+        std::size_t with_cone = 0;
+        const double tolerance = shape_.header.tolerance, unit = double(CONE_UNIT_TOLERANCES) * tolerance;
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const uint t = shape_.triangle_blocks[block].triangle[lane];
             if (t == NONE) continue;
@@ -55,13 +55,13 @@ public:
                 // One step less: the centre in float32 differs a little.
                 return radius > own + beyond_own_corners * tolerance ? std::max(0.0, std::floor(radius / unit) - 1) : 0;
             };
-            const double wide = steps(CAP_WIDE_COSINE, largest * unit);
-            const double narrow = wide > 0 ? steps(CAP_NARROW_COSINE, (wide + 1) * unit) : 0;
-            to.caps[TRIANGLE_LANES * std::size_t{block} + lane] =
+            const double wide = steps(CONE_WIDE_COSINE, largest * unit);
+            const double narrow = wide > 0 ? steps(CONE_NARROW_COSINE, (wide + 1) * unit) : 0;
+            to.normal_cones[TRIANGLE_LANES * std::size_t{block} + lane] =
                 static_cast<uint>(narrow) | static_cast<uint>(wide) << 16;
-            with_cap += wide > 0 ? 1 : 0;
+            with_cone += wide > 0 ? 1 : 0;
         }
-        return with_cap;
+        return with_cone;
     }
 
 private:
@@ -122,15 +122,15 @@ private:
 
 } // namespace
 
-void build_caps(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
+void build_normal_cones(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
     if (to.header.outward == 0) return;
     const std::vector<Vec3> normals = face_normals(shape);
-    const Caps caps(shape, normals);
-    std::atomic<std::size_t> with_cap = 0;
-    to.caps.assign(TRIANGLE_LANES * shape.triangle_blocks.size(), 0);
+    const NormalCones cones(shape, normals);
+    std::atomic<std::size_t> with_cone = 0;
+    to.normal_cones.assign(TRIANGLE_LANES * shape.triangle_blocks.size(), 0);
     run_until(executor, stop, shape.triangle_blocks.size(), 16,
-              [&](std::uint32_t block) { with_cap += caps.write(block, to); });
-    to.header.caps_pay = double(with_cap) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+              [&](std::uint32_t block) { with_cone += cones.write(block, to); });
+    to.header.cones_pay = double(with_cone) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
 }
 
 } // namespace raycontact

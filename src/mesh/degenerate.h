@@ -25,6 +25,6 @@ bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices);
 /// An edge with an even number of triangles, a closed one, keeps an even number, unless the surface is open there. So a
 /// degenerate triangle may have to stay where a corner of one triangle lies on the side of another: if it can, it and
 /// that other one become the two halves into which the corner splits it. Equal vertices must have equal indices.
-Dropped drop_useless(std::vector<Triangle>& triangles, std::span<const Vec3> vertices);
+Dropped drop_degenerate(std::vector<Triangle>& triangles, std::span<const Vec3> vertices);
 
 } // namespace raycontact

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/random.h"
-#include "unit/rays/asked_ray.h"
+#include "unit/kernels/asked_ray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 
 namespace raycontact::reference {
 
-/// A ray at a triangle's cap: from within it, from its rim and from beyond, turned by any angle, through every part of
-/// the triangle and of its neighbours, and near enough to the surface, to edges and to the angle at which triangles no
-/// longer face alike that some roundings decide.
+/// A ray at a triangle's normal-cone ball: from within it, from its rim and from beyond, turned by any angle, through
+/// every part of the triangle and of its neighbours, and near enough to the surface, to edges and to the angle at which
+/// triangles no longer face alike that some roundings decide.
 struct AimedRay {
     kernels::prototype::SourceRay ray;
     std::uint32_t triangle_lane = 0; ///< of the triangle
@@ -22,17 +22,17 @@ struct AimedRay {
 
 /// The triangle's two radii, of the narrow angle and of the wide one, metres.
 inline std::array<double, 2> cap_radii(const ShapeData& shape, std::uint32_t triangle_lane) {
-    const std::uint32_t cap = kernels::at_place<std::uint32_t>(nullptr, shape.header.caps)[triangle_lane];
-    const double unit = double(CAP_UNIT_TOLERANCES) * double(shape.header.tolerance);
-    return {double(cap & 0xffffu) * unit, double(cap >> 16) * unit};
+    const std::uint32_t cone = kernels::at_place<std::uint32_t>(nullptr, shape.header.normal_cones)[triangle_lane];
+    const double unit = double(CONE_UNIT_TOLERANCES) * double(shape.header.tolerance);
+    return {double(cone & 0xffffu) * unit, double(cone >> 16) * unit};
 }
 
 inline double any_length(double least, double most, Random& random) {
     return least * std::pow(most / least, random.uniform());
 }
 
-/// Nothing, where chance fell on a triangle without that cap.
-inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin, Random& random) {
+/// Nothing, where chance fell on a triangle without that normal-cone ball.
+inline std::optional<AimedRay> aim_at_cone(const ShapeData& target, double margin, Random& random) {
     const std::uint32_t t = random.below(static_cast<std::uint32_t>(target.faces.size()));
     const std::uint32_t triangle_lane = target.faces[t].triangle_lane;
     if (triangle_lane == NONE) return std::nullopt;
@@ -42,8 +42,8 @@ inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin
     if (!(radius > 0)) return std::nullopt;
     const Vec3 n{target.face_normals[t].x, target.face_normals[t].y, target.face_normals[t].z};
     // The direction: along the normal, or at the widest angle at which anything is said, or any.
-    const double open = std::acos(double(narrow ? CAP_NARROW_COSINE : CAP_WIDE_COSINE));
-    const double widest = std::acos(double(CAP_LEAST_FACING)) - open;
+    const double open = std::acos(double(narrow ? CONE_NARROW_COSINE : CONE_WIDE_COSINE));
+    const double widest = std::acos(double(CONE_LEAST_FACING)) - open;
     const double angles[3] = {widest * random.uniform(), widest * random.uniform(0.97, 1.03), 1.5 * random.uniform()};
     const double angle = angles[random.below(3)];
     Vec3 across = cross(n, random.direction());
@@ -68,7 +68,8 @@ inline std::optional<AimedRay> aim_at_cap(const ShapeData& target, double margin
     return AimedRay{prototype_ray(through - depth * d, d, std::max(reach, 0.0)), triangle_lane, depth};
 }
 
-/// Of a ray of which a triangle is known and no tube: that one, or now and then a neighbour of a neighbour's neighbour.
+/// Of a ray of which a triangle is known and no swept clearance: that one, or now and then a neighbour of a neighbour's
+/// neighbour.
 inline kernels::Held known_triangle(const ShapeData& target, std::uint32_t triangle_lane, Random& random) {
     kernels::Held held = kernels::prototype::nothing_held(0);
     held.triangle = triangle_lane;

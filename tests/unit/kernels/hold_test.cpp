@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tubes around rays: no other triangle is nearer than is said, and a ray moved by less meets what was said.
+// Swept clearances around rays: no other triangle is nearer than is said, and a ray moved by less meets what was said.
 #include "pairs/rounding.h"
 #include "property/crowds.h"
 #include "reference/margins.h"
-#include "unit/rays/asked_ray.h"
+#include "unit/kernels/asked_ray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,14 +52,14 @@ kernels::prototype::SourceRay any_ray(const ShapeData& target, const Solid& soli
 }
 
 struct Counts {
-    std::uint64_t rays = 0, tubes = 0, held = 0, contacts = 0, wrong = 0;
+    std::uint64_t rays = 0, clearances = 0, held = 0, contacts = 0, wrong = 0;
     double most_over = -1e300; ///< in margins
     double said = 0, true_ones = 0;
 };
 
-// How wide the tube could have been.
-void examine_tube(const kernels::Held& held, const ShapeData& target, const Solid& solid, std::span<const Solid> alone,
-                  double radius, double margin, Counts& counts) {
+// How wide the swept clearance could have been.
+void examine_clearance(const kernels::Held& held, const ShapeData& target, const Solid& solid,
+                       std::span<const Solid> alone, double radius, double margin, Counts& counts) {
     const Vec3 from = vec(held.position), to = from + double(held.limit) * vec(held.direction);
     double nearest = radius;
     for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -84,21 +84,21 @@ void examine(const Shape& shape, int rounds, Random& random, Counts& counts) {
     for (int round = 0; round < rounds; ++round) {
         const kernels::prototype::SourceRay ray = any_ray(target, solid, random);
         const auto radius = static_cast<float>(std::pow(10.0, random.uniform(-3, -1)) * target.diagonal);
-        const kernels::HeldRange no_caps = held_range(margin, double(radius), false);
-        const kernels::Held held = held_after_cast(ray, target, no_caps);
+        const kernels::HeldRange no_cones = held_range(margin, double(radius), false);
+        const kernels::Held held = held_after_cast(ray, target, no_cones);
         ++counts.rays;
         if (!(held.safe > 0)) continue;
-        ++counts.tubes;
+        ++counts.clearances;
         const Vec3 from = vec(ray.position), to = from + double(held.limit) * vec(ray.direction);
-        examine_tube(held, target, solid, alone, radius, margin, counts);
+        examine_clearance(held, target, solid, alone, radius, margin, counts);
 
-        // Either end moved by less than the tube's radius, each its own way.
+        // Either end moved by less than the swept clearance's radius, each its own way.
         for (int turn = 0; turn < 3; ++turn) {
             const double far = 0.999 * double(held.safe) * random.uniform();
             const Vec3 start = from + far * random.direction(), end = to + far * random.direction();
             const kernels::prototype::SourceRay moved =
                 prototype_ray(start, (1 / double(held.limit)) * (end - start), double(ray.reach));
-            const auto said = ask(moved, held, target, no_caps, random.below(RAYS_IN_GROUP));
+            const auto said = ask(moved, held, target, no_cones, random.below(RAYS_IN_GROUP));
             if (!said) continue;
             const kernels::Hit truth = cast(moved, target);
             ++counts.held;
@@ -115,16 +115,17 @@ TEST(Hold, DecidesAsACastDoes) {
         const auto& shapes = crowd_shapes(kind, 1);
         for (const auto& shape : shapes)
             if (shape->triangles().size() < 1000) examine(*shape, 400, random, counts);
-        std::printf(
-            "[ counts   ] %s: %llu rays, %llu tubes, %.3f of their true radius, over it by %.3f margins at most; "
-            "%llu moved rays decided, %llu of them contacts, %llu wrong\n",
-            name_of(kind), static_cast<unsigned long long>(counts.rays), static_cast<unsigned long long>(counts.tubes),
-            counts.said / counts.true_ones, counts.most_over, static_cast<unsigned long long>(counts.held),
-            static_cast<unsigned long long>(counts.contacts), static_cast<unsigned long long>(counts.wrong));
+        std::printf("[ counts   ] %s: %llu rays, %llu swept clearances, %.3f of their true radius, over it by %.3f "
+                    "margins at most; "
+                    "%llu moved rays decided, %llu of them contacts, %llu wrong\n",
+                    name_of(kind), static_cast<unsigned long long>(counts.rays),
+                    static_cast<unsigned long long>(counts.clearances), counts.said / counts.true_ones,
+                    counts.most_over, static_cast<unsigned long long>(counts.held),
+                    static_cast<unsigned long long>(counts.contacts), static_cast<unsigned long long>(counts.wrong));
         EXPECT_LT(counts.most_over, 0.5);
         EXPECT_EQ(counts.wrong, 0u);
-        EXPECT_GT(counts.tubes, counts.rays / 10);
-        EXPECT_GT(counts.held, counts.tubes);
+        EXPECT_GT(counts.clearances, counts.rays / 10);
+        EXPECT_GT(counts.held, counts.clearances);
         EXPECT_GT(counts.contacts, 50u);
         EXPECT_GT(counts.said, 0.5 * counts.true_ones);
     }

@@ -26,6 +26,8 @@ public:
               StepStats& stats);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
+    /// Whether the last step freed memory, since much less of it is in use than was.
+    bool trimmed() const { return trimmed_; }
     std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
     /// Contacts of the last step that the settings leave out.
     std::span<const Contact> left_out() const { return reducer_.left_out(); }
@@ -42,7 +44,7 @@ private:
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
     void count(std::size_t pair_count, StepStats& stats);
-    void trim(std::uint64_t pair_bytes);
+    void trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts);
 
     Settings settings_;
     Parts parts_;
@@ -54,6 +56,7 @@ private:
     Changes changes_;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
     unsigned trims_ = 0;           ///< still to be done, one a step
+    bool trimmed_ = false;         ///< in the last step
 };
 
 } // namespace raycontact

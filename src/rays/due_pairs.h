@@ -12,19 +12,19 @@
 namespace raycontact {
 
 /// The rays that one direction of a pair had in a step. held: `Held` data was stored for them.
-struct WatchedRays {
+struct CandidateRays {
     std::uint32_t first = 0, count = 0;
     bool held = false;
 };
 
-/// What the certified method keeps for one direction of a pair: the vertex blocks that it watches, and a clock that
-/// counts metres moved since the pair's reference pose.
-struct Watched {
-    double clock = 0;   ///< at the reference pose
-    double wake = 0;    ///< no block need be looked at before the clock reaches this
-    double expiry = -1; ///< a new list of blocks is due when the clock reaches this; below 0: at once
+/// What the certified method keeps for one direction of a pair: the vertex blocks near its target, its candidates, and
+/// a clock that counts metres moved since the pair's reference pose.
+struct Candidates {
+    double clock = 0;       ///< at the reference pose
+    double valid_until = 0; ///< no block is due before the clock reaches this
+    double expiry = -1;     ///< a new list of blocks is due when the clock reaches this; below 0: at once
     std::uint32_t first = 0, count = 0, capacity = 0; ///< the list
-    WatchedRays rays;
+    CandidateRays rays;
 };
 
 /// The near edges, or vertices, that are kept of a pair: a range of NearLists.
@@ -34,8 +34,8 @@ struct KeptNear {
     std::uint32_t count() const { return counts[0] + counts[1]; }
 };
 
-struct WatchedPair {
-    Watched directions[2];
+struct CertifiedPair {
+    Candidates directions[2];
     KeptNear edges, points;
     SeparatingNormal normal, normal_of_near; ///< of rays; of near edges and vertices
     double speed = 0;                        ///< metres a step, smoothed; decides how far a list reaches
@@ -58,12 +58,12 @@ struct Slack {
 
 /// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.
 struct Due {
-    Watched* own;
-    std::uint32_t directed;   ///< directed index of the pair
-    float now;                ///< the clock
-    float margin, radius;     ///< metres: of rounding; of tubes to seek, 0: none
-    kernels::uint tests_caps; ///< 1: its rays test caps
-    double longest;           ///< metres that a new list may last
+    Candidates* own;
+    std::uint32_t directed;    ///< directed index of the pair
+    float now;                 ///< the clock
+    float margin, radius;      ///< metres: of rounding; of swept clearances to seek, 0: none
+    kernels::uint tests_cones; ///< 1: its rays test normal-cone balls
+    double longest;            ///< metres that a new list may last
 };
 
 /// Near edges last while the pair moves this share of the margin by which they were sought.
@@ -78,11 +78,11 @@ struct DueNear {
     bool moves;         ///< it hurries
 };
 
-using WatchedPairs = PairTable<WatchedPair, Slack>;
+using CertifiedPairs = PairTable<CertifiedPair, Slack>;
 
 /// Finds which directions of which pairs are due in a step, in the order of the pairs: by slices of the pairs, each on
 /// one thread.
-class WakeUp {
+class DuePairs {
 public:
     /// A list in memory that has room for all that it can hold.
     template <class T>
@@ -111,7 +111,7 @@ public:
         std::uint64_t blocks = 0;      ///< vertex blocks tested
     };
 
-    void run(const Update& update, WatchedPairs& table);
+    void run(const Update& update, CertifiedPairs& table);
     std::span<Slice> slices() { return std::span(slices_).first(slice_count_); }
     std::span<const Slice> slices() const { return std::span(slices_).first(slice_count_); }
     /// Calls work(slice) for each slice, on all threads.
@@ -119,9 +119,6 @@ public:
     void each_slice(Executor& executor, Work&& work) {
         executor.each(slice_count_, 8, [&](std::uint32_t s) { work(slices_[s]); });
     }
-
-    /// After a step: frees memory that it hardly used.
-    void give_back();
 
 private:
     static constexpr std::uint32_t slice_size = 128; // pairs
@@ -132,14 +129,13 @@ private:
         std::uint32_t stale[2 * slice_size], as_standard[slice_size];
         DueNear near[slice_size];
     };
-    static void wake_slice(const Update& update, WatchedPairs& table, std::uint32_t begin, std::uint32_t end,
-                           Slice& slice);
-    static void wake_pair(const Update& update, WatchedPairs& table, std::uint32_t i, double speed, Slice& slice);
+    static void check_slice(const Update& update, CertifiedPairs& table, std::uint32_t begin, std::uint32_t end,
+                            Slice& slice);
+    static void check_pair(const Update& update, CertifiedPairs& table, std::uint32_t i, double speed, Slice& slice);
 
     std::unique_ptr<Room[]> rooms_;
     std::vector<Slice> slices_; ///< one for each room
     std::uint32_t slice_count_ = 0;
-    std::size_t most_due_ = 0; ///< of a step since there are these rooms
 };
 
 } // namespace raycontact

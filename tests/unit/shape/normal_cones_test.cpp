@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// In a triangle's cap no triangle turns away farther than is said, by brute force; caps are not much smaller than they
-// could be, and none is missing.
+// In a triangle's normal-cone ball no triangle turns away farther than is said, by brute force; normal-cone balls are
+// not much smaller than they could be, and none is missing.
 #include "mesh/vector.h"
 #include "property/crowds.h"
 #include "reference/margins.h"
 #include "reference/meshes.h"
 #include "scenes/models/model.h"
+#include "shape/accelerators.h"
 #include "unit/shape/accelerated.h"
 
 #include <algorithm>
@@ -37,25 +38,25 @@ void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts
     for (std::uint32_t t = 0; t < data.faces.size(); ++t)
         alone.push_back(make_surface("one", {corner(t, 0), corner(t, 1), corner(t, 2)}, {{0, 1, 2}}));
     const double tolerance = double(data.header.tolerance);
-    const double unit = double(CAP_UNIT_TOLERANCES) * tolerance, most = 65535 * unit;
+    const double unit = double(CONE_UNIT_TOLERANCES) * tolerance, most = 65535 * unit;
     const auto count = static_cast<std::uint32_t>(data.mesh.triangles.size());
     for (std::uint32_t i = 0; i < std::min(triangles, count); ++i) {
         const std::uint32_t t = triangles < count ? random.below(count) : i;
         const std::uint32_t triangle_lane = data.faces[t].triangle_lane;
         if (triangle_lane == NONE) continue;
-        const std::uint32_t cap = kernels::at_place<std::uint32_t>(nullptr, data.header.caps)[triangle_lane];
+        const std::uint32_t cone = kernels::at_place<std::uint32_t>(nullptr, data.header.normal_cones)[triangle_lane];
         const Vec3 centre = (1.0 / 3) * (corner(t, 0) + corner(t, 1) + corner(t, 2)), n = normal(t);
         ++counts.triangles;
-        counts.narrow += (cap & 0xffffu) != 0;
-        counts.wide += cap >> 16 != 0;
+        counts.narrow += (cone & 0xffffu) != 0;
+        counts.wide += cone >> 16 != 0;
         const double own =
             std::max({length(corner(t, 0) - centre), length(corner(t, 1) - centre), length(corner(t, 2) - centre)});
         const double longest = std::max({length(corner(t, 1) - corner(t, 0)), length(corner(t, 2) - corner(t, 1)),
                                          length(corner(t, 0) - corner(t, 2))});
         const double height =
             length(cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0))) / longest / tolerance;
-        const double radii[2] = {double(cap & 0xffffu) * unit, double(cap >> 16) * unit};
-        const float cosines[2] = {CAP_NARROW_COSINE, CAP_WIDE_COSINE};
+        const double radii[2] = {double(cone & 0xffffu) * unit, double(cone >> 16) * unit};
+        const float cosines[2] = {CONE_NARROW_COSINE, CONE_WIDE_COSINE};
         EXPECT_LE(radii[0], radii[1]);
         for (int k = 0; k < 2; ++k) {
             double nearest = most;
@@ -76,7 +77,7 @@ void examine(const Shape& shape, std::uint32_t triangles, Random& random, Counts
     }
 }
 
-TEST(Caps, HoldNothingThatTurnsAway) {
+TEST(NormalCones, HoldNothingThatTurnsAway) {
     Random random(5);
     Counts counts;
     for (const Kind kind : {Kind::concave, Kind::cavities, Kind::slivers, Kind::sizes})
@@ -84,12 +85,12 @@ TEST(Caps, HoldNothingThatTurnsAway) {
             if (shape->triangles().size() < 2000) examine(*shape, 200, random, counts);
     for (const char* kind : {"sphere", "torus", "knot"})
         examine(*Shape::make(scenes::scene_model(kind, 4000).mesh), 400, random, counts);
-    std::printf(
-        "[ counts   ] %llu triangles, %llu with a narrow cap, %llu with a wide one; %llu reach beyond, %llu are "
-        "too small, %llu are missing\n",
-        static_cast<unsigned long long>(counts.triangles), static_cast<unsigned long long>(counts.narrow),
-        static_cast<unsigned long long>(counts.wide), static_cast<unsigned long long>(counts.beyond),
-        static_cast<unsigned long long>(counts.small), static_cast<unsigned long long>(counts.missing));
+    std::printf("[ counts   ] %llu triangles, %llu with a narrow normal-cone ball, %llu with a wide one; %llu reach "
+                "beyond, %llu are "
+                "too small, %llu are missing\n",
+                static_cast<unsigned long long>(counts.triangles), static_cast<unsigned long long>(counts.narrow),
+                static_cast<unsigned long long>(counts.wide), static_cast<unsigned long long>(counts.beyond),
+                static_cast<unsigned long long>(counts.small), static_cast<unsigned long long>(counts.missing));
     EXPECT_EQ(counts.beyond, 0u);
     EXPECT_EQ(counts.small, 0u);
     EXPECT_EQ(counts.missing, 0u);
@@ -120,10 +121,10 @@ std::uint32_t cap_of_needle(double height) {
     EXPECT_NE(shape->data().header.outward, 0u);
     const std::uint32_t triangle_lane = shape->data().faces[middle].triangle_lane;
     shape->prepare();
-    return shape->accelerators()->caps[triangle_lane];
+    return accelerators_of(*shape)->normal_cones[triangle_lane];
 }
 
-TEST(Caps, NeedlesHaveNone) {
+TEST(NormalCones, NeedlesHaveNone) {
     EXPECT_EQ(cap_of_needle(48), 0u) << "float32 may not find its normal";
     EXPECT_NE(cap_of_needle(80), 0u);
 }
