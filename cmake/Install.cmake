@@ -32,7 +32,7 @@ install(FILES ${PROJECT_BINARY_DIR}/raycontactConfig.cmake ${PROJECT_BINARY_DIR}
     DESTINATION ${raycontact_config_folder})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
     DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}) # and its examples
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "*.py" EXCLUDE) # and its examples
 if(TARGET raycontact_cli)
     install(TARGETS raycontact_cli)
 endif()
