@@ -159,7 +159,7 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
 void add_speculative_option(CLI::App& command, raycontact::Settings& settings) {
     add_word(command, "--speculative",
              "contacts before anything touches, so that bodies stop at surfaces: auto (a margin for each pair), a "
-             "margin in metres, or off (docs/speculative.md)",
+             "margin in metres, or off (docs/internals/speculative.md)",
              "auto|METRES|off", settings.is_speculative() ? "auto" : "off", [&](const std::string& word) {
                  raycontact::Settings alone;
                  alone.speculative = word != "off";

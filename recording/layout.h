@@ -13,7 +13,7 @@
 
 namespace raycontact::recording {
 
-// The side chunk of the .glb file; docs/recording.md describes it byte by byte.
+// The side chunk of the .glb file; docs/internals/recording.md describes it byte by byte.
 
 constexpr std::uint32_t side_chunk = four_letters("RAYC");
 /// In version 1 ids were never given twice; since then slots are, by the rule of Scene::add.

@@ -14,7 +14,7 @@ struct SceneSize {
 };
 
 /// The paper names its constants and gives no value. Ours are equal for `iterative` and `predictive`; a body's largest
-/// extent is 1 m in both scenes. docs/reproduction.md says how they were chosen.
+/// extent is 1 m in both scenes. docs/internals/reproduction.md says how they were chosen.
 struct Constants {
     double displacement_threshold = 0.04; ///< metres: 4 % of a body's size
     double confidence = 1;                ///< the least; so cullingDist (equation 1) is 0.04 m

@@ -15,7 +15,7 @@ namespace raycontact {
 /// What is in contact.
 enum class FeatureKind : std::uint8_t {
     vertex = 0, ///< a vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)
-    edges = 1,  ///< an edge of either body: they pass each other where the surfaces cross (docs/edges.md)
+    edges = 1,  ///< an edge of either body: they pass each other where the surfaces cross (docs/internals/edges.md)
     inside = 2, ///< the whole body lies inside the other mesh; its deepest vertex stands for it
 };
 
@@ -52,7 +52,8 @@ struct Contact {
     /// The last step had no contact with this key in this pair; or none that touched, and this one does.
     bool is_new = true;
     Vec3f normal; ///< unit, world frame, from a to b
-    /// Metres along the normal (section 3.2: r . n). <= 0: a speculative contact, minus the gap (docs/speculative.md).
+    /// Metres along the normal (section 3.2: r . n). <= 0: a speculative contact, minus the gap
+    /// (docs/internals/speculative.md).
     float depth = 0;
     float ray_length = 0; ///< |r|, metres from the point to the hit; of a speculative contact as long as the gap
     /// Direction `weighted`: the share of the source's surface, m^2 (Shape::vertex_areas; of edges, a sixth of the mean

@@ -9,8 +9,8 @@
 #include <vector>
 
 /// Fewer contacts for a solver: those of a pair fall into patches, and some points stand for each patch
-/// (docs/reduction.md). Settings::max_contacts_per_pair does it for a scene; these functions serve solvers that choose
-/// for themselves.
+/// (docs/conventions.md#fewer-contacts). Settings::max_contacts_per_pair does it for a scene; these functions serve
+/// solvers that choose for themselves.
 namespace raycontact {
 
 /// A contact to choose from. World frame, metres.

@@ -22,7 +22,7 @@ struct PaperOptions {
     /// Metres a pair may move before it is tested in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
     /// chosen again as it moves; `predictive` then casts pairs that are too fast for it in full in each step
-    /// (docs/design.md).
+    /// (docs/internals/paper-map.md).
     std::optional<double> displacement_threshold;
     /// How far a predictive ray goes, in displacement thresholds; at least 1 (paper equation 1).
     double confidence = 2;
@@ -36,9 +36,9 @@ struct PaperOptions {
     /// If a walk of `predictive` ends nowhere, its ray is cast in full (counted in StepDetails); off, it is given up.
     bool cast_lost_walks = true;
     /// No ray is cast for a vertex that a grid of the mesh knows to be outside, or too far off to be predicted, and no
-    /// pair is tested in full while nothing is near (docs/design.md). Off, `standard`, `iterative` and `predictive`
-    /// cast every ray of the paper's rule, with `iterative` and `predictive` whenever a pair has moved by its
-    /// threshold, on which their contacts depend; those of `standard` do not. `certified` does not look at it.
+    /// pair is tested in full while nothing is near (docs/internals/paper-map.md). Off, `standard`, `iterative` and
+    /// `predictive` cast every ray of the paper's rule, with `iterative` and `predictive` whenever a pair has moved by
+    /// its threshold, on which their contacts depend; those of `standard` do not. `certified` does not look at it.
     bool skip_outside = true;
     friend bool operator==(const PaperOptions&, const PaperOptions&) = default;
 };

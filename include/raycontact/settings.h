@@ -15,7 +15,7 @@ enum class Method {
     standard,   ///< nothing: every ray in full, every step; the reference
     iterative,  ///< a pair that moved little only follows last step's contacts (LGA13; paper section 3)
     predictive, ///< as iterative, and also follows vertices about to touch (paper section 3.1, Algorithm 1)
-    certified,  ///< skips what cannot touch yet; the contacts are those of `standard` (docs/certified.md)
+    certified,  ///< skips what cannot touch yet; the contacts are those of `standard` (docs/internals/certified.md)
 };
 
 /// What a contact's normal and depth are made of.
@@ -29,7 +29,7 @@ enum class Direction {
 /// Which features of a mesh can be in contact.
 enum class Features {
     vertices, ///< vertices alone: the rule of Hermann et al. 2008 and the paper (section 2.1)
-    edges,    ///< vertices and sharp edges: no two closed meshes can intersect unnoticed (docs/edges.md)
+    edges,    ///< vertices and sharp edges: no two closed meshes can intersect unnoticed (docs/internals/edges.md)
 };
 
 /// Of the smaller body's box diagonal: how near bodies have speculative contacts that do not hurry.
@@ -42,14 +42,15 @@ struct Settings {
     Features features = Features::edges;
 
     /// Also finds contacts before anything touches, with depth <= 0: what lies nearer than a margin, and what will
-    /// touch on its way to the next step, so that a solver stops bodies at the surface (docs/speculative.md). Empty: as
-    /// whoever owns the scene has it; a Scene of your own: no; a Bullet CollisionDispatcher and `raycontact run`: yes.
+    /// touch on its way to the next step, so that a solver stops bodies at the surface (docs/internals/speculative.md).
+    /// Empty: as whoever owns the scene has it; a Scene of your own: no; a Bullet CollisionDispatcher and `raycontact
+    /// run`: yes.
     std::optional<bool> speculative;
     /// Metres: the margin. Empty: speculative_share of the smaller body's box diagonal.
     std::optional<double> speculative_margin;
     bool is_speculative() const { return speculative.value_or(false); }
-    /// Of each pair the contacts that stand for all of them, no more than this (docs/reduction.md); at least the
-    /// deepest. 0: all contacts. The rest is counted in StepStats.
+    /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md#fewer-contacts); at
+    /// least the deepest. 0: all contacts. The rest is counted in StepStats.
     std::uint32_t max_contacts_per_pair = 0;
     /// The same for the whole scene: each pair in contact keeps its deepest, if need be beyond the limit.
     std::uint32_t max_contacts = 0;

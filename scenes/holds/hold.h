@@ -49,7 +49,7 @@ struct Hold {
     int sample = 6;                    ///< steps from one exact look to the next
 };
 
-/// In the order in which docs/holds.md has them.
+/// In the order in which docs/internals/bullet-measurements.md has them.
 std::vector<Hold> all_holds();
 
 } // namespace raycontact::scenes

@@ -13,8 +13,8 @@
 
 namespace raycontact {
 
-/// Leaves the contacts that stand for all, where the settings ask for fewer (docs/reduction.md). Each pair is looked at
-/// alone, its contacts in their order, so no device and no thread changes what stays.
+/// Leaves the contacts that stand for all, where the settings ask for fewer (docs/conventions.md#fewer-contacts). Each
+/// pair is looked at alone, its contacts in their order, so no device and no thread changes what stays.
 class ContactReducer {
 public:
     /// contacts: sorted; changes: of the last step, for the points that were there. Contacts that stay keep their

@@ -12,9 +12,9 @@
 
 namespace raycontact {
 
-/// Adds the contacts of edges, of bodies inside others (docs/edges.md), and of what does not touch yet
-/// (docs/speculative.md), to those of the vertices. It works on the host, in double, for every device: so its contacts
-/// are the same for all.
+/// Adds the contacts of edges, of bodies inside others (docs/internals/edges.md), and of what does not touch yet
+/// (docs/internals/speculative.md), to those of the vertices. It works on the host, in double, for every device: so its
+/// contacts are the same for all.
 class EdgeStage {
 public:
     /// local: the vertex contacts; speculative: those that do not touch yet. asked: in the order of the pairs.

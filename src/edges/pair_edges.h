@@ -11,7 +11,7 @@
 
 namespace raycontact {
 
-/// The edges' rule for one pair (docs/edges.md). Keeps nothing but memory from one pair to the next.
+/// The edges' rule for one pair (docs/internals/edges.md). Keeps nothing but memory from one pair to the next.
 class PairEdges {
 public:
     /// near: the edges that could cross. vertices: the vertex contacts of a, of b.

@@ -13,7 +13,7 @@ namespace raycontact {
 
 /// One direction of a pair for the edges' rule: the source's vertices in the target's centred frame, in double. Each is
 /// moved inwards by a perturbation and shaken by a hundredth of it, so that aligned faces, shared vertices and
-/// coincident edges decide nothing (docs/edges.md).
+/// coincident edges decide nothing (docs/internals/edges.md).
 struct SourceMesh {
     const ShapeData& source;
     const ShapeData& target;
@@ -95,7 +95,7 @@ inline std::array<std::uint32_t, 2> ends_of(const ShapeData& shape, std::uint32_
 inline bool is_sharp(const ShapeData& shape, std::uint32_t edge) {
     return (shape.sharp_edges[edge / 3] >> (edge % 3) & 1u) != 0;
 }
-/// How deep an overlap can be that it alone crosses, metres (docs/edges.md). edge: by its lowest triangle.
+/// How deep an overlap can be that it alone crosses, metres (docs/internals/edges.md). edge: by its lowest triangle.
 inline double hidden_by(const ShapeData& shape, std::uint32_t edge) {
     return shape.hides[edge / 3][edge % 3];
 }

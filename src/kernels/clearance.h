@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far points can move before they could be in contact. A clearance grid stores for each cell a ball that contains
-// no surface (docs/certified.md).
+// no surface (docs/internals/certified.md).
 
 // A clearance grid, without its balls.
 STRUCT(Clearance) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the edges of the source that may cross faces of the target, and casts them as segments (docs/edges.md); the
-// same of edges, and of vertices as points, that come near faces on their way (docs/speculative.md). In float32, with a
-// margin for all that this could hide: the host decides in double what was found.
+// Finds the edges of the source that may cross faces of the target, and casts them as segments
+// (docs/internals/edges.md); the same of edges, and of vertices as points, that come near faces on their way
+// (docs/internals/speculative.md). In float32, with a margin for all that this could hide: the host decides in double
+// what was found.
 
 #define DIAGONAL_TOLERANCES 1048576.0f // ShapeHeader.tolerance is 2^-20 of the box diagonal
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests whether what is kept of a ray (Held) still decides it (docs/certified.md), for a group of rays, one in each
-// lane. Nearly every ray at rest is decided so.
+// Tests whether what is kept of a ray (Held) still decides it (docs/internals/certified.md), for a group of rays, one
+// in each lane. Nearly every ray at rest is decided so.
 
 #define LIMIT_TOLERANCES 4.0f
 #define EDGE_TOLERANCES 4.0f

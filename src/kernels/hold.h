@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that need not be cast again (docs/certified.md). A swept clearance (swept_clearance.h) lasts until a point of
-// the ray has moved by its radius: until then the ray can meet only one triangle, or none. A triangle's normal-cone
-// ball is tested in each step (normal_cone.h).
+// Rays that need not be cast again (docs/internals/certified.md). A swept clearance (swept_clearance.h) lasts until a
+// point of the ray has moved by its radius: until then the ray can meet only one triangle, or none. A triangle's
+// normal-cone ball is tested in each step (normal_cone.h).
 
 #define WAIT_STEPS 3.0f     // before the next search, if the last swept clearance was hardly wide enough for one step
 #define WORTH_HOLDING 0.02f // of the search radius

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normal-cone balls (docs/certified.md): each triangle of a closed, outward mesh has balls around its centre in which
-// all normals are within an angle of its own. A ray that begins in such a ball and runs along these normals leaves the
-// mesh at most once. ShapeHeader.normal_cones: the radii of two such balls, for a narrow angle in the lower half; 0:
-// none. Rays that no swept clearance decides are tested against the normal-cone balls of their triangles, as a group,
-// and go on to neighbours.
+// Normal-cone balls (docs/internals/certified.md): each triangle of a closed, outward mesh has balls around its centre
+// in which all normals are within an angle of its own. A ray that begins in such a ball and runs along these normals
+// leaves the mesh at most once. ShapeHeader.normal_cones: the radii of two such balls, for a narrow angle in the lower
+// half; 0: none. Rays that no swept clearance decides are tested against the normal-cone balls of their triangles, as a
+// group, and go on to neighbours.
 
 #define CONE_UNIT_TOLERANCES 2.0f // a step of the stored radii
 // The two angles: 30 and 55 degrees.

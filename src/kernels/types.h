@@ -44,8 +44,9 @@ STRUCT_OF_ROWS(TriangleBlock) {
 };
 WIRE_SIZE(TriangleBlock, 640);
 
-// Sixteen child boxes, grown by the rounding error of a ray test (docs/design.md). bounds[axis] are the lower planes,
-// bounds[3 + axis] the upper ones. child: a node, or LEAF | triangle block. Empty lanes have inverted boxes.
+// Sixteen child boxes, grown by the rounding error of a ray test (docs/internals/devices.md). bounds[axis] are the
+// lower planes, bounds[3 + axis] the upper ones. child: a node, or LEAF | triangle block. Empty lanes have inverted
+// boxes.
 STRUCT_OF_ROWS(Node) {
     float bounds[6][NODE_LANES];
     uint child[NODE_LANES];
@@ -69,7 +70,8 @@ WIRE_SIZE(VertexBlock, 512);
 STRUCT_OF_ROWS(ClusterBlock) {
     float centre[3][VERTEX_LANES];
     float half_size[3][VERTEX_LANES];
-    float hides[VERTEX_LANES]; // what an edge below hides, at most, metres (docs/edges.md); of vertices UNBOUNDED
+    float hides[VERTEX_LANES]; // what an edge below hides, at most, metres (docs/internals/edges.md); of vertices
+                               // UNBOUNDED
 };
 WIRE_SIZE(ClusterBlock, 448);
 

@@ -33,7 +33,7 @@ double smaller_size(const PlacedBody& a, const PlacedBody& b);
 double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b);
 
 /// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
-/// against b, + 1 for vertices of b against a (docs/design.md).
+/// against b, + 1 for vertices of b against a (docs/internals/pipeline.md).
 struct DirectedBodies {
     const PlacedBody& source;
     const PlacedBody& target;

@@ -15,7 +15,7 @@ namespace raycontact {
 using kernels::NearEdge;
 
 /// Where a vertex of a pair is in contact, an edge counts if it hides more than this part of the smaller body's
-/// diagonal; one that ends at such a vertex, more than the second (docs/edges.md).
+/// diagonal; one that ends at such a vertex, more than the second (docs/internals/edges.md).
 inline constexpr double least_hidden = 0.01, least_hidden_beside = 0.1;
 
 /// Whether edges can be in contact at all: of two open meshes vertices alone decide.

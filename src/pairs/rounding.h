@@ -8,7 +8,7 @@
 namespace raycontact {
 
 /// What float32 rounding could hide from a certificate, metres: that of two transforms, of the ray test and of a clock,
-/// each several times over (docs/certified.md, Rounding).
+/// each several times over (docs/internals/certified.md, Rounding).
 inline double rounding_margin(const PlacedBody& source, const PlacedBody& target) {
     const double apart = length(source.centred.translation - target.centred.translation);
     return 1e-5 * target.shape->data().diagonal + 4e-6 * (source.shape->data().reach + apart);

@@ -15,8 +15,8 @@ public:
     explicit BlockSearch(Sources sources = Sources::vertices) : sources_(sources) {}
 
     /// The blocks of all pairs that reach into the bounds; horizons as below. least: of edges, with horizons, those
-    /// that hide less (metres, by pair; docs/edges.md) are left out, as far as whole blocks do; may be empty. Does not
-    /// wait: totals[at] says on the device how many there are. If they have too little room, none is written
+    /// that hide less (metres, by pair; docs/internals/edges.md) are left out, as far as whole blocks do; may be empty.
+    /// Does not wait: totals[at] says on the device how many there are. If they have too little room, none is written
     /// (had_room()).
     void find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
               const Array<float>& least, const Array<kernels::Totals>& totals, std::size_t at);

@@ -211,8 +211,8 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
     });
 }
 
-// Decides most rays by the one triangle that each can meet (docs/certified.md). A certified vertex may have left the
-// bounds; the kernels of both casters test that.
+// Decides most rays by the one triangle that each can meet (docs/internals/certified.md). A certified vertex may have
+// left the bounds; the kernels of both casters test that.
 void CertifiedRays::decide(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     if (casts_all(update)) {

@@ -13,9 +13,9 @@
 namespace raycontact {
 
 /// The rays of a step by the certified method: those of `standard` that could be contacts, and hardly any other
-/// (docs/certified.md). Each directed pair candidates the vertex blocks within some distance of its target. A block,
-/// and a pair, is due once the pair has moved as far as the nearest vertex was from touching. Pairs for which this
-/// does not pay off are left to `standard`. Needs memory that host and device share.
+/// (docs/internals/certified.md). Each directed pair candidates the vertex blocks within some distance of its target. A
+/// block, and a pair, is due once the pair has moved as far as the nearest vertex was from touching. Pairs for which
+/// this does not pay off are left to `standard`. Needs memory that host and device share.
 class CertifiedRays {
 public:
     /// The hits are those of `standard`; most of these rays are not cast (with caster basic all are).

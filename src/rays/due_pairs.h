@@ -52,7 +52,7 @@ struct Slack {
     bool open = false;       ///< it has lists
     bool casts = false;      ///< it has rays, to be decided in every step
     bool apart = false;      ///< as AskedPair's, while its near edges last
-    bool all = false;        ///< its near edges have those that hide little, too (docs/edges.md)
+    bool all = false;        ///< its near edges have those that hide little, too (docs/internals/edges.md)
     bool has_points = false; ///< it has near vertices
 };
 

@@ -9,15 +9,15 @@
 namespace raycontact {
 
 /// The near edges, or the near vertices, that the certified method keeps of its pairs. They were sought some way beyond
-/// what is needed, and last until the pair has moved that far (docs/certified.md). Needs memory that host and device
-/// share.
+/// what is needed, and last until the pair has moved that far (docs/internals/certified.md). Needs memory that host and
+/// device share.
 class NearLists {
 public:
     struct Search {
         std::uint32_t pair;  ///< its place
         float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
         float speculative;   ///< of what is needed: metres within which they have speculative contacts
-        float least;         ///< metres: edges that hide less may be left out (docs/edges.md)
+        float least;         ///< metres: edges that hide less may be left out (docs/internals/edges.md)
         bool moves;          ///< what they come near on their way to the next step is needed
     };
     NearLists(BlockSearch::Sources sources, KeptNear CertifiedPair::*kept, double Slack::*slack)

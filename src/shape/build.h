@@ -45,8 +45,8 @@ void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::s
 
 /// Fills `clearances` and its part of the header: for each cubic cell around the shape the largest useful ball that no
 /// surface enters, and whether it is certainly outside (closed, outward meshes only). One look-up tells how far a
-/// vertex can move before it could touch (docs/certified.md). No contact depends on it; a coarser grid only makes pairs
-/// be due earlier.
+/// vertex can move before it could touch (docs/internals/certified.md). No contact depends on it; a coarser grid only
+/// makes pairs be due earlier.
 void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop);
 
 /// The one of a single cell, which every shape has: that a point outside the box is outside, and how far.

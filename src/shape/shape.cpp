@@ -130,8 +130,8 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     for (const Vec3& n : normals)
         shape.face_normals.push_back({static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
 
-    // Bounds of the float32 error in a ray test, with a margin: docs/design.md derives them. Rays into an open mesh may
-    // start well outside its box.
+    // Bounds of the float32 error in a ray test, with a margin: docs/internals/devices.md derives them. Rays into an
+    // open mesh may start well outside its box.
     shape.header.closed = shape.mesh.report.closed && shape.mesh.report.oriented ? 1 : 0;
     shape.header.outward = shape.header.closed != 0 && shape.mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);

@@ -14,7 +14,7 @@ namespace raycontact {
 /// A vertex or box corner as the kernels see it: float32, relative to the shape's centre.
 using Point3f = kernels::Packed3;
 
-/// Where an array is, for AT() without a buffer (docs/dialect.md).
+/// Where an array is, for AT() without a buffer (docs/internals/dialect.md).
 template <class T>
 kernels::ulong host_place(const std::vector<T>& values) {
     return reinterpret_cast<std::uintptr_t>(values.data()) / sizeof(kernels::ulong);
@@ -40,9 +40,10 @@ struct Shape::Data : TriangleTree {
     /// lowest triangle.
     std::vector<std::uint8_t> sharp_edges;
     /// Per triangle and edge of which it is the lowest triangle: how deep an overlap can be that the edge alone
-    /// crosses, metres (docs/edges.md).
+    /// crosses, metres (docs/internals/edges.md).
     std::vector<std::array<float, 3>> hides;
-    std::vector<Vec3> perturbations; ///< per vertex, how the edges' rule moves it, in perturbations (docs/edges.md)
+    std::vector<Vec3>
+        perturbations; ///< per vertex, how the edges' rule moves it, in perturbations (docs/internals/edges.md)
     std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points

@@ -11,8 +11,8 @@
 
 namespace raycontact {
 
-/// A pair whose speculative contacts are asked for (docs/speculative.md): what is nearer than a margin, and what will
-/// touch on its way to the next step. They are found in double, so they are the same for every device.
+/// A pair whose speculative contacts are asked for (docs/internals/speculative.md): what is nearer than a margin, and
+/// what will touch on its way to the next step. They are found in double, so they are the same for every device.
 struct SpeculativePair {
     SpeculativePair(const PlacedBody& first, const PlacedBody& second, double within);
 
@@ -31,7 +31,7 @@ void find_speculative_vertices(const SpeculativePair& pair, const NearEdges& nea
 
 /// Adds those of two edges in any order, but for those that `found` has already. near: as NearEdges. told: a vertex of
 /// the pair has a contact, of whatever kind: then, as of a pair that goes far in a step, only edges that hide much are
-/// asked (docs/edges.md).
+/// asked (docs/internals/edges.md).
 void find_speculative_edges(const SpeculativePair& pair, bool told, const NearEdges& near,
                             std::vector<FeatureContact>& found);
 

@@ -12,7 +12,7 @@
 
 namespace raycontact {
 
-/// The speculative contacts of the vertices of all pairs (docs/speculative.md).
+/// The speculative contacts of the vertices of all pairs (docs/internals/speculative.md).
 class SpeculativeVertices {
 public:
     /// touching: the contacts of vertices. asked: in the order of the pairs, with vertices for edges.

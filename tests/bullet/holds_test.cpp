@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of scenes/holds, shortened: nothing passes through anything, and what rests is slow. The whole runs are
-// raycontact-bench holds (docs/holds.md).
+// raycontact-bench holds (docs/internals/bullet-measurements.md).
 #include <scenes/holds/depth.h>
 #include <scenes/holds/run.h>
 

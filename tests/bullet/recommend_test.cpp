@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each of the recommended settings is for: run it to see the figures of docs/solvers.md.
+// What each of the recommended settings is for: run it to see the figures of docs/internals/bullet-measurements.md.
 #include "test_world.h"
 
 #include <raycontact/bullet/recommend.h>

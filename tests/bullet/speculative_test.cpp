@@ -298,7 +298,7 @@ TEST(Speculative, ABarComesToRestOnAPrism) {
     }
 }
 
-// Edges touch once they are some perturbations deep (docs/edges.md); until then they must be near.
+// Edges touch once they are some perturbations deep (docs/internals/edges.md); until then they must be near.
 TEST(Speculative, NoDepthIsWithoutContact) {
     const auto prism = Shape::make(prism_mesh(6, 0.5, 0.2)), bar = Shape::make(box_mesh(1, 0.08, 0.02));
     Settings settings;

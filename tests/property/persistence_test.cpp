@@ -117,7 +117,7 @@ void print(const Features& found, double by) {
                     found[i].farthest);
 }
 
-// Edges that lie along each other have no one point where they pass (docs/edges.md): few of them may jump.
+// Edges that lie along each other have no one point where they pass (docs/internals/edges.md): few of them may jump.
 TEST(persistence, few_points_of_flush_edges_jump) {
     const Features found = move(60, 1e-6, true);
     print(found, 1e-6);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which contacts stay where Settings::max_contacts_per_pair or max_contacts ask for fewer (docs/reduction.md).
+// Which contacts stay where Settings::max_contacts_per_pair or max_contacts ask for fewer
+// (docs/conventions.md#fewer-contacts).
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "reference/vector.h"

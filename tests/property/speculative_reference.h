@@ -15,8 +15,8 @@
 
 namespace raycontact::reference {
 
-// What speculative contacts a pair has (docs/speculative.md), by brute force and in double: each vertex's straight way
-// and its distance from every triangle, each edge against each other.
+// What speculative contacts a pair has (docs/internals/speculative.md), by brute force and in double: each vertex's
+// straight way and its distance from every triangle, each edge against each other.
 
 inline Vec3 to_local(const Subject& subject, const Pose& pose, const Vec3& world) {
     return rotate_back(pose, world - pose.translation) - subject.solid.centre;
@@ -34,7 +34,7 @@ struct View {
     Vec3 at_then(const Vec3& p) const { return to_local(target, target_then, to_world(source, then, p)); }
     Vec3 turned(const Vec3& n) const { return rotate_back(target_now, rotate(now, n)); }
     double size() const { return std::min(source.solid.diagonal, target.solid.diagonal); }
-    /// The bound by which a pair hurries (docs/speculative.md).
+    /// The bound by which a pair hurries (docs/internals/speculative.md).
     double way() const {
         double turn = 0;
         for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {

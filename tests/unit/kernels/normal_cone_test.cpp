@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays known by a triangle's normal-cone ball meet what a cast says that they meet, and keep to all that the proof asks
-// of them (docs/certified.md): what a cast says differs so seldom near the limits that it alone would miss a limit left
-// out.
+// of them (docs/internals/certified.md): what a cast says differs so seldom near the limits that it alone would miss a
+// limit left out.
 #include "pairs/rounding.h"
 #include "property/crowds.h"
 #include "scenes/models/model.h"

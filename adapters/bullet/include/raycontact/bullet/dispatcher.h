@@ -104,10 +104,10 @@ struct PointKey {
 /// findAlgorithm and processCollision. Call refresh() for a mesh or hull that was changed in place. Not thread-safe,
 /// like Bullet's.
 ///
-/// Unless Settings::speculative is false, meshes have speculative contacts, too (docs/speculative.md): points that do
-/// not touch yet. Their distance is positive, so Bullet's solver stops bodies at the surface. Of a point that will
-/// bounce, getDistance() is no gap once the callbacks were called: it is far below 0, which makes the solver give back
-/// what restitution says. The point's positions stay true.
+/// Unless Settings::speculative is false, meshes have speculative contacts, too (docs/internals/speculative.md): points
+/// that do not touch yet. Their distance is positive, so Bullet's solver stops bodies at the surface. Of a point that
+/// will bounce, getDistance() is no gap once the callbacks were called: it is far below 0, which makes the solver give
+/// back what restitution says. The point's positions stay true.
 class CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction

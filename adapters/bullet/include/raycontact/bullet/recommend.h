@@ -9,7 +9,7 @@ class btDiscreteDynamicsWorld;
 
 namespace raycontact::bullet {
 
-/// What recommend() asks of Bullet's solver. docs/solvers.md has the reason and the figure of each.
+/// What recommend() asks of Bullet's solver. docs/bullet.md has the reason and the figure of each.
 struct SolverSettings {
     /// Metres that a contact may stay deep. Empty: a thousandth of the smallest moving body's size, without speculative
     /// contacts five thousandths. Without them a vertex is in contact only while it is inside: pushed out to the
