@@ -2,9 +2,9 @@
 #include <reproduce/plane_test.h>
 
 #include <raycontact/scene.h>
+#include <reproduce/penalty.h>
 #include <scenes/models/trigonometry.h>
 #include <scenes/random.h>
-#include <scenes/response/penalty.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ double lowest(const Shape& shape, const std::array<double, 9>& r) {
 
 Deviation plane_deviation(const PlaneTest& test, Direction direction) {
     // Nothing moves: no damper acts, and nothing slides. A ratio of forces does not depend on the stiffness.
-    constexpr scenes::Penalty springs{.stiffness = 1};
+    constexpr Penalty springs{.stiffness = 1};
     Settings settings;
     settings.features = Features::vertices;
     settings.method = Method::standard;
@@ -81,7 +81,7 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
         }
         std::vector<Vec3> force(test.orientations); // on the plane
         for (const Contact& contact : scene.find_contacts(pairs)) {
-            const Vec3 push = scenes::penalty_force(springs, contact);
+            const Vec3 push = penalty_force(springs, contact);
             Vec3& of = force[contact.body_a.slot];
             of = {of.x + push.x, of.y + push.y, of.z + push.z};
         }

@@ -42,7 +42,7 @@ TEST(MeshShape, BoxHoldsEveryVertexAndFitsSnugly) {
                     EXPECT_LE(low[k], least[k] + btScalar(1e-6));
                     EXPECT_GE(high[k], most[k] - btScalar(1e-6));
                     if (bounds == bullet::Bounds::vertices) {
-                        EXPECT_LT(least[k] - low[k], btScalar(0.08));
+                        EXPECT_LT(least[k] - low[k], btScalar(0.09));
                     }
                 }
             }

@@ -2,9 +2,9 @@
 // Springs and dampers at the contacts, by hand and beside Bullet's sequential impulses.
 #include "test_world.h"
 
+#include "penalty_world.h"
 #include <raycontact/bullet/recommend.h>
 #include <scenes/models/procedural.h>
-#include <scenes/response/penalty_world.h>
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,8 @@
 namespace raycontact::test {
 namespace {
 
-using scenes::Penalty;
-using scenes::penalty_force;
-using scenes::PenaltyWorld;
+using reproduce::Penalty;
+using reproduce::penalty_force;
 
 constexpr double gravity = 9.81, density = 1000;
 constexpr double step = 1.0 / 1200;

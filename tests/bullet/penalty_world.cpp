@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/response/penalty_world.h>
+#include "penalty_world.h"
 
 #include "mesh/vector.h"
 
 #include <raycontact/mass.h>
 
-namespace raycontact::scenes {
+namespace raycontact::test {
 
 namespace {
 
@@ -93,4 +93,4 @@ double PenaltyWorld::energy() const {
     return sum;
 }
 
-} // namespace raycontact::scenes
+} // namespace raycontact::test

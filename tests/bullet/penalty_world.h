@@ -2,13 +2,16 @@
 #pragma once
 
 #include <raycontact/scene.h>
-#include <scenes/response/penalty.h>
+#include <reproduce/penalty.h>
 
 #include <array>
 #include <memory>
 #include <vector>
 
-namespace raycontact::scenes {
+namespace raycontact::test {
+
+using reproduce::Penalty;
+using reproduce::penalty_force;
 
 /// Rigid bodies whose contacts answer with springs and dampers: a small reference beside sequential impulses. Steps are
 /// explicit, so they must be short: dt^2 x stiffness of all of a body's contacts well below its mass.
@@ -48,4 +51,4 @@ private:
     std::vector<Body> bodies_; ///< by slot
 };
 
-} // namespace raycontact::scenes
+} // namespace raycontact::test
