@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/clash.h"
+#include "cli/commands.h"
 
 #include "cli/exit_status.h"
 #include "cli/number_option.h"
@@ -14,6 +14,7 @@
 
 #include <raycontact/error.h>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

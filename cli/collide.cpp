@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/collide.h"
+#include "cli/commands.h"
 
 #include "cli/cavities_option.h"
 #include "cli/coarse.h"

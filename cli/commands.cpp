@@ -1,16 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
-#include "cli/clash.h"
-#include "cli/collide.h"
-#include "cli/devices.h"
-#include "cli/mesh.h"
-#include "cli/replay.h"
-#include "cli/reproduce.h"
-#include "cli/run.h"
-#include "cli/samples.h"
-#include "cli/view.h"
-
 void add_commands(CLI::App& app) {
     add_devices(app);
     add_samples(app);

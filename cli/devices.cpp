@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/devices.h"
+#include "cli/commands.h"
 
 #include <raycontact/device.h>
 #include <raycontact/settings.h>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/mesh.h"
+#include "cli/commands.h"
 
 #include "cli/cavities_option.h"
 #include "cli/complain.h"
@@ -7,6 +7,7 @@
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <iostream>

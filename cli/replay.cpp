@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/replay.h"
+#include "cli/commands.h"
 
 #include "cli/common_options.h"
 #include "cli/out_option.h"

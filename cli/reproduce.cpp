@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/reproduce.h"
+#include "cli/commands.h"
 
 #include "cli/out_option.h"
 #include "cli/progress.h"
 
 #include <reproduce/reproduce.h>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/run.h"
+#include "cli/commands.h"
 
 #include "cli/coarse.h"
 #include "cli/common_options.h"

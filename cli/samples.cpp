@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/samples.h"
+#include "cli/commands.h"
 
 #include "cli/out_option.h"
 
@@ -9,6 +9,7 @@
 #include <scenes/models/model.h>
 #include <scenes/stacks/solids.h>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
