@@ -3,6 +3,7 @@
 
 #include <raycontact/contact.h>
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
 #include <raycontact/query.h>
@@ -24,7 +25,7 @@ struct CollideOptions {
 /// `a` is body 0 and `b` body 1; normals point from a to b. It copies the arrays of both shapes: to ask about the same
 /// shapes in many poses, keep a Scene. Safe to call from several threads. Throws InputError for a pose that is not
 /// finite and rigid.
-std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                             const CollideOptions& options = {});
+RAYCONTACT_API std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                                            const CollideOptions& options = {});
 
 } // namespace raycontact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/body_id.h>
+#include <raycontact/export.h>
 #include <raycontact/settings.h>
 #include <raycontact/vector.h>
 
@@ -82,7 +83,7 @@ struct LostContact {
 /// Layout per contact: step, slots of a and b, source + 2 x kind, index on the source, index on the other body as
 /// little-endian uint32; normal, depth, ray_length and, with direction `weighted` alone, weight as float32 bits; the
 /// source's point as float64 bits.
-class ContactHash {
+class RAYCONTACT_API ContactHash {
 public:
     /// direction: of the contacts that will be added.
     /// speculative: speculative contacts count, too. Without them the hash does not depend on Settings::speculative.

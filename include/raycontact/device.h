@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -43,9 +44,9 @@ struct Settings;
 
 /// The ids that Execution::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is
 /// malformed or names a device twice or beside its own part; does not open any.
-std::vector<std::string> chosen_devices(const Settings& settings);
+RAYCONTACT_API std::vector<std::string> chosen_devices(const Settings& settings);
 
 /// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.
-std::vector<DeviceInfo> list_devices();
+RAYCONTACT_API std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -30,7 +31,7 @@ struct Execution {
 };
 
 /// The word of the command line; throws InputError naming what is known.
-Schedule schedule_from(std::string_view word);
-std::string_view to_string(Schedule);
+RAYCONTACT_API Schedule schedule_from(std::string_view word);
+RAYCONTACT_API std::string_view to_string(Schedule);
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 
 #include <cstdint>
@@ -34,16 +35,18 @@ struct ManifoldPatch {
 /// Adds each point to the patch whose normal is most like its own, if it is like it by `cosine` and within reach; else
 /// the point begins a patch. The deepest go first; ties go to the first in the list. patches: none, or those of the
 /// step before without points.
-void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vector<ManifoldPatch>& patches);
+RAYCONTACT_API void join_patches(std::span<const ManifoldPoint> points, double cosine,
+                                 std::vector<ManifoldPatch>& patches);
 
 /// Whether the two say the same: at one place, their normals alike by a cosine of 0.98.
-bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b);
+RAYCONTACT_API bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b);
 
 /// Chooses at most four points of a patch: up to four extremes, each the one that lies farthest from the convex hull of
 /// those before (of points that were there by a factor of two farther; the first is farthest from the middle); then
 /// the deepest (one that was there counts as a tenth deeper) in place of the extreme that adds least, if it is not
 /// among them; then the deepest of the rest. None says what another says. So the forces of a solver keep what torque
 /// four points can keep, and the points stay while a body rocks. The deepest comes first, then the extremes.
-std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch);
+RAYCONTACT_API std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points,
+                                                        std::span<const std::uint32_t> patch);
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 
 #include <array>
@@ -26,21 +27,21 @@ struct Mesh {
 /// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
 /// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: a missing,
 /// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
-Mesh load_mesh(const std::filesystem::path& file);
+RAYCONTACT_API Mesh load_mesh(const std::filesystem::path& file);
 
 enum class MeshFormat { obj, stl, ply, off, gltf, glb };
 
 /// The same from memory: the bytes of a whole file. name: for messages and Mesh::name.
 /// Throws InputError, which names it, as for a file; also for a glTF file whose buffers are files of their own.
-Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
+RAYCONTACT_API Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
 
 /// From arrays. coordinates: x, y, z of each vertex, metres; corners: three vertices of each triangle,
 /// counter-clockwise seen from outside. Throws InputError naming it and the element to blame for: no triangles, a
 /// number that is not a multiple of three, a vertex that does not exist, a coordinate not finite.
-Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
-               const std::string& name = {});
-Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
-               const std::string& name = {});
+RAYCONTACT_API Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
+                              const std::string& name = {});
+RAYCONTACT_API Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
+                              const std::string& name = {});
 
 /// What a mesh is, after the repairs it names.
 struct MeshReport {
@@ -98,8 +99,9 @@ struct PreparedMesh {
 
 /// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError when no
 /// triangle with an area is left.
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound,
-                          Check check = Check::full, std::uint32_t threads = 0);
+RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed,
+                                         Nesting nesting = Nesting::as_wound, Check check = Check::full,
+                                         std::uint32_t threads = 0);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
 /// itself.
@@ -107,10 +109,10 @@ struct Verdict {
     bool good;
     std::string text; ///< one line: "good for contacts", or what is wrong and what to do
 };
-Verdict verdict_of(const MeshReport& report);
+RAYCONTACT_API Verdict verdict_of(const MeshReport& report);
 
 /// As text for a person, or as the JSON of `raycontact mesh --json`.
-std::string to_text(const MeshReport& report);
-std::string to_json(const MeshReport& report);
+RAYCONTACT_API std::string to_text(const MeshReport& report);
+RAYCONTACT_API std::string to_json(const MeshReport& report);
 
 } // namespace raycontact

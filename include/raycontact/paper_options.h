@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -44,7 +45,7 @@ struct PaperOptions {
 };
 
 /// The word of the command line; throws InputError naming what is known.
-Caster caster_from(std::string_view word);
-std::string_view to_string(Caster);
+RAYCONTACT_API Caster caster_from(std::string_view word);
+RAYCONTACT_API std::string_view to_string(Caster);
 
 } // namespace raycontact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 #include <raycontact/shape.h>
 
@@ -35,12 +36,12 @@ struct RayHit {
 /// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on exact predicates
 /// decide which triangles it meets (Shewchuk 1997), so none slips between two that share an edge. The distance is
 /// rounded. direction: of any length. Throws InputError where it is zero or not finite.
-std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
-                              double max = any_distance);
+RAYCONTACT_API std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin,
+                                             const Vec3& direction, double max = any_distance);
 
 /// Whether raycast() has a hit; ends at the first one found.
-bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
-                 double max = any_distance);
+RAYCONTACT_API bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
+                                double max = any_distance);
 
 /// The point of a surface that is nearest to another point.
 struct ClosestPoint {
@@ -52,8 +53,8 @@ struct ClosestPoint {
 /// The closest point of a mesh's surface, if it is within `max` metres. In double: right to some 1e-15 of the size of
 /// the mesh and its distance from the origins. Of a triangle that is a million times longer than wide only the edges
 /// are looked at.
-std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
-                                          double max = any_distance);
+RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
+                                                         double max = any_distance);
 
 /// The least distance of two meshes, and where it is.
 struct Distance {
@@ -67,21 +68,21 @@ struct Distance {
 /// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point(), but
 /// between edges parallel to some 1e-8: to 1e-8 of their length. Branch and bound over both trees. A small `max` saves
 /// work.
-std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                                 double max = any_distance);
+RAYCONTACT_API std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                                                double max = any_distance);
 
 /// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
 /// closed and wound alike everywhere. Exact: parts of one assembly that share faces touch. Where both poses are equal
 /// they do not matter at all. Ends at the first triangles that meet.
-bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+RAYCONTACT_API bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// A point that both share, to rounding: where two triangles meet, or a vertex of the one inside the other. Nothing if
 /// intersects() is false.
-std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
 /// Exact. The point is in the body frame, or in the world of a placed mesh.
-bool contains(const Shape& shape, const Vec3& point);
-bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
+RAYCONTACT_API bool contains(const Shape& shape, const Vec3& point);
+RAYCONTACT_API bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
 
 } // namespace raycontact

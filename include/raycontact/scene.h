@@ -4,6 +4,7 @@
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/prediction.h>
 #include <raycontact/query.h>
 #include <raycontact/settings.h>
@@ -34,7 +35,7 @@ struct BodyClosestPoint : ClosestPoint {
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
 /// call of find_contacts(). Not thread-safe; use one scene per thread.
-class Scene {
+class RAYCONTACT_API Scene {
 public:
     /// Throws InputError when settings name a device this machine or this version cannot use.
     explicit Scene(const Settings& settings = {});
@@ -122,7 +123,7 @@ public:
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
 private:
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/execution.h>
+#include <raycontact/export.h>
 #include <raycontact/paper_options.h>
 
 #include <cstdint>
@@ -59,14 +60,14 @@ struct Settings {
 };
 
 /// Throws InputError naming the setting that makes no sense, and what would.
-void check_settings(const Settings& settings);
+RAYCONTACT_API void check_settings(const Settings& settings);
 
 /// The words of the command line; throw InputError naming what is known.
-Method method_from(std::string_view word);
-Direction direction_from(std::string_view word);
-Features features_from(std::string_view word);
-std::string_view to_string(Method);
-std::string_view to_string(Direction);
-std::string_view to_string(Features);
+RAYCONTACT_API Method method_from(std::string_view word);
+RAYCONTACT_API Direction direction_from(std::string_view word);
+RAYCONTACT_API Features features_from(std::string_view word);
+RAYCONTACT_API std::string_view to_string(Method);
+RAYCONTACT_API std::string_view to_string(Direction);
+RAYCONTACT_API std::string_view to_string(Features);
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 
 #include <cstdint>
@@ -17,7 +18,7 @@ class Executor;
 
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
-class Shape : public std::enable_shared_from_this<Shape> {
+class RAYCONTACT_API Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. threads 0: one per core. Deterministic: equal input gives equal bits, whatever the
     /// threads. Throws InputError for a mesh without area.

@@ -4,7 +4,7 @@
 #include <raycontact/bullet/fault.h>
 #include <raycontact/bullet/precision.h>
 #include <raycontact/bullet/touch.h>
-#include <raycontact/recorder.h>
+#include <raycontact/export.h>
 #include <raycontact/scene.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -17,6 +17,10 @@
 #include <vector>
 
 class btCollisionWorld;
+
+namespace raycontact {
+struct RecorderOptions;
+}
 
 namespace raycontact::bullet {
 
@@ -108,7 +112,7 @@ struct PointKey {
 /// not touch yet. Their distance is positive, so Bullet's solver stops bodies at the surface. Of a point that will
 /// bounce, getDistance() is no gap once the callbacks were called: it is far below 0, which makes the solver give back
 /// what restitution says. The point's positions stay true.
-class CollisionDispatcher : public btCollisionDispatcher {
+class RAYCONTACT_API CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction
     /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
@@ -167,7 +171,9 @@ public:
     /// Records the meshes from the next dispatch on, for `raycontact view` and `replay`; see Recorder. A mesh is in the
     /// recording while it is in scene(): add_body() keeps it there even when nothing is near it. options.dt: of a
     /// dispatch. Throws InputError when the file cannot be made, or RayContact was built without recordings.
-    void record(const std::filesystem::path& file, const RecorderOptions& options = {});
+    void record(const std::filesystem::path& file);
+    /// The same with options, for which <raycontact/recorder.h> is needed.
+    void record(const std::filesystem::path& file, const RecorderOptions& options);
     /// Ends the recording with its hash. Does nothing where there is none.
     void finish_recording();
 
@@ -175,7 +181,7 @@ public:
     static PointKey key(const btManifoldPoint& point);
     static bool is_ours(const btManifoldPoint& point);
 
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
 
 private:
     std::unique_ptr<State> state_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 
 #include <string>
 #include <utility>
@@ -19,7 +20,7 @@ struct Fault {
 };
 
 /// CollisionDispatcher::add_body() throws it where a dispatch would leave the object out.
-class ObjectError : public InputError {
+class RAYCONTACT_API ObjectError : public InputError {
 public:
     explicit ObjectError(Fault fault) : InputError(fault.text), fault_(std::move(fault)) {}
     const Fault& fault() const { return fault_; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/bullet/precision.h>
+#include <raycontact/export.h>
 #include <raycontact/shape.h>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -22,7 +23,7 @@ enum class Bounds {
 /// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. CollisionDispatcher tests it against
 /// meshes, planes, height fields and, unless ConvexShapes::bullet is set, Bullet's convex shapes; Bullet's own
 /// algorithms do ray and sweep tests.
-ATTRIBUTE_ALIGNED16(class) MeshShape : public btConcaveShape {
+ATTRIBUTE_ALIGNED16(class) RAYCONTACT_API MeshShape : public btConcaveShape {
 public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/scene.h>
 
 #include <cstdint>
@@ -25,7 +26,7 @@ struct RecorderOptions {
 /// Records what a scene does: `raycontact replay` finds its contacts again, `raycontact view` shows it, and any glTF
 /// viewer plays it. Link raycontact::recording. Bodies may come and go as they like. Between two flushes (16 steps or a
 /// second) a crash loses steps; what was written stays readable. Not thread-safe, as the scene.
-class Recorder {
+class RAYCONTACT_API Recorder {
 public:
     /// Records from the scene's next step on; the scene must outlive it. The file's name should end in .glb; what was
     /// there is lost. Throws InputError when the file cannot be made, for dt <= 0, and for a scene of `iterative` or
@@ -50,7 +51,7 @@ public:
     std::string hash() const;      ///< of the contacts so far, as ContactHash gives it
 
 private:
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;
 };
 
