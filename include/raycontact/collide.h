@@ -15,10 +15,11 @@
 
 namespace raycontact {
 
+/// What collide() finds.
 struct CollideOptions {
-    Direction direction = Direction::reprojected;
-    Features features = Features::edges;
-    std::uint32_t threads = 1; ///< 0: one per core
+    Direction direction = Direction::reprojected; ///< what normals and depths are made of
+    Features features = Features::edges;          ///< what can be in contact
+    std::uint32_t threads = 1;                    ///< 0: one per core
 };
 
 /// The contacts of two meshes, once, without a scene: those that a Scene with the two bodies would find, sorted alike.

@@ -16,6 +16,7 @@ namespace raycontact {
 
 /// A contact to choose from. World frame, metres.
 struct ManifoldPoint {
+    /// Of a point that belongs to no patch yet.
     static constexpr std::uint32_t no_patch = std::numeric_limits<std::uint32_t>::max();
     Vec3 position;                  ///< between the witness points
     Vec3 normal;                    ///< unit
@@ -28,7 +29,8 @@ struct ManifoldPoint {
 
 /// Contacts with like normals near to one place.
 struct ManifoldPatch {
-    Vec3 normal, centre;               ///< of the point that began it
+    Vec3 normal;                       ///< of the point that began it
+    Vec3 centre;                       ///< the position of that point
     std::vector<std::uint32_t> points; ///< places in the list, the deepest first; equally deep, the first in the list
 };
 

@@ -12,7 +12,7 @@ namespace raycontact {
 /// Rigid placement of a body: x_world = rotation * x_body + translation. Right-handed, metres.
 struct Pose {
     std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1}; ///< row-major, orthonormal, determinant +1
-    Vec3 translation{};
+    Vec3 translation{};                                        ///< of the body origin, world frame, metres
     friend bool operator==(const Pose&, const Pose&) = default;
 };
 

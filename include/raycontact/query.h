@@ -21,6 +21,7 @@
 
 namespace raycontact {
 
+/// For queries without a greatest distance.
 constexpr double any_distance = std::numeric_limits<double>::infinity();
 
 /// Where a ray meets a mesh.
@@ -58,10 +59,12 @@ RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, con
 
 /// The least distance of two meshes, and where it is.
 struct Distance {
-    double distance = 0;   ///< metres; 0 exactly where intersects() is true
-    Vec3 point_a, point_b; ///< one on each surface, world frame; where they intersect, one that both share
-    /// On which the points lie, indices in the files. no_triangle for a mesh inside of which the other lies.
-    std::uint32_t triangle_a = Shape::no_triangle, triangle_b = Shape::no_triangle;
+    double distance = 0; ///< metres; 0 exactly where intersects() is true
+    Vec3 point_a;        ///< on the surface of a, world frame; where they intersect, one that both share
+    Vec3 point_b;        ///< likewise on that of b
+    /// On which point_a lies, index in the file. no_triangle for a mesh inside of which the other lies.
+    std::uint32_t triangle_a = Shape::no_triangle;
+    std::uint32_t triangle_b = Shape::no_triangle; ///< likewise for point_b
 };
 
 /// The least distance of two surfaces, if it is within `max` metres; 0 where they intersect, or one lies inside the
@@ -81,8 +84,10 @@ RAYCONTACT_API bool intersects(const Shape& a, const Pose& pose_a, const Shape& 
 RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
-/// Exact. The point is in the body frame, or in the world of a placed mesh.
+/// Exact. The point is in the body frame. Throws InputError for a point that is not finite or beyond 1e30 m.
 RAYCONTACT_API bool contains(const Shape& shape, const Vec3& point);
+/// The same of a placed mesh, the point in the world frame. Throws InputError also for a pose that is not finite and
+/// rigid.
 RAYCONTACT_API bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
 
 } // namespace raycontact

@@ -34,7 +34,9 @@ public:
     Recorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options = {});
     /// Without finish(): leaves a recording without a hash, which can be replayed and viewed.
     ~Recorder();
+    /// The one that is moved from records no more.
     Recorder(Recorder&&) noexcept;
+    /// Ends what was recorded here as ~Recorder() does.
     Recorder& operator=(Recorder&&) noexcept;
 
     /// After each Scene::find_contacts(): adds its step. Throws InputError when method, direction, features or
