@@ -130,8 +130,7 @@ void check_claims(PreparedMesh& mesh) {
     MeshReport& said = mesh.report;
     MeshReport found;
     try {
-        Executor executor(0);
-        found = measured_report(mesh, executor);
+        found = measured_report(mesh);
     } catch (const InputError& error) {
         throw Damage(error.what());
     }

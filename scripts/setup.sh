@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by build, demo and test: the one list of Debian 12 packages, and what to do when some are missing.
+# Sourced by the other scripts: the one list of Debian 12 packages, and what to do when some are missing.
 # shellcheck shell=bash disable=SC2034
 
 packages_build=(
@@ -9,12 +9,18 @@ packages_build=(
     libbullet-dev                                                      # the Bullet adapter
     libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev zlib1g-dev # the program, its scenes and report
 )
+packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
+    g++ cmake ninja-build libtbb-dev nlohmann-json3-dev libxxhash-dev libgtest-dev
+    locales # a test makes a locale with a decimal comma
+)
 packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd locales
     assimp-testmodels # mesh files of other programs
     python3-pip # brings the CUDA compiler that the kernels are checked with
     chromium python3) # open the pages
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact-bench peers`, both optional
+packages_reference=(doxygen)
+packages_package=(dpkg-dev file)
 packages_all=(clang clang-tidy oclgrind valgrind)
 
 say() { printf '== %s\n' "$*" >&2; }

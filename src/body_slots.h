@@ -4,6 +4,7 @@
 #include "slot_pair.h"
 
 #include <raycontact/body_id.h>
+#include <raycontact/export.h>
 
 #include <cstdint>
 #include <vector>
@@ -13,7 +14,7 @@ namespace raycontact {
 /// Gives bodies their ids by a rule that a replay repeats: always the lowest free slot. A slot is free again at once
 /// when no step has seen its body; otherwise once a step has seen it empty, so that nothing kept by slots from one step
 /// to the next can pass from a body to its successor. A slot that is out of generations is never given again.
-class BodySlots {
+class RAYCONTACT_API BodySlots { // shown to raycontact::recording
 public:
     /// first_generation: of a slot's first body; a late one lets a test see the last.
     explicit BodySlots(std::uint32_t first_generation = 0) : first_generation_(first_generation) {}

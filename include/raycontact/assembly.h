@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
 
@@ -21,6 +22,6 @@ struct AssemblyPart {
 /// Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh. Nodes
 /// without triangles are left out. Indices of a part's vertices and triangles begin at 0. Throws InputError as
 /// load_mesh().
-std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file);
+RAYCONTACT_API std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file);
 
 } // namespace raycontact

@@ -10,6 +10,7 @@ namespace raycontact {
 
 /// Names one body of one scene and is never given again. Scene::add() makes them; one of your own making is not valid.
 struct BodyId {
+    /// The slot of an id that is not valid.
     static constexpr std::uint32_t no_slot = std::numeric_limits<std::uint32_t>::max();
 
     /// The body's place in the scene, as small as can be: use it as an index into arrays of your own. It passes to

@@ -3,6 +3,7 @@
 
 #include <raycontact/contact.h>
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
 #include <raycontact/query.h>
@@ -14,17 +15,18 @@
 
 namespace raycontact {
 
+/// What collide() finds.
 struct CollideOptions {
-    Direction direction = Direction::reprojected;
-    Features features = Features::edges;
-    std::uint32_t threads = 1; ///< 0: one per core
+    Direction direction = Direction::reprojected; ///< what normals and depths are made of
+    Features features = Features::edges;          ///< what can be in contact
+    std::uint32_t threads = 1;                    ///< 0: one per core
 };
 
 /// The contacts of two meshes, once, without a scene: those that a Scene with the two bodies would find, sorted alike.
 /// `a` is body 0 and `b` body 1; normals point from a to b. It copies the arrays of both shapes: to ask about the same
 /// shapes in many poses, keep a Scene. Safe to call from several threads. Throws InputError for a pose that is not
 /// finite and rigid.
-std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                             const CollideOptions& options = {});
+RAYCONTACT_API std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                                            const CollideOptions& options = {});
 
 } // namespace raycontact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/body_id.h>
+#include <raycontact/export.h>
 #include <raycontact/settings.h>
 #include <raycontact/vector.h>
 
@@ -24,15 +25,19 @@ enum class Side : std::uint8_t { a = 0, b = 1 };
 
 /// What touches: a feature of either body. Indices are those of the bodies' files.
 struct ContactFeature {
+    /// Of no feature.
     static constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
-    FeatureKind kind = FeatureKind::vertex;
-    Side source = Side::a; ///< whose vertex it is, where the ray begins; of edges a
+    FeatureKind kind = FeatureKind::vertex; ///< what is in contact
+    Side source = Side::a;                  ///< whose vertex it is, where the ray begins; of edges a
     /// Of the source a vertex, of the other body the triangle that was hit (`refined`: the nearest); of edges an edge
     /// of either: 3 x its lowest triangle + its first corner there.
-    std::uint32_t index_a = 0, index_b = 0;
+    std::uint32_t index_a = 0;
+    std::uint32_t index_b = 0; ///< likewise, of body b
 
+    /// The index on the source.
     std::uint32_t source_index() const { return source == Side::a ? index_a : index_b; }
+    /// The index on the other body.
     std::uint32_t other_index() const { return source == Side::a ? index_b : index_a; }
     /// Names the same physical contact from step to step, unique in its pair: it does not change when the ray meets
     /// another triangle. Contacts of a pair are sorted by it.
@@ -47,8 +52,9 @@ struct ContactFeature {
 /// A vertex inside the other mesh (Hermann et al. 2008; Lehericey et al. 2013, sections 2.1 and 3.2), or two edges; or
 /// what is about to touch.
 struct Contact {
-    BodyId body_a, body_b; ///< body_a has the lower slot
-    ContactFeature feature;
+    BodyId body_a;          ///< has the lower slot
+    BodyId body_b;          ///< has the higher slot
+    ContactFeature feature; ///< what touches
     /// The last step had no contact with this key in this pair; or none that touched, and this one does.
     bool is_new = true;
     Vec3f normal; ///< unit, world frame, from a to b
@@ -62,8 +68,10 @@ struct Contact {
     /// The witness points, world frame, metres: the source's vertex or a point of a's edge, and the point on the other
     /// body that lies `depth` along the normal from it (with direction `reprojected` in the plane of the face that was
     /// hit). point_a - point_b = depth x normal: a reaches that much too far.
-    Vec3 point_a, point_b;
+    Vec3 point_a;
+    Vec3 point_b; ///< the witness point of body_b
 
+    /// Names the same contact from step to step, unique in its pair.
     std::uint64_t key() const { return feature.key(); }
     /// The source's own point.
     const Vec3& point() const { return feature.source == Side::a ? point_a : point_b; }
@@ -73,9 +81,11 @@ struct Contact {
 
 /// A contact that touched in the last step and does not in this one. Its bodies may have been removed since.
 struct LostContact {
-    BodyId body_a, body_b;  ///< body_a has the lower slot
+    BodyId body_a;          ///< has the lower slot
+    BodyId body_b;          ///< has the higher slot
     ContactFeature feature; ///< but for edges without the index on the other body: ContactFeature::no_index
 
+    /// That of the contact that is gone.
     std::uint64_t key() const { return feature.key(); }
 };
 
@@ -83,7 +93,7 @@ struct LostContact {
 /// Layout per contact: step, slots of a and b, source + 2 x kind, index on the source, index on the other body as
 /// little-endian uint32; normal, depth, ray_length and, with direction `weighted` alone, weight as float32 bits; the
 /// source's point as float64 bits.
-class ContactHash {
+class RAYCONTACT_API ContactHash {
 public:
     /// direction: of the contacts that will be added.
     /// speculative: speculative contacts count, too. Without them the hash does not depend on Settings::speculative.
@@ -91,6 +101,7 @@ public:
     ~ContactHash();
     ContactHash(const ContactHash&) = delete;
     ContactHash& operator=(const ContactHash&) = delete;
+    /// The contacts of one step, in their order. Those that do not touch count only if `speculative` was given.
     void add(std::uint32_t step, std::span<const Contact> contacts);
     std::string hex() const; ///< 16 hex digits of all that was added so far
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -11,18 +12,18 @@ namespace raycontact {
 
 /// A device as `raycontact devices` lists it.
 struct DeviceInfo {
-    std::string id;   ///< as Execution::devices takes it
-    std::string kind; ///< its back end: the id up to a colon
-    std::string type; ///< "cpu", "gpu" or "other"
-    std::string bus;  ///< address of the card, as "0000:65:00.0"; empty where none is known
-    std::string name;
-    std::string driver;
-    std::uint32_t cores = 0;
-    std::uint64_t memory_bytes = 0;
+    std::string id;                 ///< as Execution::devices takes it
+    std::string kind;               ///< its back end: the id up to a colon
+    std::string type;               ///< "cpu", "gpu" or "other"
+    std::string bus;                ///< address of the card, as "0000:65:00.0"; empty where none is known
+    std::string name;               ///< as its driver gives it
+    std::string driver;             ///< its version, in the words of the driver
+    std::uint32_t cores = 0;        ///< as the driver counts them
+    std::uint64_t memory_bytes = 0; ///< of its own; of a CPU the host's
     /// The driver says that division and root are correctly rounded and denormals kept, as needed for the bits of every
     /// other exact device. Opening the device checks it.
     bool exact = false;
-    bool usable = false;
+    bool usable = false; ///< it can be opened, as far as can be told without opening it
     std::string why_not; ///< empty when usable
 };
 
@@ -43,9 +44,9 @@ struct Settings;
 
 /// The ids that Execution::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is
 /// malformed or names a device twice or beside its own part; does not open any.
-std::vector<std::string> chosen_devices(const Settings& settings);
+RAYCONTACT_API std::vector<std::string> chosen_devices(const Settings& settings);
 
 /// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.
-std::vector<DeviceInfo> list_devices();
+RAYCONTACT_API std::vector<DeviceInfo> list_devices();
 
 } // namespace raycontact

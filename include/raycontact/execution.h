@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -22,15 +23,16 @@ struct Execution {
     /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
     /// where the driver divides the device, is its k-th core alone.
     std::string devices = "auto";
-    std::uint32_t threads = 0; ///< of the host; 0: one per core
-    Schedule schedule = Schedule::balanced;
+    std::uint32_t threads = 0;              ///< of the host; 0: one per core
+    Schedule schedule = Schedule::balanced; ///< of pairs, among several devices
     /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;
     friend bool operator==(const Execution&, const Execution&) = default;
 };
 
 /// The word of the command line; throws InputError naming what is known.
-Schedule schedule_from(std::string_view word);
-std::string_view to_string(Schedule);
+RAYCONTACT_API Schedule schedule_from(std::string_view word);
+/// The word that schedule_from() takes for it.
+RAYCONTACT_API std::string_view to_string(Schedule);
 
 } // namespace raycontact

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
+
 #include <cstddef> // any header of the standard library says which one it is
 
 // With _GLIBCXX_DEBUG the containers of libstdc++ are other types of other sizes. A program and a library that do not
@@ -14,7 +16,7 @@
 
 namespace raycontact {
 
-extern const bool RAYCONTACT_MODE(library_built); ///< the library has the one that it was built with
+RAYCONTACT_API extern const bool RAYCONTACT_MODE(library_built); ///< the library has the one that it was built with
 [[gnu::used]] inline const bool* const RAYCONTACT_MODE(library_needed) = &RAYCONTACT_MODE(library_built);
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 
 #include <cstdint>
@@ -15,6 +16,7 @@ namespace raycontact {
 
 /// A contact to choose from. World frame, metres.
 struct ManifoldPoint {
+    /// Of a point that belongs to no patch yet.
     static constexpr std::uint32_t no_patch = std::numeric_limits<std::uint32_t>::max();
     Vec3 position;                  ///< between the witness points
     Vec3 normal;                    ///< unit
@@ -27,23 +29,26 @@ struct ManifoldPoint {
 
 /// Contacts with like normals near to one place.
 struct ManifoldPatch {
-    Vec3 normal, centre;               ///< of the point that began it
+    Vec3 normal;                       ///< of the point that began it
+    Vec3 centre;                       ///< the position of that point
     std::vector<std::uint32_t> points; ///< places in the list, the deepest first; equally deep, the first in the list
 };
 
 /// Adds each point to the patch whose normal is most like its own, if it is like it by `cosine` and within reach; else
 /// the point begins a patch. The deepest go first; ties go to the first in the list. patches: none, or those of the
 /// step before without points.
-void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vector<ManifoldPatch>& patches);
+RAYCONTACT_API void join_patches(std::span<const ManifoldPoint> points, double cosine,
+                                 std::vector<ManifoldPatch>& patches);
 
 /// Whether the two say the same: at one place, their normals alike by a cosine of 0.98.
-bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b);
+RAYCONTACT_API bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b);
 
 /// Chooses at most four points of a patch: up to four extremes, each the one that lies farthest from the convex hull of
 /// those before (of points that were there by a factor of two farther; the first is farthest from the middle); then
 /// the deepest (one that was there counts as a tenth deeper) in place of the extreme that adds least, if it is not
 /// among them; then the deepest of the rest. None says what another says. So the forces of a solver keep what torque
 /// four points can keep, and the points stay while a body rocks. The deepest comes first, then the extremes.
-std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, std::span<const std::uint32_t> patch);
+RAYCONTACT_API std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points,
+                                                        std::span<const std::uint32_t> patch);
 
 } // namespace raycontact

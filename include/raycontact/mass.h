@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 
 #include <array>
@@ -18,6 +19,6 @@ struct Mass {
 
 /// By volume integrals over a closed mesh, exact but for rounding wherever it lies; all 0 where it encloses nothing.
 /// Volume and inertia are negative for one that is wound inward.
-Mass mass_of(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
+RAYCONTACT_API Mass mass_of(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 } // namespace raycontact

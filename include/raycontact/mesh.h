@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 
 #include <array>
@@ -26,21 +27,23 @@ struct Mesh {
 /// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
 /// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: a missing,
 /// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
-Mesh load_mesh(const std::filesystem::path& file);
+RAYCONTACT_API Mesh load_mesh(const std::filesystem::path& file);
 
+/// How the bytes of a mesh file are read; each format in all the kinds that the load_mesh() of a file reads.
 enum class MeshFormat { obj, stl, ply, off, gltf, glb };
 
 /// The same from memory: the bytes of a whole file. name: for messages and Mesh::name.
 /// Throws InputError, which names it, as for a file; also for a glTF file whose buffers are files of their own.
-Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
+RAYCONTACT_API Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
 
 /// From arrays. coordinates: x, y, z of each vertex, metres; corners: three vertices of each triangle,
 /// counter-clockwise seen from outside. Throws InputError naming it and the element to blame for: no triangles, a
 /// number that is not a multiple of three, a vertex that does not exist, a coordinate not finite.
-Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
-               const std::string& name = {});
-Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
-               const std::string& name = {});
+RAYCONTACT_API Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
+                              const std::string& name = {});
+/// The same from single precision. Throws InputError as that does.
+RAYCONTACT_API Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
+                              const std::string& name = {});
 
 /// What a mesh is, after the repairs it names.
 struct MeshReport {
@@ -58,7 +61,8 @@ struct MeshReport {
     std::uint64_t components = 0;     ///< connected over shared vertices
     double volume = 0;                ///< m^3, signed; 0 when not closed
     double area = 0;                  ///< m^2
-    Vec3 box_min, box_max;            ///< body frame, metres
+    Vec3 box_min;                     ///< least coordinates, body frame, metres
+    Vec3 box_max;                     ///< greatest coordinates, body frame, metres
     std::vector<std::string> repairs; ///< in words with counts; empty when nothing was changed
 };
 
@@ -88,29 +92,32 @@ enum class Check {
 
 /// A mesh ready to become a shape: welded by exact position, checked, with the way back to the file's indices.
 struct PreparedMesh {
-    std::string name;
+    std::string name;                                    ///< for messages
     std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
     std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex
     std::vector<std::uint32_t> triangle_index; ///< file index of each triangle
-    MeshReport report;
+    MeshReport report;                         ///< what it is, and what was repaired
 };
 
 /// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError when no
 /// triangle with an area is left.
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed, Nesting nesting = Nesting::as_wound,
-                          Check check = Check::full, std::uint32_t threads = 0);
+RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed,
+                                         Nesting nesting = Nesting::as_wound, Check check = Check::full,
+                                         std::uint32_t threads = 0);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
 /// itself.
 struct Verdict {
-    bool good;
+    bool good;        ///< they are
     std::string text; ///< one line: "good for contacts", or what is wrong and what to do
 };
-Verdict verdict_of(const MeshReport& report);
+/// Of a mesh that has this report.
+RAYCONTACT_API Verdict verdict_of(const MeshReport& report);
 
-/// As text for a person, or as the JSON of `raycontact mesh --json`.
-std::string to_text(const MeshReport& report);
-std::string to_json(const MeshReport& report);
+/// As text for a person.
+RAYCONTACT_API std::string to_text(const MeshReport& report);
+/// As the JSON of `raycontact mesh --json`.
+RAYCONTACT_API std::string to_json(const MeshReport& report);
 
 } // namespace raycontact

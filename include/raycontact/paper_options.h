@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/library_mode.h>
 
 #include <cstdint>
@@ -18,7 +19,7 @@ enum class Caster {
 /// The constants of Lehericey, Gouranton and Arnaldi 2013, for methods `iterative` and `predictive` and for who
 /// measures. No contact of `certified`, the default, depends on any of them.
 struct PaperOptions {
-    Caster caster = Caster::bvh;
+    Caster caster = Caster::bvh; ///< no bit of a contact depends on it
     /// Metres a pair may move before it is tested in full again (paper section 3). Empty: chosen for each pair from
     /// its size and speed, with `iterative` and `predictive` also from the counted cost of either kind of step, and
     /// chosen again as it moves; `predictive` then casts pairs that are too fast for it in full in each step
@@ -44,7 +45,8 @@ struct PaperOptions {
 };
 
 /// The word of the command line; throws InputError naming what is known.
-Caster caster_from(std::string_view word);
-std::string_view to_string(Caster);
+RAYCONTACT_API Caster caster_from(std::string_view word);
+/// The word that caster_from() takes for it.
+RAYCONTACT_API std::string_view to_string(Caster);
 
 } // namespace raycontact

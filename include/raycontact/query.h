@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/pose.h>
 #include <raycontact/shape.h>
 
@@ -21,6 +22,7 @@
 
 namespace raycontact {
 
+/// For queries without a greatest distance.
 constexpr double any_distance = std::numeric_limits<double>::infinity();
 
 /// Where a ray meets a mesh.
@@ -36,12 +38,12 @@ struct RayHit {
 /// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on exact predicates
 /// decide which triangles it meets (Shewchuk 1997), so none slips between two that share an edge. The distance is
 /// rounded. direction: of any length. Throws InputError where it is zero or not finite.
-std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
-                              double max = any_distance);
+RAYCONTACT_API std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin,
+                                             const Vec3& direction, double max = any_distance);
 
 /// Whether raycast() has a hit; ends at the first one found.
-bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
-                 double max = any_distance);
+RAYCONTACT_API bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
+                                double max = any_distance);
 
 /// The point of a surface that is nearest to another point.
 struct ClosestPoint {
@@ -53,49 +55,58 @@ struct ClosestPoint {
 /// The closest point of a mesh's surface, if it is within `max` metres. In double: right to some 1e-15 of the size of
 /// the mesh and its distance from the origins. Of a triangle that is a million times longer than wide only the edges
 /// are looked at.
-std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
-                                          double max = any_distance);
+RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
+                                                         double max = any_distance);
 
 /// The least distance of two meshes, and where it is.
 struct Distance {
-    double distance = 0;   ///< metres; 0 exactly where intersects() is true
-    Vec3 point_a, point_b; ///< one on each surface, world frame; where they intersect, one that both share
-    /// On which the points lie, indices in the files. no_triangle for a mesh inside of which the other lies.
-    std::uint32_t triangle_a = Shape::no_triangle, triangle_b = Shape::no_triangle;
+    double distance = 0; ///< metres; 0 exactly where intersects() is true
+    Vec3 point_a;        ///< on the surface of a, world frame; where they intersect, one that both share
+    Vec3 point_b;        ///< likewise on that of b
+    /// On which point_a lies, index in the file. no_triangle for a mesh inside of which the other lies.
+    std::uint32_t triangle_a = Shape::no_triangle;
+    std::uint32_t triangle_b = Shape::no_triangle; ///< likewise for point_b
 };
 
 /// The least distance of two surfaces, if it is within `max` metres; 0 where they intersect, or one lies inside the
 /// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point(), but
 /// between edges parallel to some 1e-8: to 1e-8 of their length. Branch and bound over both trees. A small `max` saves
 /// work.
-std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
-                                 double max = any_distance);
+RAYCONTACT_API std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                                                double max = any_distance);
 
 /// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
 /// closed and wound alike everywhere. Exact: parts of one assembly that share faces touch. Where both poses are equal
 /// they do not matter at all. Ends at the first triangles that meet.
-bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+RAYCONTACT_API bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// A point that both share, to rounding: where two triangles meet, or a vertex of the one inside the other. Nothing if
 /// intersects() is false.
-std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
-/// Exact. The point is in the body frame, or in the world of a placed mesh.
-bool contains(const Shape& shape, const Vec3& point);
-bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
+/// Exact. The point is in the body frame. Throws InputError for a point that is not finite or beyond 1e30 m.
+RAYCONTACT_API bool contains(const Shape& shape, const Vec3& point);
+/// The same of a placed mesh, the point in the world frame. Throws InputError also for a pose that is not finite and
+/// rigid.
+RAYCONTACT_API bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
 
-/// Two corners of a box along the axes of the body.
+// Regions of one mesh, in the body frame, by Shape::vertices(). What was in `found` is replaced: by indices, ascending,
+// each once. What is not a number is nowhere; none of these throws InputError.
+
+/// A box along the axes of the body.
 struct AxisBox {
-    Vec3 low, high;
+    Vec3 low;  ///< its lowest corner, metres
+    Vec3 high; ///< its highest corner, metres
 };
 
-/// Regions of one mesh, in the body frame, by Shape::vertices(): indices of Shape::triangles() and of its vertices,
-/// ascending, each once. They replace what `found` had. triangles_in_box(): those whose own boxes touch the box.
-/// vertices_below(): those with normal . v < offset; normal: of any length. What is not a number is nowhere.
-void triangles_in_box(const Shape& shape, const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& found);
-void vertices_below(const Shape& shape, const Vec3& normal, double offset, std::vector<std::uint32_t>& found);
+/// The triangles whose own boxes touch a box: indices of Shape::triangles().
+RAYCONTACT_API void triangles_in_box(const Shape& shape, const Vec3& low, const Vec3& high,
+                                     std::vector<std::uint32_t>& found);
+/// The vertices with normal . v < offset: indices of Shape::vertices(). normal: of any length.
+RAYCONTACT_API void vertices_below(const Shape& shape, const Vec3& normal, double offset,
+                                   std::vector<std::uint32_t>& found);
 /// Boxes that together hold the mesh, no more than `most` but at least one: of its tree, the largest ones opened.
-std::vector<AxisBox> covering_boxes(const Shape& shape, std::size_t most);
+RAYCONTACT_API std::vector<AxisBox> covering_boxes(const Shape& shape, std::size_t most);
 
 } // namespace raycontact

@@ -4,6 +4,7 @@
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
 #include <raycontact/error.h>
+#include <raycontact/export.h>
 #include <raycontact/prediction.h>
 #include <raycontact/query.h>
 #include <raycontact/settings.h>
@@ -26,15 +27,16 @@ using Pair = std::pair<BodyId, BodyId>;
 
 /// What a query of a scene found, and on which body; of equally near bodies the one with the lowest slot.
 struct BodyRayHit : RayHit {
-    BodyId body{};
+    BodyId body{}; ///< whose mesh the ray meets
 };
+/// The point of all surfaces that is nearest, and whose it is; of equally near bodies that with the lowest slot.
 struct BodyClosestPoint : ClosestPoint {
-    BodyId body{};
+    BodyId body{}; ///< on whose surface it lies
 };
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
 /// call of find_contacts(). Not thread-safe; use one scene per thread.
-class Scene {
+class RAYCONTACT_API Scene {
 public:
     /// Throws InputError when settings name a device this machine or this version cannot use.
     explicit Scene(const Settings& settings = {});
@@ -54,6 +56,7 @@ public:
     /// The same in bulk: poses[i] of bodies[i]. Throws InputError if there are not as many poses as bodies, and as
     /// set_pose(), naming the place in the list; then no pose changes.
     void set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses);
+    /// As it was set last. Throws InputError for a body that is not in the scene.
     const Pose& pose(BodyId body) const;
     /// Where the body is expected after the next step, for the speculative contacts of that step. Without it, the body
     /// is expected to go on as it did since the last step. Nothing without Settings::speculative. Throws InputError as
@@ -63,21 +66,27 @@ public:
     /// such bodies the larger counts. Empty: as the settings say. Keeps until the body is removed. Throws InputError
     /// unless it is finite and at least 0.
     void set_speculative_margin(BodyId body, std::optional<double> margin);
+    /// The one it was added with. Throws InputError for a body that is not in the scene.
     const Shape& shape(BodyId body) const;
-    /// A number of your own for each body, such as the address of your object; 0 at first.
+    /// A number of your own for each body, such as the address of your object; 0 at first. Throws InputError for a body
+    /// that is not in the scene.
     void set_user_data(BodyId body, std::uint64_t data);
+    /// The number that set_user_data() gave it. Throws InputError for a body that is not in the scene.
     std::uint64_t user_data(BodyId body) const;
     /// find_contacts() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At
     /// first a body is in group 1, and its mask has all bits. find_contacts(pairs) tests every pair that it is given.
+    /// Throws InputError for a body that is not in the scene.
     void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
     /// It was added here and not removed.
     bool has(BodyId body) const;
+    /// How many bodies are in the scene.
     std::uint32_t body_count() const;
     /// Of all bodies, by slot.
     std::vector<BodyId> bodies() const;
     /// Changes method, caster, direction or thresholds between two steps; forgets what the last method kept. Throws
     /// InputError for settings that make no sense, and for another Execution than the scene was made with.
     void set_settings(const Settings& settings);
+    /// As they were given, or changed by set_settings().
     const Settings& settings() const;
 
     /// Shape::prepare() for the shapes of all bodies, so that the next step is as fast as later ones and counts repeat.
@@ -96,6 +105,7 @@ public:
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const;
+    /// What the last step did.
     const StepStats& stats() const;
     /// The pairs of the last step, sorted by their slots.
     std::span<const Pair> pairs() const;
@@ -109,20 +119,25 @@ public:
     // with what those promise and throw. Each looks at the boxes of all bodies and then into meshes, nearest first.
     // They change nothing: several threads may ask a scene at once as long as none changes it. wanted: the bodies that
     // count; empty: all.
+
+    /// Says whether a query counts a body.
     using Wanted = std::function<bool(BodyId)>;
+    /// The body that a ray meets first, within `max` metres. Throws InputError as the function of query.h.
     std::optional<BodyRayHit> raycast(const Vec3& origin, const Vec3& direction, double max = any_distance,
                                       const Wanted& wanted = {}) const;
+    /// Whether raycast() has a hit; ends at the first one found. Throws InputError as it does.
     bool raycast_any(const Vec3& origin, const Vec3& direction, double max = any_distance,
                      const Wanted& wanted = {}) const;
+    /// The closest point of all surfaces, within `max` metres. Throws InputError as the function of query.h.
     std::optional<BodyClosestPoint> closest_point(const Vec3& point, double max = any_distance,
                                                   const Wanted& wanted = {}) const;
-    /// The bodies whose meshes intersect another one, placed here; by slot.
+    /// The bodies whose meshes intersect another one, placed here; by slot. Throws InputError as intersects().
     std::vector<BodyId> overlaps(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
     /// Of two bodies. Throws InputError for one that is not in the scene.
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
 private:
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/execution.h>
+#include <raycontact/export.h>
 #include <raycontact/paper_options.h>
 
 #include <cstdint>
@@ -37,9 +38,9 @@ inline constexpr double speculative_share = 0.0025;
 
 /// What a scene finds; how it does so is `execution`.
 struct Settings {
-    Method method = Method::certified;
-    Direction direction = Direction::reprojected;
-    Features features = Features::edges;
+    Method method = Method::certified;            ///< what is kept from step to step
+    Direction direction = Direction::reprojected; ///< what normals and depths are made of
+    Features features = Features::edges;          ///< what can be in contact
 
     /// Also finds contacts before anything touches, with depth <= 0: what lies nearer than a margin, and what will
     /// touch on its way to the next step, so that a solver stops bodies at the surface (docs/internals/speculative.md).
@@ -48,6 +49,7 @@ struct Settings {
     std::optional<bool> speculative;
     /// Metres: the margin. Empty: speculative_share of the smaller body's box diagonal.
     std::optional<double> speculative_margin;
+    /// `speculative`, and no where it is empty.
     bool is_speculative() const { return speculative.value_or(false); }
     /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md#fewer-contacts); at
     /// least the deepest. 0: all contacts. The rest is counted in StepStats.
@@ -60,14 +62,19 @@ struct Settings {
 };
 
 /// Throws InputError naming the setting that makes no sense, and what would.
-void check_settings(const Settings& settings);
+RAYCONTACT_API void check_settings(const Settings& settings);
 
-/// The words of the command line; throw InputError naming what is known.
-Method method_from(std::string_view word);
-Direction direction_from(std::string_view word);
-Features features_from(std::string_view word);
-std::string_view to_string(Method);
-std::string_view to_string(Direction);
-std::string_view to_string(Features);
+/// The word of the command line; throws InputError naming what is known.
+RAYCONTACT_API Method method_from(std::string_view word);
+/// The word of the command line; throws InputError naming what is known.
+RAYCONTACT_API Direction direction_from(std::string_view word);
+/// The word of the command line; throws InputError naming what is known.
+RAYCONTACT_API Features features_from(std::string_view word);
+/// The word that method_from() takes for it.
+RAYCONTACT_API std::string_view to_string(Method);
+/// The word that direction_from() takes for it.
+RAYCONTACT_API std::string_view to_string(Direction);
+/// The word that features_from() takes for it.
+RAYCONTACT_API std::string_view to_string(Features);
 
 } // namespace raycontact

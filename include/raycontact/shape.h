@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 
 #include <cstdint>
@@ -11,7 +12,7 @@ namespace raycontact {
 
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
-class Shape : public std::enable_shared_from_this<Shape> {
+class RAYCONTACT_API Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. threads 0: one per core. Deterministic: equal input gives equal bits, whatever the
     /// threads. Throws InputError for a mesh without area.
@@ -28,10 +29,11 @@ public:
     /// where the first steps must be as fast as the later ones, or where counts of work must repeat exactly. No contact
     /// of `standard` or `certified` depends on it. threads 0: one per core. Does nothing the second time.
     void prepare(std::uint32_t threads = 0) const;
+    /// prepare() was done, by whomever.
     bool is_prepared() const;
 
-    const std::string& name() const;
-    const MeshReport& report() const;
+    const std::string& name() const;  ///< the mesh's
+    const MeshReport& report() const; ///< what the mesh is, and what was repaired
     /// It is closed and wound alike everywhere, so that a point can be inside it.
     bool has_inside() const;
 
@@ -41,12 +43,13 @@ public:
     /// Body frame, not rounded: those that the mesh had, of which queries decide (query.h). They are kept, 24 bytes a
     /// vertex, only where they differ from vertices().
     std::span<const Vec3> file_vertices() const;
+    /// Indices into vertices().
     std::span<const std::array<std::uint32_t, 3>> triangles() const;
     std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex
     std::span<const std::uint32_t> triangle_index() const; ///< file index of each triangle
-    Vec3 centre() const;
-    Vec3 box_min() const; ///< body frame
-    Vec3 box_max() const;
+    Vec3 centre() const;                                   ///< middle of the box, body frame
+    Vec3 box_min() const;                                  ///< body frame
+    Vec3 box_max() const;                                  ///< body frame
     double radius() const; ///< largest distance of a vertex from the body origin, metres
     /// Metres. With Features::vertices it is what can pass through another mesh unseen, between two vertices.
     double longest_edge() const;
@@ -65,12 +68,14 @@ public:
     std::span<const std::array<std::uint32_t, 3>> neighbours() const;
     /// The lowest triangle at each vertex, or no_triangle where none is.
     std::span<const std::uint32_t> vertex_triangles() const;
+    /// The index of none.
     static constexpr std::uint32_t no_triangle = 0xffffffffu;
 
+    /// What the shape takes on the host.
     std::uint64_t memory_bytes() const;
 
     /// What a shape is made of: a type that only the library knows.
-    struct Data;
+    struct RAYCONTACT_HIDDEN Data;
     const Data& data() const { return *data_; }
 
 private:

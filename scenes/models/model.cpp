@@ -29,9 +29,13 @@ Model scene_model(std::string_view kind, std::uint32_t triangles) {
         throw InputError("model \"" + std::string(kind) + "\" is not known; known are " + known);
     }
     std::string why_not;
+#ifdef RAYCONTACT_MESHOPTIMIZER
     if (triangles % 2 == 0 && triangles >= 60 && triangles <= 60'000)
         if (auto bunny = reduced_bunny(bunny_file(), triangles, why_not)) return std::move(*bunny);
     if (why_not.empty()) why_not = "a bunny has an even number of triangles from 60 to 60000";
+#else
+    why_not = "this program was built without meshoptimizer";
+#endif
     // As lumpy as a bunny and without a hole: what comes closest to it in a pile.
     Model model = procedural(bumpy_sphere(triangles), "bumpy sphere");
     model.source += ", standing in for the Stanford bunny: " + why_not;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/mesh.h>
 
 #include "mesh/mesh_tree.h"
@@ -28,5 +29,7 @@ void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<con
 /// What the report of a mesh should say; the counts of its file and its repairs are taken over. Its coordinates must be
 /// those that prepare_mesh() takes. Throws InputError where no triangle has an area.
 MeshReport measured_report(const PreparedMesh& mesh, Executor& executor);
+/// The same on all cores; shown to raycontact::recording.
+RAYCONTACT_API MeshReport measured_report(const PreparedMesh& mesh);
 
 } // namespace raycontact

@@ -169,4 +169,9 @@ MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {
     return measured.report;
 }
 
+MeshReport measured_report(const PreparedMesh& mesh) {
+    Executor executor(0);
+    return measured_report(mesh, executor);
+}
+
 } // namespace raycontact

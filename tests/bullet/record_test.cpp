@@ -3,6 +3,7 @@
 #include "test_world.h"
 
 #include <raycontact/error.h>
+#include <raycontact/recorder.h>
 #include <recording/replay.h>
 
 #include <filesystem>

@@ -657,9 +657,13 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
                      "these need to be added");
 }
 
+void CollisionDispatcher::record(const std::filesystem::path& file) {
+    state_->recorder.reset(); // it may be of the same file
+    state_->recorder = std::make_unique<WorldRecorder>(file, state_->scene, nullptr);
+}
 void CollisionDispatcher::record(const std::filesystem::path& file, const RecorderOptions& options) {
     state_->recorder.reset(); // it may be of the same file
-    state_->recorder = std::make_unique<WorldRecorder>(file, state_->scene, options);
+    state_->recorder = std::make_unique<WorldRecorder>(file, state_->scene, &options);
 }
 void CollisionDispatcher::finish_recording() {
     if (!state_->recorder) return;

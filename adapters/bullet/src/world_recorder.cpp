@@ -2,6 +2,9 @@
 #include "world_recorder.h"
 
 #include <raycontact/error.h>
+#ifdef RAYCONTACT_RECORDING
+#include <raycontact/recorder.h>
+#endif
 
 namespace raycontact::bullet {
 
@@ -11,8 +14,8 @@ struct WorldRecorder::State {
     Recorder recorder;
 };
 
-WorldRecorder::WorldRecorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options)
-    : state_(std::make_unique<State>(State{Recorder(file, scene, options)})) {}
+WorldRecorder::WorldRecorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions* options)
+    : state_(std::make_unique<State>(State{Recorder(file, scene, options ? *options : RecorderOptions{})})) {}
 void WorldRecorder::step() {
     state_->recorder.record();
 }
@@ -24,7 +27,7 @@ void WorldRecorder::finish() {
 
 struct WorldRecorder::State {};
 
-WorldRecorder::WorldRecorder(const std::filesystem::path& file, const Scene&, const RecorderOptions&) {
+WorldRecorder::WorldRecorder(const std::filesystem::path& file, const Scene&, const RecorderOptions*) {
     throw InputError(file.string()
                      + ": this RayContact was built without recordings; configure it with "
                        "-DRAYCONTACT_RECORDING=ON");

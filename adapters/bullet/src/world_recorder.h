@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/recorder.h>
+#include <raycontact/scene.h>
 
 #include <filesystem>
 #include <memory>
+
+namespace raycontact {
+struct RecorderOptions;
+}
 
 namespace raycontact::bullet {
 
 /// A Recorder where raycontact::recording is built; elsewhere one cannot be made.
 class WorldRecorder {
 public:
-    /// Throws InputError as Recorder does, and where recordings are not built.
-    WorldRecorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options);
+    /// options null: its own. Throws InputError as Recorder does, and where recordings are not built.
+    WorldRecorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions* options);
     ~WorldRecorder();
     WorldRecorder(const WorldRecorder&) = delete;
     WorldRecorder& operator=(const WorldRecorder&) = delete;

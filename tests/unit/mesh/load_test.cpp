@@ -7,7 +7,6 @@
 #include <raycontact/settings.h>
 
 #include <gtest/gtest.h>
-#include <tiny_obj_loader.h>
 
 #include <bit>
 #include <clocale>
@@ -68,23 +67,6 @@ TEST(Load, ObjKeepsIndicesAndEveryBit) {
     const Mesh loaded = load_mesh(folder.write("a thing.OBJ", as_obj(made)));
     expect_equal(loaded, made);
     EXPECT_EQ(loaded.name, "a thing.OBJ");
-}
-
-TEST(Load, ObjAgreesWithTinyobjloader) {
-    const TempFolder folder;
-    const Mesh made = odd_mesh();
-    const Mesh loaded = load_mesh(folder.write("m.obj", as_obj(made)));
-    tinyobj::ObjReader reader;
-    ASSERT_TRUE(reader.ParseFromString(as_obj(made), ""));
-    const std::vector<tinyobj::real_t>& points = reader.GetAttrib().vertices;
-    ASSERT_EQ(points.size(), 3 * loaded.vertices.size());
-    for (std::size_t i = 0; i < loaded.vertices.size(); ++i) EXPECT_NEAR(points[3 * i], loaded.vertices[i].x, 1e-14);
-    ASSERT_EQ(reader.GetShapes().size(), 1u);
-    const auto& indices = reader.GetShapes()[0].mesh.indices;
-    ASSERT_EQ(indices.size(), 3 * loaded.triangles.size());
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-        EXPECT_EQ(static_cast<std::uint32_t>(indices[i].vertex_index), loaded.triangles[i / 3][i % 3]);
-    }
 }
 
 TEST(Load, ObjFacesOfEveryKind) {

@@ -4,7 +4,7 @@
 #include <raycontact/bullet/fault.h>
 #include <raycontact/bullet/precision.h>
 #include <raycontact/bullet/touch.h>
-#include <raycontact/recorder.h>
+#include <raycontact/export.h>
 #include <raycontact/scene.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -17,6 +17,10 @@
 #include <vector>
 
 class btCollisionWorld;
+
+namespace raycontact {
+struct RecorderOptions;
+}
 
 namespace raycontact::bullet {
 
@@ -87,12 +91,13 @@ struct DispatcherStats {
 
 /// Names a manifold point's contact from step to step, unique within its two objects.
 struct PointKey {
-    int child0 = 0, child1 = 0; ///< index of the leaf shape, depth first, when a body is a compound; else 0
-    int vertex_body = 0;        ///< 0: the feature belongs to the manifold's body 0; 1: to its body 1
+    int child0 = 0;      ///< index of the leaf shape, depth first, when body 0 is a compound; else 0
+    int child1 = 0;      ///< likewise of body 1
+    int vertex_body = 0; ///< 0: the feature belongs to the manifold's body 0; 1: to its body 1
     /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of edges as Contact::vertex. A
     /// ball's or capsule's: any number that stays.
     int vertex = 0;
-    FeatureKind feature = FeatureKind::vertex;
+    FeatureKind feature = FeatureKind::vertex; ///< what is in contact
     int other = 0; ///< of edges that of the other body, as Contact::triangle; of other features 0
     friend bool operator==(const PointKey&, const PointKey&) = default;
 };
@@ -108,7 +113,7 @@ struct PointKey {
 /// that do not touch yet. Their distance is positive, so Bullet's solver stops bodies at the surface. Of a point that
 /// will bounce, getDistance() is no gap once the callbacks were called: it is far below 0, which makes the solver give
 /// back what restitution says. The point's positions stay true.
-class CollisionDispatcher : public btCollisionDispatcher {
+class RAYCONTACT_API CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction
     /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
@@ -137,6 +142,7 @@ public:
     /// before it is deleted. Throws ObjectError, which has the object, for one that a dispatch would leave out, and
     /// InputError for one without a mesh.
     BodyId add_body(const btCollisionObject& object);
+    /// Undoes add_body(): its meshes stay in scene() only as long as pairs need them. Faults told of it are forgotten.
     void remove_body(const btCollisionObject& object);
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
@@ -157,25 +163,30 @@ public:
     /// handles, balls and planes too. What falls asleep goes on touching. Objects that were removed cease at the next
     /// dispatch. Valid until then.
     std::span<const Touch> begun() const;
+    /// Those that no longer touch.
     std::span<const Touch> ended() const;
 
     /// The batch: contacts(), speculative ones too, pairs() and stats() of the last dispatch. Pairs that sleep are in
     /// no batch: there their contacts are lost, and new when they wake. begun() and ended() know better.
     const Scene& scene() const;
+    /// What the last dispatch did.
     const DispatcherStats& stats() const;
 
     /// Records the meshes from the next dispatch on, for `raycontact view` and `replay`; see Recorder. A mesh is in the
     /// recording while it is in scene(): add_body() keeps it there even when nothing is near it. options.dt: of a
     /// dispatch. Throws InputError when the file cannot be made, or RayContact was built without recordings.
-    void record(const std::filesystem::path& file, const RecorderOptions& options = {});
+    void record(const std::filesystem::path& file);
+    /// The same with options, for which <raycontact/recorder.h> is needed.
+    void record(const std::filesystem::path& file, const RecorderOptions& options);
     /// Ends the recording with its hash. Does nothing where there is none.
     void finish_recording();
 
-    /// For points of RayContact's manifolds.
+    /// The contact of a point of RayContact's manifolds.
     static PointKey key(const btManifoldPoint& point);
+    /// The point is one of those.
     static bool is_ours(const btManifoldPoint& point);
 
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
 
 private:
     std::unique_ptr<State> state_;

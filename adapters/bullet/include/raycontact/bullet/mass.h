@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/mass.h>
 #include <raycontact/shape.h>
 
@@ -13,6 +14,6 @@ struct MassProperties : Mass {
 };
 
 /// By volume integrals for a closed mesh of positive volume; those of its box for any other.
-MassProperties mass_properties(const Shape& shape);
+RAYCONTACT_API MassProperties mass_properties(const Shape& shape);
 
 } // namespace raycontact::bullet

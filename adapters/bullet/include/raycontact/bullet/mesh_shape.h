@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/bullet/precision.h>
+#include <raycontact/export.h>
 #include <raycontact/shape.h>
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -22,10 +23,11 @@ enum class Bounds {
 /// mass; see mass_properties() for a shape whose centre of mass lies elsewhere. CollisionDispatcher tests it against
 /// meshes, planes, height fields and, unless ConvexShapes::bullet is set, Bullet's convex shapes; Bullet's own
 /// algorithms do ray and sweep tests.
-ATTRIBUTE_ALIGNED16(class) MeshShape : public btConcaveShape {
+ATTRIBUTE_ALIGNED16(class) RAYCONTACT_API MeshShape : public btConcaveShape {
 public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
 
+    /// Share one shape among any number of these.
     explicit MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds = Bounds::vertices);
     ~MeshShape() override;
 
@@ -33,6 +35,7 @@ public:
     const std::shared_ptr<const Shape>& shape() const {
         return scaled_;
     }
+    /// For the library's own use.
     const std::shared_ptr<const MeshTree>& tree() const {
         return tree_;
     }
@@ -42,15 +45,18 @@ public:
     void getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const override;
     /// The same for a transform that is gone soon: nothing is kept.
     void aabb_once(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const;
+    /// Those whose boxes meet this one, as Bullet asks for them.
     void processAllTriangles(btTriangleCallback * callback, const btVector3& aabb_min, const btVector3& aabb_max)
         const override;
     /// Diagonal of the true inertia tensor about the centre of mass for a closed mesh; that of its box for an open one.
     void calculateLocalInertia(btScalar mass, btVector3 & inertia) const override;
     /// Makes another Shape, which takes time. Throws InputError when a factor is zero or not finite.
     void setLocalScaling(const btVector3& scaling) override;
+    /// As setLocalScaling() was given it; at first 1.
     const btVector3& getLocalScaling() const override {
         return scaling_;
     }
+    /// For Bullet's own messages.
     const char* getName() const override {
         return "RayContactMesh";
     }
@@ -60,6 +66,7 @@ public:
     /// body->setMassProps(mass, inertia), with the inertia of a MeshShape, since Bullet's meshes have none;
     /// body->updateInertiaTensor(); body->setCollisionFlags(0); addRigidBody(body); body->activate(true).
     int calculateSerializeBufferSize() const override;
+    /// Writes it, as Bullet has it; returns the name of the struct.
     const char* serialize(void* data, btSerializer* serializer) const override;
 
 private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/bullet/precision.h>
+#include <raycontact/export.h>
 
 #include <optional>
 
@@ -28,6 +29,6 @@ struct SolverSettings {
 /// depth is undone by split impulses, however small it is, and friction has two directions, fixed by the normal. Where
 /// the world's dispatcher is ours, it is attached to the world (CollisionDispatcher::attach). Throws InputError, and
 /// sets nothing, where a setting is out of its range.
-void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings = {});
+RAYCONTACT_API void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings = {});
 
 } // namespace raycontact::bullet

@@ -14,11 +14,11 @@ namespace raycontact::bullet {
 /// their contacts are gone, or farther than a resting body trembles. Sleep changes nothing.
 struct Touch {
     const btCollisionObject* object0 = nullptr; ///< as the manifold's bodies; of those that ceased one may be gone
-    const btCollisionObject* object1 = nullptr;
-    btVector3 point{0, 0, 0};  ///< where they came nearest, world frame, metres
-    btVector3 normal{0, 0, 0}; ///< unit, from object1 to object0
-    btScalar distance{};       ///< there, metres; negative: the depth
-    btScalar speed{};          ///< at which they approached there, before the solver, m/s; 0 once they ceased
+    const btCollisionObject* object1 = nullptr; ///< the other one
+    btVector3 point{0, 0, 0};                   ///< where they came nearest, world frame, metres
+    btVector3 normal{0, 0, 0};                  ///< unit, from object1 to object0
+    btScalar distance{};                        ///< there, metres; negative: the depth
+    btScalar speed{}; ///< at which they approached there, before the solver, m/s; 0 once they ceased
 };
 
 } // namespace raycontact::bullet

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/export.h>
 #include <raycontact/scene.h>
 
 #include <cstdint>
@@ -25,7 +26,7 @@ struct RecorderOptions {
 /// Records what a scene does: `raycontact replay` finds its contacts again, `raycontact view` shows it, and any glTF
 /// viewer plays it. Link raycontact::recording. Bodies may come and go as they like. Between two flushes (16 steps or a
 /// second) a crash loses steps; what was written stays readable. Not thread-safe, as the scene.
-class Recorder {
+class RAYCONTACT_API Recorder {
 public:
     /// Records from the scene's next step on; the scene must outlive it. The file's name should end in .glb; what was
     /// there is lost. Throws InputError when the file cannot be made, for dt <= 0, and for a scene of `iterative` or
@@ -33,7 +34,9 @@ public:
     Recorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options = {});
     /// Without finish(): leaves a recording without a hash, which can be replayed and viewed.
     ~Recorder();
+    /// The one that is moved from records no more.
     Recorder(Recorder&&) noexcept;
+    /// Ends what was recorded here as ~Recorder() does.
     Recorder& operator=(Recorder&&) noexcept;
 
     /// After each Scene::find_contacts(): adds its step. Throws InputError when method, direction, features or
@@ -50,7 +53,7 @@ public:
     std::string hash() const;      ///< of the contacts so far, as ContactHash gives it
 
 private:
-    struct State;
+    struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;
 };
 

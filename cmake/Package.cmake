@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian packages of what is installed (scripts/package, or cpack in a build folder): raycontact, the program, and
+# libraycontact-dev; where the libraries are shared also libraycontact0.2.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME raycontact)
+set(CPACK_PACKAGE_VENDOR "RayContact")
+set(CPACK_PACKAGE_CONTACT "the authors of RayContact <raycontact@localhost>")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+# raycontact_package(COMPONENT PACKAGE SECTION TEXT): what Debian wants to know of it, and its licence.
+macro(raycontact_package component package section text)
+    string(TOUPPER ${component} upper)
+    list(APPEND CPACK_COMPONENTS_ALL ${component})
+    set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package})
+    set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
+    set(CPACK_COMPONENT_${upper}_DESCRIPTION "${text}")
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${package} RENAME copyright
+        COMPONENT ${component} EXCLUDE_FROM_ALL)
+endmacro()
+
+set(CPACK_COMPONENTS_ALL "")
+raycontact_package(development libraycontact-dev libdevel "${PROJECT_DESCRIPTION}: headers, library, CMake package, documents")
+if(BUILD_SHARED_LIBS)
+    raycontact_package(runtime libraycontact${soversion} libs "${PROJECT_DESCRIPTION}: shared libraries")
+    set(depends "libraycontact${soversion} (= ${PROJECT_VERSION})")
+else()
+    # What a static library is linked with.
+    set(depends "libtbb-dev")
+    if(RAYCONTACT_OPENCL)
+        string(APPEND depends ", ocl-icd-opencl-dev, opencl-c-headers")
+    endif()
+    if(TARGET raycontact_recording)
+        string(APPEND depends ", zlib1g-dev")
+    endif()
+endif()
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${depends}")
+if(TARGET raycontact_bullet)
+    set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libbullet-dev") # raycontact::bullet
+endif()
+if(TARGET raycontact_cli)
+    raycontact_package(program raycontact science "${PROJECT_DESCRIPTION}: the program")
+endif()
+include(CPack)

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -DNM=... -DLIBRARY=FILE -DHEADERS=FOLDER... -P exports.cmake: fails where a shared library shows a name that no
+# public header declares, or a function of a public header is not marked RAYCONTACT_API.
+cmake_policy(VERSION 3.25)
+# What raycontact::recording takes of the library's inside.
+set(inside BodySlots measured_report)
+
+set(declared "")
+set(faults "")
+foreach(folder ${HEADERS})
+    file(GLOB_RECURSE files ${folder}/*.h)
+    foreach(file ${files})
+        file(STRINGS ${file} lines)
+        foreach(line ${lines})
+            string(REGEX REPLACE "//.*" "" line "${line}")
+            string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]*" words "${line}")
+            list(APPEND declared ${words})
+            # Functions in namespaces; clang-format begins them, and nothing else of a function, in the first column.
+            if(line MATCHES "^[A-Za-z_][A-Za-z0-9_:<>, ]*[ &*][a-z_0-9]+\\("
+               AND NOT line MATCHES "^(RAYCONTACT_API|inline|constexpr|template|friend|using|static_assert|extern) ")
+                list(APPEND faults "${file}: no RAYCONTACT_API: ${line}")
+            endif()
+        endforeach()
+    endforeach()
+endforeach()
+list(REMOVE_DUPLICATES declared)
+
+execute_process(COMMAND ${NM} -DC --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE ";" "," text "${text}")
+string(REPLACE "[" "(" text "${text}") # a list with brackets is not cut at each line
+string(REPLACE "]" ")" text "${text}")
+string(REGEX REPLACE "\n$" "" text "${text}")
+string(REPLACE "\n" ";" symbols "${text}")
+list(LENGTH symbols count)
+foreach(symbol ${symbols})
+    # "raycontact::Scene::add(...) T 1234 56": the name without what it takes, and without return types of templates.
+    set(name "${symbol}")
+    string(REGEX REPLACE "^(typeinfo name for|typeinfo for|vtable for) " "" name "${name}")
+    string(REGEX REPLACE "[( ].*" "" name "${name}")
+    if(NOT name MATCHES "^raycontact::")
+        list(APPEND faults "shows ${symbol}")
+        continue()
+    endif()
+    string(REPLACE "::" ";" parts "${name}")
+    foreach(part ${parts})
+        string(REPLACE "~" "" part "${part}")
+        if(part MATCHES "^library_built_with(out)?_GLIBCXX_DEBUG$") # made by RAYCONTACT_MODE of library_mode.h
+            continue()
+        elseif(part IN_LIST inside)
+            break()
+        elseif(NOT part IN_LIST declared)
+            list(APPEND faults "shows ${symbol}: no public header has \"${part}\"")
+        endif()
+    endforeach()
+endforeach()
+if(faults)
+    list(JOIN faults "\n  " faults)
+    message(FATAL_ERROR "${LIBRARY}:\n  ${faults}")
+endif()
+if(count LESS 10)
+    message(FATAL_ERROR "${LIBRARY} shows ${count} names only")
+endif()
+message("${count} names")
