@@ -36,7 +36,7 @@ foreach(symbol ${symbols})
     # "raycontact::Scene::add(...) T 1234 56": the name without what it takes, and without return types of templates.
     set(name "${symbol}")
     string(REGEX REPLACE "^(typeinfo name for|typeinfo for|vtable for) " "" name "${name}")
-    string(REGEX REPLACE "[( ].*" "" name "${name}")
+    string(REGEX REPLACE "(operator[^A-Za-z_]|[( ]).*" "" name "${name}")
     if(NOT name MATCHES "^raycontact::")
         list(APPEND faults "shows ${symbol}")
         continue()
