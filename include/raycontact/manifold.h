@@ -10,7 +10,7 @@
 #include <vector>
 
 /// Fewer contacts for a solver: those of a pair fall into patches, and some points stand for each patch
-/// (docs/conventions.md#fewer-contacts). Settings::max_contacts_per_pair does it for a scene; these functions serve
+/// (docs/conventions.md, Fewer contacts). Settings::max_contacts_per_pair does it for a scene; these functions serve
 /// solvers that choose for themselves.
 namespace raycontact {
 

@@ -51,8 +51,8 @@ struct Settings {
     std::optional<double> speculative_margin;
     /// `speculative`, and no where it is empty.
     bool is_speculative() const { return speculative.value_or(false); }
-    /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md#fewer-contacts); at
-    /// least the deepest. 0: all contacts. The rest is counted in StepStats.
+    /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md, Fewer contacts);
+    /// at least the deepest. 0: all contacts. The rest is counted in StepStats.
     std::uint32_t max_contacts_per_pair = 0;
     /// The same for the whole scene: each pair in contact keeps its deepest, if need be beyond the limit.
     std::uint32_t max_contacts = 0;

@@ -75,8 +75,8 @@ public:
     std::uint64_t memory_bytes() const;
 
     /// What a shape is made of: a type that only the library knows.
-    struct RAYCONTACT_HIDDEN Data;
-    const Data& data() const { return *data_; }
+    struct Data;
+    const Data& data() const { return *data_; } ///< for the library alone
 
 private:
     explicit Shape(std::unique_ptr<Data> data);

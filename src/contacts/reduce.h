@@ -13,7 +13,7 @@
 
 namespace raycontact {
 
-/// Leaves the contacts that stand for all, where the settings ask for fewer (docs/conventions.md#fewer-contacts). Each
+/// Leaves the contacts that stand for all, where the settings ask for fewer (docs/conventions.md, Fewer contacts). Each
 /// pair is looked at alone, its contacts in their order, so no device and no thread changes what stays.
 class ContactReducer {
 public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which contacts stay where Settings::max_contacts_per_pair or max_contacts ask for fewer
-// (docs/conventions.md#fewer-contacts).
+// (docs/conventions.md, Fewer contacts).
 #include "property/crowds.h"
 #include "property/shapes.h"
 #include "reference/vector.h"
