@@ -36,7 +36,7 @@ Settings with(Settings settings, Method method, std::optional<double> threshold)
 
 double decisions_wanted() {
     const char* text = std::getenv("RAYCONTACT_DECISIONS");
-    return text ? std::max(1e5, std::strtod(text, nullptr)) : 1e8;
+    return text ? std::max(1e5, std::strtod(text, nullptr)) : 4e7;
 }
 
 std::uint64_t first_seed() {
