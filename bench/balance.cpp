@@ -17,14 +17,14 @@
 #include <string>
 #include <vector>
 
-namespace rc = raycontact;
+namespace raycontact::bench {
 
 namespace {
 
 // One step: pairs, sorted, and how many contacts each has.
 struct Step {
-    std::vector<rc::SlotPair> pairs;
-    std::vector<rc::Contact> contacts;
+    std::vector<SlotPair> pairs;
+    std::vector<Contact> contacts;
     std::vector<std::uint32_t> counts; ///< of contacts, by pair
     double ms = 0;
 };
@@ -49,22 +49,22 @@ void fit_costs(Work& work) {
 
 Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last) {
     Work work;
-    for (const rc::Method method : {rc::Method::standard, rc::Method::iterative}) {
-        rc::recording::Reader reader(file);
-        rc::Settings settings;
-        settings.features = rc::Features::vertices;
+    for (const Method method : {Method::standard, Method::iterative}) {
+        recording::Reader reader(file);
+        Settings settings;
+        settings.features = Features::vertices;
         settings.method = method;
         settings.execution.devices = "cpu/0";
-        rc::recording::Follower follower(reader, settings);
-        std::vector<rc::Pose> poses;
-        std::vector<rc::Pair> pairs;
+        recording::Follower follower(reader, settings);
+        std::vector<Pose> poses;
+        std::vector<Pair> pairs;
         for (std::uint32_t i = 0; i < std::min(last, reader.steps()); ++i) {
             reader.read_step(i, poses, pairs);
             follower.place(i, poses);
             const auto contacts = follower.scene().find_contacts(pairs);
-            const rc::StepStats& stats = follower.scene().stats();
+            const StepStats& stats = follower.scene().stats();
             if (i < first) continue;
-            if (method == rc::Method::iterative) {
+            if (method == Method::iterative) {
                 work.state_bytes = double(stats.pair_bytes) / double(stats.pairs);
                 continue;
             }
@@ -73,7 +73,7 @@ Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last)
             step.contacts.assign(contacts.begin(), contacts.end());
             std::size_t next = 0;
             for (const auto& [a, b] : follower.scene().pairs()) {
-                const rc::SlotPair pair(a.slot, b.slot);
+                const SlotPair pair(a.slot, b.slot);
                 const std::size_t begin = next;
                 while (next < contacts.size() && contacts[next].body_a == a && contacts[next].body_b == b) ++next;
                 step.pairs.push_back(pair);
@@ -86,13 +86,13 @@ Work read_work(const std::string& file, std::uint32_t first, std::uint32_t last)
 }
 
 // `copies` of a step, whose bodies have slots of their own.
-Step copied(const Step& step, std::uint32_t copies, rc::BodySlot slots) {
+Step copied(const Step& step, std::uint32_t copies, BodySlot slots) {
     Step all;
     for (std::uint32_t k = 0; k < copies; ++k) {
-        const rc::BodySlot shift = k * slots;
+        const BodySlot shift = k * slots;
         for (const auto& [a, b] : step.pairs) all.pairs.emplace_back(a + shift, b + shift);
         all.counts.insert(all.counts.end(), step.counts.begin(), step.counts.end());
-        for (rc::Contact contact : step.contacts) {
+        for (Contact contact : step.contacts) {
             contact.body_a.slot += shift;
             contact.body_b.slot += shift;
             all.contacts.push_back(contact);
@@ -109,16 +109,16 @@ struct Result {
 Result simulate(const Work& work, std::uint32_t copies, const std::vector<double>& speeds, const std::string& how) {
     const std::size_t devices = speeds.size();
     const std::vector<double> costs(devices, 1.0);
-    rc::Balance balance(how == "sticky" ? rc::Schedule::sticky : rc::Schedule::balanced, costs);
-    rc::Assignment assignment(devices);
-    rc::BodySlot slots = 0;
+    Balance balance(how == "sticky" ? Schedule::sticky : Schedule::balanced, costs);
+    Assignment assignment(devices);
+    BodySlot slots = 0;
     for (const Step& step : work.steps)
         for (const auto& [a, b] : step.pairs) slots = std::max(slots, b + 1);
     double all_speeds = 0, ideal = 0, slowest = 0, moved = 0, opened = 0;
     for (const double speed : speeds) all_speeds += speed;
-    std::vector<rc::SlotPair> last_pairs;
+    std::vector<SlotPair> last_pairs;
     std::vector<std::size_t> last_parts;
-    std::vector<rc::Contact> last_contacts;
+    std::vector<Contact> last_contacts;
     for (const Step& recorded : work.steps) {
         const Step step = copied(recorded, copies, slots);
         const std::size_t count = step.pairs.size();
@@ -127,7 +127,7 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
         for (std::size_t m = 0; how == "balanced" && m + 1 < devices; ++m) {
             const auto move = balance.next_move();
             if (!move) break;
-            const auto moving = rc::choose_moving(assignment.pairs_of(move->from), last_contacts, move->share);
+            const auto moving = choose_moving(assignment.pairs_of(move->from), last_contacts, move->share);
             assignment.move(moving.pairs, move->to);
             assignment.make_lists();
             balance.record_move({move->from, move->to, moving.share}, 0);
@@ -161,7 +161,7 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
 
 void run(const std::string& recording, std::uint32_t first, std::uint32_t last) {
     const Work work = read_work(recording, first, last);
-    if (work.steps.empty()) throw rc::InputError(recording + ": no steps in that range");
+    if (work.steps.empty()) throw InputError(recording + ": no steps in that range");
     const std::size_t most =
         std::ranges::max(work.steps, {}, [](const Step& s) { return s.pairs.size(); }).pairs.size();
     std::printf("%zu steps, at most %zu pairs; a pair costs %.0f ns and each contact %.0f ns more (standard, one "
@@ -187,8 +187,6 @@ void run(const std::string& recording, std::uint32_t first, std::uint32_t last) 
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_balance(CLI::App& app) {
     CLI::App* command =

@@ -6,31 +6,31 @@
 
 #include <clash/search.h>
 #include <scenes/models/model.h>
+#include <scenes/peers/clock.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
 
-namespace rc = raycontact;
+namespace raycontact::bench {
 
 namespace {
 
 constexpr const char* kinds[] = {"knot", "gear", "torus", "sphere"};
 
-std::vector<rc::clash::Part> assembly(std::size_t count, std::uint32_t triangles, bool different) {
-    std::vector<std::shared_ptr<const rc::Mesh>> models;
+std::vector<clash::Part> assembly(std::size_t count, std::uint32_t triangles, bool different) {
+    std::vector<std::shared_ptr<const Mesh>> models;
     for (const char* kind : kinds)
-        models.push_back(std::make_shared<const rc::Mesh>(rc::scenes::scene_model(kind, triangles).mesh));
+        models.push_back(std::make_shared<const Mesh>(scenes::scene_model(kind, triangles).mesh));
     const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(double(count))));
-    std::vector<rc::clash::Part> parts(count);
+    std::vector<clash::Part> parts(count);
     for (std::size_t i = 0; i < count; ++i) {
         parts[i].name = "part " + std::to_string(i);
         parts[i].mesh = models[i % models.size()];
         if (different) {
-            auto own = std::make_shared<rc::Mesh>(*parts[i].mesh);
-            for (rc::Vec3& v : own->vertices) v.x *= 1 + 1e-4 * double(i);
+            auto own = std::make_shared<Mesh>(*parts[i].mesh);
+            for (Vec3& v : own->vertices) v.x *= 1 + 1e-4 * double(i);
             parts[i].mesh = std::move(own);
         }
         constexpr double spacing = 0.93; // metres; the shapes are about one across
@@ -41,25 +41,22 @@ std::vector<rc::clash::Part> assembly(std::size_t count, std::uint32_t triangles
 }
 
 void measure(std::size_t count, std::uint32_t triangles, bool different) {
-    std::vector<rc::clash::Part> parts = assembly(count, triangles, different);
-    const auto begin = std::chrono::steady_clock::now();
-    const auto pairs = rc::clash::touching_boxes(parts);
-    rc::clash::make_shapes(
+    std::vector<clash::Part> parts = assembly(count, triangles, different);
+    const double begin = peers::now().wall;
+    const auto pairs = clash::touching_boxes(parts);
+    clash::make_shapes(
         parts, pairs, 0, [](std::size_t, std::size_t) {}, [] { return false; });
-    const auto made = std::chrono::steady_clock::now();
-    const auto clashes = rc::clash::find_clashes(parts, pairs, {});
-    const auto end = std::chrono::steady_clock::now();
-    const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
+    const double made = peers::now().wall;
+    const auto clashes = clash::find_clashes(parts, pairs, {});
+    const double end = peers::now().wall;
     std::printf(
         "%-10s %6zu parts of %u triangles: %zu pairs, %zu clashes; shapes %.2f s, clashes %.2f s, together %.2f s\n",
-        different ? "different" : "the same", count, triangles, pairs.size(), clashes.size(), seconds(begin, made),
-        seconds(made, end), seconds(begin, end));
+        different ? "different" : "the same", count, triangles, pairs.size(), clashes.size(), 1e-6 * (made - begin),
+        1e-6 * (end - made), 1e-6 * (end - begin));
     std::fflush(stdout);
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_clash(CLI::App& app) {
     CLI::App* command =

@@ -4,14 +4,11 @@
 #include "bench/options.h"
 
 #include <bench/device/measure.h>
-#include <bench/device/output.h>
 #include <bench/device/roofline.h>
 #include <bench/peers/work.h>
 #include <raycontact/error.h>
 
 #include <algorithm>
-#include <charconv>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -30,14 +27,12 @@ struct WorkCommand {
 struct DeviceCommand {
     WorkCommand work;
     std::string devices = "all", out;
-    std::vector<std::string> methods, casters;
     DeviceOptions options;
     bool json = false;
 };
 
 struct RooflineCommand {
     WorkCommand work{"", "200:208", 512};
-    std::vector<std::string> methods;
     std::string caster = "bvh";
     RooflineOptions options;
     bool json = false;
@@ -45,21 +40,17 @@ struct RooflineCommand {
 
 /// A:B, from step A up to but not with step B.
 std::pair<std::uint32_t, std::uint32_t> range_of(const std::string& text) {
-    const char *end = text.data() + text.size(), *colon = std::find(text.data(), end, ':');
-    std::uint32_t first = 0, last = 0;
-    const auto one = std::from_chars(text.data(), colon, first);
-    const auto two = std::from_chars(colon == end ? end : colon + 1, end, last);
-    if (one.ec != std::errc{} || one.ptr != colon || two.ec != std::errc{} || two.ptr != end || last < first + 2)
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const auto first = read_number<std::uint32_t>(text.substr(0, colon));
+    const auto last = read_number<std::uint32_t>(text.substr(std::min(colon + 1, text.size())));
+    if (!first || !last || *last < *first + 2)
         throw InputError("--steps: \"" + text + "\" is no range; give A:B, steps A to B - 1, two or more");
-    return {first, last};
+    return {*first, *last};
 }
 
 Work make_work(const WorkCommand& command) {
     const auto [first, last] = range_of(command.range);
-    AvalancheWorkOptions options;
-    options.bodies = command.bodies;
-    options.first = first;
-    options.steps = last - first;
+    const AvalancheWorkOptions options{.bodies = command.bodies, .first = first, .steps = last - first};
     Work work = command.recording.empty() ? avalanche_work(options) : recorded_work(command.recording, options);
     if (work.steps.size() < options.steps)
         throw InputError(command.recording + ": ends after step " + std::to_string(first + work.steps.size())
@@ -82,50 +73,34 @@ void bench_device(DeviceCommand command) {
     settings.method = Method::standard;
     settings.execution.devices = command.devices;
     options.devices = chosen_devices(settings);
-    if (!command.methods.empty()) options.methods.clear();
-    for (const std::string& word : command.methods) options.methods.push_back(method_from(word));
-    if (!command.casters.empty()) options.casters.clear();
-    for (const std::string& word : command.casters) options.casters.push_back(caster_from(word));
     options.first = range_of(command.work.range).first;
 
-    Machine machine = this_machine();
-    BenchFiles files(command.out, machine, {"device"}, {".csv"});
+    Output out(command.out, {"device"}, {".csv"});
     tell("poses and pairs");
     const Work work = make_work(command.work);
     const DeviceResults results = measure_devices(work, options, tell);
-    finish(machine);
-    if (results.results.empty() && machine.cut_short) return;
-    std::cout << (command.json ? json(machine, work, options, results) : table(machine, work, options, results))
-              << std::flush;
-    if (files) {
-        write_results(files.folder(), machine, work, options, results);
-        files.keep(machine);
-    }
+    if (!out.finish(!results.results.empty())) return;
+    out.print(command.json, table(work, options, results), json(work, options, results));
+    out.write("device", ".csv", csv(out.machine, device_columns, csv_rows(work, options, results)));
+    out.keep();
     if (!std::ranges::all_of(results.results, &DeviceResult::agrees))
         throw std::runtime_error("a device failed or gave other bits than the CPU; this must not be");
 }
 
 void bench_roofline(RooflineCommand command) {
     RooflineOptions& options = command.options;
-    if (!command.methods.empty()) options.methods.clear();
-    for (const std::string& word : command.methods) {
-        options.methods.push_back(method_from(word));
-        if (options.methods.back() == Method::certified)
-            throw InputError(
-                "--methods: certified casts what standard casts on a device with memory of its own; ask for "
-                "standard");
-    }
+    if (std::ranges::find(options.methods, Method::certified) != options.methods.end())
+        throw InputError("--methods: certified casts what standard casts on a device with memory of its own; ask for "
+                         "standard");
     options.caster = caster_from(command.caster);
-    Machine machine = this_machine();
+    Output out("", {});
     tell("poses and pairs");
     const Work work = make_work(command.work);
     const std::vector<RooflineRow> rows = count_roofline(work, options, tell);
-    finish(machine);
-    std::cout << (command.json ? json(machine, work, options, rows) : table(machine, work, options, rows));
-    if (!std::ranges::all_of(rows, &RooflineRow::agrees)) {
-        std::cout.flush();
+    out.finish();
+    out.print(command.json, table(work, options, rows), json(work, options, rows));
+    if (!std::ranges::all_of(rows, &RooflineRow::agrees))
         throw std::runtime_error("the counting kernels gave other bits than the CPU's; this must not be");
-    }
 }
 
 } // namespace
@@ -138,10 +113,9 @@ void add_device(CLI::App& app) {
     command->add_option("--devices", c->devices, "each measured alone: all (every GPU, or the CPU), or a list")
         ->type_name("LIST")
         ->capture_default_str();
-    command->add_option("--methods", c->methods, "standard,certified,iterative,predictive; without: all")
-        ->type_name("WORDS")
-        ->delimiter(',');
-    command->add_option("--casters", c->casters, "bvh,basic; without: both")->type_name("WORDS")->delimiter(',');
+    add_values(*command, "--methods", c->options.methods, method_from,
+               "standard,certified,iterative,predictive; without: all");
+    add_values(*command, "--casters", c->options.casters, caster_from, "bvh,basic; without: both");
     add_number(*command, "--basic-steps", c->options.basic_steps, "of the steps, how many the caster basic gets", 2u,
                1'000'000u);
     add_number(*command, "--copies", c->options.copies, "of all bodies and pairs, to fill a large device", 1u,
@@ -149,7 +123,7 @@ void add_device(CLI::App& app) {
     add_number(*command, "--runs", c->options.runs, "figures are medians over runs and steps", 1u, 1000u);
     add_number(*command, "--threads", c->options.threads, "of the host, 0: one per core", 0u, 1024u);
     add_out(*command, "--out", c->out, "write DIR/<machine>/device-<date>.csv")->type_name("DIR");
-    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    add_json(*command, c->json);
     command->footer("Single kernels are timed in a run of their own, each waited for, by the device's clock.\n"
                     "Exit status: 0 fine, 1 a device failed or its contacts are not the CPU's, 2 bad usage or input.");
     command->callback([c] { bench_device(*c); });
@@ -160,16 +134,14 @@ void add_roofline(CLI::App& app) {
         app.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
     auto c = std::make_shared<RooflineCommand>();
     add_work_options(*command, c->work);
-    command->add_option("--methods", c->methods, "standard,iterative,predictive; without: all")
-        ->type_name("WORDS")
-        ->delimiter(',');
+    add_values(*command, "--methods", c->options.methods, method_from, "standard,iterative,predictive; without: all");
     command->add_option("--caster", c->caster, "bvh or basic")->type_name("WORD")->capture_default_str();
     add_number(*command, "--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)", 1e-3,
                1e9)
         ->type_name("GB/S");
     add_number(*command, "--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)", 1e-3, 1e9)
         ->type_name("TFLOPS");
-    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    add_json(*command, c->json);
     command->callback([c] { bench_roofline(*c); });
 }
 

@@ -14,14 +14,12 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace rc = raycontact;
-using rc::peers::median;
+namespace raycontact::bench {
 
 namespace {
 
@@ -33,18 +31,14 @@ enum class Ground { plane, slab, box, bullets_box };
 constexpr Ground grounds[] = {Ground::plane, Ground::slab, Ground::box, Ground::bullets_box};
 constexpr const char* names[] = {"plane", "slab", "box", "box (Bullet)"};
 
-double milliseconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
 /// Times the detection within each step.
 struct World : btDiscreteDynamicsWorld {
     using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
     double detection_ms = 0;
     void performDiscreteCollisionDetection() override {
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = peers::now().wall;
         btDiscreteDynamicsWorld::performDiscreteCollisionDetection();
-        detection_ms = milliseconds_since(begin);
+        detection_ms = 1e-3 * (peers::now().wall - begin);
     }
 };
 
@@ -54,13 +48,13 @@ struct Times {
     double lowest = 0; ///< of the bodies' origins at the end: nothing fell through
 };
 
-void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide, Times& times) {
+void run(const std::shared_ptr<const Shape>& mesh, Ground ground, bool slide, Times& times) {
     btDefaultCollisionConfiguration configuration;
-    rc::Settings settings;
+    Settings settings;
     settings.execution.threads = 1;
-    rc::bullet::CollisionDispatcher dispatcher(&configuration, settings, {},
-                                               ground == Ground::bullets_box ? rc::bullet::ConvexShapes::bullet
-                                                                             : rc::bullet::ConvexShapes::ours);
+    bullet::CollisionDispatcher dispatcher(&configuration, settings, {},
+                                           ground == Ground::bullets_box ? bullet::ConvexShapes::bullet
+                                                                         : bullet::ConvexShapes::ours);
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     World world(&dispatcher, &broadphase, &solver, &configuration);
@@ -71,10 +65,10 @@ void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide
     if (ground == Ground::plane)
         floor = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0.5));
     else if (ground == Ground::slab)
-        floor = std::make_unique<rc::bullet::MeshShape>(rc::Shape::make(rc::scenes::solid_box({20, 20, 1})));
+        floor = std::make_unique<bullet::MeshShape>(Shape::make(scenes::solid_box({20, 20, 1})));
     else
         floor = std::make_unique<btBoxShape>(btVector3(10, 10, btScalar(0.5)));
-    rc::bullet::MeshShape shape(mesh);
+    bullet::MeshShape shape(mesh);
     btVector3 inertia;
     shape.calculateLocalInertia(1, inertia);
     std::vector<std::unique_ptr<btRigidBody>> bodies;
@@ -87,7 +81,7 @@ void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide
         world.addRigidBody(bodies.back().get());
     };
     add(*floor, 0, btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(-0.5))));
-    rc::scenes::Random random(1);
+    scenes::Random random(1);
     for (int i = 0; i < side; ++i)
         for (int k = 0; k < side; ++k) {
             const auto tilt = random.tilt(0.3);
@@ -100,10 +94,10 @@ void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide
 
     std::vector<double> step_ms, detection_ms;
     for (int i = 0; i < steps; ++i) {
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = peers::now().wall;
         world.stepSimulation(btScalar(1.0 / 60), 0);
         if (i < steps - measured) continue;
-        step_ms.push_back(milliseconds_since(begin));
+        step_ms.push_back(1e-3 * (peers::now().wall - begin));
         detection_ms.push_back(world.detection_ms);
     }
     times.step = std::min(times.step, median(step_ms));
@@ -115,18 +109,18 @@ void run(const std::shared_ptr<const rc::Shape>& mesh, Ground ground, bool slide
     for (const auto& body : bodies) world.removeRigidBody(body.get());
 }
 
-std::shared_ptr<const rc::Shape> torus(std::uint32_t triangles) {
-    rc::Mesh mesh = rc::scenes::scene_model("torus", triangles).mesh;
-    return rc::Shape::make(mesh);
+std::shared_ptr<const Shape> torus(std::uint32_t triangles) {
+    Mesh mesh = scenes::scene_model("torus", triangles).mesh;
+    return Shape::make(mesh);
 }
 
 void run_all(int rounds, bool slide) {
-    const std::pair<const char*, std::shared_ptr<const rc::Shape>> meshes[] = {
-        {"box, 12 triangles", rc::Shape::make(rc::scenes::solid_box({0.8, 0.6, 0.4}))},
-        {"tray, 28 triangles", rc::Shape::make(rc::scenes::solid_tray({0.8, 0.6, 0.4}, 0.05))},
+    const std::pair<const char*, std::shared_ptr<const Shape>> meshes[] = {
+        {"box, 12 triangles", Shape::make(scenes::solid_box({0.8, 0.6, 0.4}))},
+        {"tray, 28 triangles", Shape::make(scenes::solid_tray({0.8, 0.6, 0.4}, 0.05))},
         {"torus, 600 triangles", torus(600)},
         {"torus, 2400 triangles", torus(2400)}};
-    std::printf("%s\n%d bodies%s; least of %d medians\n", heading(rc::report::this_machine()).c_str(), side * side,
+    std::printf("%s\n%d bodies%s; least of %d medians\n", heading(report::this_machine()).c_str(), side * side,
                 slide ? ", sliding" : "", rounds);
     std::printf("%-22s %-13s %9s %12s %9s %9s\n", "bodies", "floor", "step ms", "detection ms", "contacts", "lowest m");
     for (const auto& [name, mesh] : meshes) {
@@ -141,8 +135,6 @@ void run_all(int rounds, bool slide) {
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_floor(CLI::App& app) {
     CLI::App* command =

@@ -6,8 +6,9 @@
 #include "bench/options.h"
 
 #include <report/page.h>
-#include <report/svg.h>
 #include <scenes/holds/run.h>
+
+#include <fmt/format.h>
 
 #include <cstdio>
 #include <memory>
@@ -16,8 +17,9 @@
 #include <utility>
 #include <vector>
 
-namespace rc = raycontact;
-using namespace rc::scenes;
+namespace raycontact::bench {
+
+using namespace scenes;
 
 namespace {
 
@@ -42,51 +44,43 @@ constexpr Variant variants[] = {{"ours", Finder::edges, 0},
                                 {"gimpact", Finder::gimpact, 0},
                                 {"convex", Finder::convex, 0}};
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-    char out[400];
-    std::snprintf(out, sizeof out, format, values...);
-    return out;
-}
-
 std::string verdict(const HoldResult& result) {
     std::string words = result.holds() ? "holds" : "FAILS";
     for (std::size_t i = 0; i < result.failures.size(); ++i) words += (i == 0 ? ": " : ", ") + result.failures[i];
-    if (result.ended_early) words += text(" (ended after %.1f s)", result.seconds);
+    if (result.ended_early) words += fmt::format(" (ended after {:.1f} s)", result.seconds);
     return words;
 }
 
-std::string asleep(const HoldResult& result) {
-    return result.asleep < 0 ? "-" : text("%.1f", result.asleep);
+/// All of a scene's own.
+std::string figures(const HoldResult& result, const char* between) {
+    std::string text;
+    for (const Figure& figure : result.figures)
+        text += fmt::format("{}{} {:.6g} {}", text.empty() ? "" : between, figure.name, figure.value, figure.unit);
+    return text;
 }
 
 void print_row(const Row& row) {
     const HoldResult& r = row.result;
-    std::printf("%-36s %-8s %8.3f %5.1f %8.3f %4d %9.2f %9.2f %9.1f %6s %8.2f  %s\n", row.hold->name.c_str(),
-                row.finder.c_str(), 1000 * r.deepest, r.deepest_time, 1000 * r.deepest_end, r.passed,
-                1000 * r.speed_median, 1000 * r.speed_max, 1000 * r.drift, asleep(r).c_str(), r.step_ms,
-                verdict(r).c_str());
-    for (const Figure& figure : r.figures)
-        std::printf("%-36s %-8s   %s %.4g %s\n", "", "", figure.name.c_str(), figure.value, figure.unit.c_str());
+    fmt::print("{:<36} {:<8} {:8.3f} {:5.1f} {:8.3f} {:4} {:9.2f} {:9.2f} {:9.1f} {:>6} {:8.2f}  {}\n", row.hold->name,
+               row.finder, 1000 * r.deepest, r.deepest_time, 1000 * r.deepest_end, r.passed, 1000 * r.speed_median,
+               1000 * r.speed_max, 1000 * r.drift, r.asleep < 0 ? "-" : fmt::format("{:.1f}", r.asleep), r.step_ms,
+               verdict(r));
+    if (!r.figures.empty()) fmt::print("{:48}{}\n", "", figures(r, fmt::format("\n{:48}", "").c_str()));
     std::fflush(stdout);
 }
 
-std::string csv_row(const rc::report::Machine& machine, const Row& row) {
+constexpr const char* columns = "scene,finder,hertz,seconds,holds,deepest_mm,passed,speed_median_mm_s,speed_max_mm_s,"
+                                "moved_mm,asleep_s,step_ms,figures,verdict";
+Json csv_row(const Row& row) {
     const HoldResult& r = row.result;
-    std::string figures;
-    for (const Figure& figure : r.figures)
-        figures +=
-            (figures.empty() ? "" : "; ") + text("%s %.6g %s", figure.name.c_str(), figure.value, figure.unit.c_str());
-    return rc::bench::machine_fields(machine) + "," + rc::bench::quoted(row.hold->name) + "," + row.finder
-           + text(",%g,%g,%d,%.6f,%d,%.6f,%.6f,%.6f,%s,%.4f,", row.hold->hertz, r.seconds, r.holds() ? 1 : 0,
-                  1000 * r.deepest, r.passed, 1000 * r.speed_median, 1000 * r.speed_max, 1000 * r.drift,
-                  r.asleep < 0 ? "" : text("%.3f", r.asleep).c_str(), r.step_ms)
-           + rc::bench::quoted(figures) + "," + rc::bench::quoted(verdict(r)) + "\n";
+    return Json::array({row.hold->name, row.finder, row.hold->hertz, r.seconds, r.holds(), 1000 * r.deepest, r.passed,
+                        1000 * r.speed_median, 1000 * r.speed_max, 1000 * r.drift,
+                        r.asleep < 0 ? Json() : Json(r.asleep), r.step_ms, figures(r, "; "), verdict(r)});
 }
 
 /// A plot for each scene, a line for each finder; then all figures.
 std::string page(const std::vector<Row>& rows, const std::string& heading, const std::string& command) {
-    rc::report::Page page;
+    report::Page page;
     page.title = "It holds";
     page.summary =
         "Scenes that a user expects to stand, hang, turn or stop. Ours is RayContact with the solver settings "
@@ -99,54 +93,47 @@ std::string page(const std::vector<Row>& rows, const std::string& heading, const
             page.plots.back().over = "time, s";
         }
         if (row.finder == "ours" || row.finder == "gimpact") { // a page has two colours
-            rc::report::Line line{row.finder, {}};
+            report::Line line{row.finder, {}};
             for (const auto& [time, speed] : r.speeds) line.points.emplace_back(time, 1000 * speed);
             page.plots.back().lines.push_back(line);
         }
-        std::string figures =
-            text("deepest %.3g mm, fastest %.3g mm/s, %.3g ms a step", 1000 * r.deepest, 1000 * r.speed_max, r.step_ms);
-        for (const Figure& figure : r.figures)
-            figures += text(", %s %.3g %s", figure.name.c_str(), figure.value, figure.unit.c_str());
         page.rows.push_back({row.hold->name + ": " + row.finder, r.holds() ? "holds" : "FAILS", "",
-                             (r.holds() ? "" : verdict(r) + "; ") + figures});
+                             fmt::format("{}deepest {:.3g} mm, fastest {:.3g} mm/s, {:.3g} ms a step{}{}",
+                                         r.holds() ? "" : verdict(r) + "; ", 1000 * r.deepest, 1000 * r.speed_max,
+                                         r.step_ms, r.figures.empty() ? "" : ", ", figures(r, ", "))});
     }
     page.command = command;
     page.footer = heading;
-    return rc::report::make_page(page);
+    return report::make_page(page);
 }
 
 void run_all(const Options& options) {
-    rc::report::Machine machine = rc::report::this_machine();
-    rc::bench::BenchFiles files(options.out, machine, {"holds"}, {".csv", ".html"});
-    std::printf("%s\n%-36s %-8s %8s %5s %8s %4s %9s %9s %9s %6s %8s\n", heading(machine).c_str(), "scene", "finder",
-                "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep", "ms/step");
-    std::string csv = std::string(rc::bench::machine_columns)
-                      + ",scene,finder,hertz,seconds,holds,deepest_mm,passed,speed_median_mm_s,speed_max_mm_s,"
-                        "moved_mm,asleep_s,step_ms,figures,verdict\n";
+    Output out(options.out, {"holds"}, {".csv", ".html"});
+    fmt::print("{}\n{:<36} {:<8} {:>8} {:>5} {:>8} {:>4} {:>9} {:>9} {:>9} {:>6} {:>8}\n", heading(out.machine),
+               "scene", "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep",
+               "ms/step");
     const std::vector<Hold> holds = all_holds();
     std::vector<Row> rows;
-    rc::bench::until_stopped([&] {
+    Json fields = Json::array();
+    until_stopped([&] {
         for (const Hold& hold : holds) {
             if (hold.name.find(options.only) == std::string::npos) continue;
             for (const Variant& variant : variants) {
                 if (!options.finder.empty() && variant.name != options.finder) continue;
                 if (variant.finder == Finder::convex && !hold.stack.convex()) continue;
-                rc::bench::end_if_stopped();
+                end_if_stopped();
                 HoldOptions asked = options.hold;
                 if (variant.iterations > 0) asked.iterations = variant.iterations;
                 rows.push_back({&hold, variant.name, run_hold(hold, variant.finder, asked)});
                 print_row(rows.back());
-                csv += csv_row(machine, rows.back());
+                fields.push_back(csv_row(rows.back()));
             }
         }
     });
-    rc::bench::finish(machine);
-    if (files) {
-        files.folder().write(rc::bench::result_name(machine, "holds", ".csv"), csv);
-        files.folder().write(rc::bench::result_name(machine, "holds", ".html"),
-                             page(rows, heading(machine), options.command));
-        files.keep(machine);
-    }
+    out.finish();
+    out.write("holds", ".csv", csv(out.machine, columns, fields));
+    out.write("holds", ".html", page(rows, heading(out.machine), options.command));
+    out.keep();
 }
 
 /// As it was typed, but for the order of the options.
@@ -162,8 +149,6 @@ std::string command_line(const CLI::App& command) {
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_holds(CLI::App& app) {
     CLI::App* command = app.add_subcommand(

@@ -17,7 +17,6 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -28,16 +27,15 @@
 #include <string>
 #include <vector>
 
-namespace rc = raycontact;
-using rc::peers::median;
+namespace raycontact::bench {
 
 namespace {
 
 template <class Work>
 double milliseconds_of(Work&& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = peers::now().wall;
     work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    return 1e-3 * (peers::now().wall - begin);
 }
 
 /// A mesh as Bullet takes it.
@@ -46,8 +44,8 @@ struct BulletMesh {
     std::vector<int> indices;
     btTriangleIndexVertexArray array;
 
-    explicit BulletMesh(const rc::Mesh& mesh) {
-        for (const rc::Vec3& v : mesh.vertices)
+    explicit BulletMesh(const Mesh& mesh) {
+        for (const Vec3& v : mesh.vertices)
             for (const double c : {v.x, v.y, v.z}) vertices.push_back(static_cast<float>(c));
         for (const auto& triangle : mesh.triangles)
             for (const std::uint32_t corner : triangle) indices.push_back(static_cast<int>(corner));
@@ -96,7 +94,7 @@ public:
 
 private:
     btDefaultCollisionConfiguration m_configuration;
-    rc::bullet::CollisionDispatcher m_dispatcher{&m_configuration};
+    bullet::CollisionDispatcher m_dispatcher{&m_configuration};
     btDbvtBroadphase m_broadphase;
     btCollisionWorld m_world{&m_dispatcher, &m_broadphase, &m_configuration};
     std::vector<std::unique_ptr<btCollisionObject>> m_objects;
@@ -117,17 +115,17 @@ double wait_for(btBvhTriangleMeshShape& shape, btBvhTriangleMeshShape* old, doub
     return first - world.dispatch();
 }
 
-void write_obj(const rc::Mesh& mesh, const std::filesystem::path& file) {
+void write_obj(const Mesh& mesh, const std::filesystem::path& file) {
     std::ofstream out(file);
     out.precision(9);
-    for (const rc::Vec3& v : mesh.vertices) out << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
+    for (const Vec3& v : mesh.vertices) out << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
     for (const auto& [a, b, c] : mesh.triangles) out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
     if (!out.flush()) throw std::runtime_error(file.string() + " cannot be written");
 }
 
 void measure(std::uint32_t triangles, int rounds) {
-    const rc::Mesh mesh = rc::scenes::scene_model("sphere", triangles).mesh;
-    BulletMesh bullet(mesh), other(rc::scenes::scene_model("torus", 200).mesh);
+    const Mesh mesh = scenes::scene_model("sphere", triangles).mesh;
+    BulletMesh bullet(mesh), other(scenes::scene_model("torus", 200).mesh);
     btBvhTriangleMeshShape old(&other.array, true);
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("raycontact-bench-" + std::to_string(triangles) + ".obj");
@@ -136,18 +134,18 @@ void measure(std::uint32_t triangles, int rounds) {
     for (int i = 0; i < rounds; ++i) {
         std::unique_ptr<btBvhTriangleMeshShape> shape;
         own.push_back(milliseconds_of([&] { shape = std::make_unique<btBvhTriangleMeshShape>(&bullet.array, true); }));
-        std::shared_ptr<const rc::Shape> made;
-        make.push_back(milliseconds_of([&] { made = rc::Shape::make(mesh); }));
+        std::shared_ptr<const Shape> made;
+        make.push_back(milliseconds_of([&] { made = Shape::make(mesh); }));
         const double size = made->box_max().x - made->box_min().x;
         begin.push_back(wait_for(*shape, nullptr, size));
         wait.push_back(wait_for(*shape, &old, size));
-        const auto ask = [&](const rc::Mesh& one, const rc::Mesh& two) {
-            const auto a = rc::Shape::make(one), b = rc::Shape::make(two);
-            if (rc::collide(*a, {}, *b, {.translation = {0.8 * size, 0, 0}}, {.threads = 0}).empty())
+        const auto ask = [&](const Mesh& one, const Mesh& two) {
+            const auto a = Shape::make(one), b = Shape::make(two);
+            if (collide(*a, {}, *b, {.translation = {0.8 * size, 0, 0}}, {.threads = 0}).empty())
                 throw std::runtime_error("the two meshes have no contact");
         };
         query.push_back(milliseconds_of([&] { ask(mesh, mesh); }));
-        read.push_back(milliseconds_of([&] { ask(rc::load_mesh(file), rc::load_mesh(file)); }));
+        read.push_back(milliseconds_of([&] { ask(load_mesh(file), load_mesh(file)); }));
         prepare.push_back(milliseconds_of([&] { made->prepare(); }));
     }
     std::filesystem::remove(file);
@@ -169,8 +167,8 @@ void forget_peak() {
 }
 
 /// A square of hills, open, of about so many triangles.
-rc::Mesh sheet(std::uint32_t triangles) {
-    rc::Mesh mesh;
+Mesh sheet(std::uint32_t triangles) {
+    Mesh mesh;
     const auto side = static_cast<std::uint32_t>(std::sqrt(triangles / 2.0));
     for (std::uint32_t i = 0; i <= side; ++i)
         for (std::uint32_t j = 0; j <= side; ++j)
@@ -186,7 +184,7 @@ rc::Mesh sheet(std::uint32_t triangles) {
 }
 
 /// A small ball of triangles falls on the middle of a static mesh of Bullet's.
-void measure_floor(const rc::Mesh& given, bool ahead) {
+void measure_floor(const Mesh& given, bool ahead) {
     BulletMesh mesh(given);
     const auto size = double(given.triangles.size());
     double before = resident("VmRSS:");
@@ -194,15 +192,15 @@ void measure_floor(const rc::Mesh& given, bool ahead) {
     std::printf("%.0f triangles; of Bullet's own tree: %.0f bytes a triangle kept\n", size,
                 (resident("VmRSS:") - before) / size);
     double high = 0;
-    for (const rc::Vec3& v : given.vertices) high = std::max(high, v.z);
+    for (const Vec3& v : given.vertices) high = std::max(high, v.z);
 
     btDefaultCollisionConfiguration configuration;
-    rc::bullet::CollisionDispatcher dispatcher(&configuration);
+    bullet::CollisionDispatcher dispatcher(&configuration);
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
     btRigidBody floor(0, nullptr, &floor_shape);
-    rc::bullet::MeshShape small(rc::Shape::make(rc::scenes::scene_model("sphere", 200).mesh));
+    bullet::MeshShape small(Shape::make(scenes::scene_model("sphere", 200).mesh));
     btRigidBody body(1, nullptr, &small, btVector3(1, 1, 1));
     before = resident("VmRSS:");
     forget_peak();
@@ -233,8 +231,6 @@ void measure_all(int rounds) {
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_new_shape(CLI::App& app) {
     CLI::App* command = app.add_subcommand(

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/files.h>
-#include <bench/peers/stopped.h>
+#include <bench/peers/results.h>
 #include <cli/number_option.h>
 #include <cli/out_option.h>
 #include <cli/stop.h>
+#include <output/out_folder.h>
+#include <raycontact/error.h>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <unistd.h>
 
@@ -35,22 +40,31 @@ inline void tell(const std::string& what) {
     if (isatty(STDERR_FILENO)) std::cerr << "\r\033[K" << what << std::flush;
 }
 
-/// Does the work, as far as it gets.
-template <class Do>
-void until_stopped(Do work) {
-    try {
-        work();
-    } catch (const Stopped&) {
-        // What is whole is written.
-    }
+/// An option of words with commas between them, out of those that are known.
+inline void add_words(CLI::App& command, const std::string& option, std::vector<std::string>& words,
+                      const std::vector<std::string>& known, const std::string& help) {
+    const auto check = [option, known](const std::string& word) -> std::string {
+        if (std::ranges::find(known, word) != known.end()) return "";
+        std::string all;
+        for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
+        throw InputError(option + ": \"" + word + "\" is not known; choose from " + all);
+    };
+    command.add_option(option, words, help)->type_name("WORDS")->delimiter(',')->check(check);
 }
 
-/// The machine as it is at the end.
-inline void finish(Machine& machine) {
-    machine.load = this_machine().load;
-    machine.cut_short = bench_stopped;
-    tell("");
-    if (bench_stopped) std::cerr << "cut short by " << stop_name() << '\n';
+/// The same of values that have words.
+template <class Value>
+void add_values(CLI::App& command, const std::string& option, std::vector<Value>& values,
+                Value (*from)(std::string_view), const std::string& help) {
+    const auto read = [&values, from](const std::vector<std::string>& words) {
+        values.clear();
+        for (const std::string& word : words) values.push_back(from(word));
+    };
+    command.add_option_function<std::vector<std::string>>(option, read, help)->type_name("WORDS")->delimiter(',');
+}
+
+inline void add_json(CLI::App& command, bool& json) {
+    command.add_flag("--json", json, "print one JSON object on stdout");
 }
 
 /// Of worlds that run by finders in turn.
@@ -61,26 +75,52 @@ inline void add_world_options(CLI::App& command, double& seconds, std::string& o
     command.add_option("--finder", finder, "this one alone: " + finders)->type_name("WORD");
 }
 
-/// What a benchmark writes with --out: DIR/<machine>/<name>-<date>, claimed before it begins. Without --out nothing.
-class BenchFiles {
+/// What a benchmark prints, and what it writes with --out: DIR/<machine>/<name>-<date>, claimed before it begins.
+class Output {
 public:
-    BenchFiles(const std::string& out, const Machine& machine, std::initializer_list<const char*> names,
-               std::initializer_list<const char*> endings = {".csv", ".svg"}) {
+    Output(const std::string& out, std::initializer_list<const char*> names,
+           std::initializer_list<const char*> endings = {".csv", ".svg"}) {
         listen_for_stop();
         if (out.empty()) return;
-        folder_.emplace(results_folder(out, machine));
+        folder_.emplace(std::filesystem::path(out) / machine.slug);
         for (const char* name : names)
-            for (const char* ending : endings) folder_->claim(result_name(machine, name, ending));
+            for (const char* ending : endings) folder_->claim(file(name, ending));
         name_left_overs(folder_->left_overs());
     }
-    explicit operator bool() const { return folder_.has_value(); }
-    raycontact::output::OutFolder& folder() { return *folder_; }
-    void keep(const Machine& machine) {
-        for (const auto& file : folder_->keep(machine.cut_short)) std::cerr << "written: " << file.string() << '\n';
+
+    /// The machine as it is at the end. False where a signal came before anything was measured.
+    bool finish(bool anything = true) {
+        machine.load = report::this_machine().load;
+        machine.cut_short = bench_stopped;
+        tell("");
+        if (bench_stopped) std::cerr << "cut short by " << stop_name() << '\n';
+        return anything || !bench_stopped;
+    }
+    /// The machine comes first in both.
+    void print(bool json, const std::string& table, const Json& object) const {
+        Json whole{{"machine", machine_json(machine)}};
+        whole.update(object);
+        // Drivers choose their own names: what is not UTF-8 in them must not end the program.
+        std::cout << (json ? whole.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"
+                           : heading(machine) + table)
+                  << std::flush;
+    }
+    void write(const std::string& name, const std::string& ending, const std::string& text) {
+        if (folder_) folder_->write(file(name, ending), text);
+    }
+    void keep() {
+        if (!folder_) return;
+        for (const auto& kept : folder_->keep(machine.cut_short)) std::cerr << "written: " << kept.string() << '\n';
     }
 
+    Machine machine = report::this_machine();
+
 private:
-    std::optional<raycontact::output::OutFolder> folder_;
+    std::string file(const std::string& name, const std::string& ending) const {
+        return name + "-" + machine.date + ending;
+    }
+
+    std::optional<output::OutFolder> folder_;
 };
 
 } // namespace raycontact::bench

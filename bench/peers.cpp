@@ -3,17 +3,11 @@
 #include "bench/commands.h"
 #include "bench/options.h"
 
-#include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
-#include <bench/peers/contest_output.h>
-#include <bench/peers/entrants.h>
 #include <bench/peers/growth.h>
-#include <bench/peers/growth_output.h>
+#include <bench/peers/motion.h>
 #include <bench/peers/seeds.h>
-#include <bench/peers/swarm.h>
-#include <bench/peers/sweep_output.h>
 #include <bench/peers/thresholds.h>
-#include <bench/peers/work.h>
 #include <raycontact/error.h>
 
 #include <algorithm>
@@ -59,31 +53,9 @@ bool chosen(const std::vector<std::string>& words, const std::string& word) {
     return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) {
-        if (!text.empty()) text += ", ";
-        text += word;
-    }
-    return text;
-}
-
-void refuse_unknown(const std::string& option, const std::vector<std::string>& given,
-                    const std::vector<std::string>& known) {
-    const auto unknown = std::find_if(given.begin(), given.end(), [&](const std::string& word) {
-        return std::find(known.begin(), known.end(), word) == known.end();
-    });
-    if (unknown != given.end())
-        throw InputError(option + ": \"" + *unknown + "\" is not known; choose from " + joined(known));
-}
-
 std::vector<Entrant> choose_entrants(const std::vector<std::string>& only) {
-    std::vector<Entrant> all = entrants(), some;
-    std::vector<std::string> names;
-    names.reserve(all.size());
-    for (const Entrant& entrant : all) names.push_back(entrant.name);
-    refuse_unknown("--only", only, names);
-    for (Entrant& entrant : all) {
+    std::vector<Entrant> some;
+    for (Entrant& entrant : entrants()) {
         if (!chosen(only, entrant.name)) continue;
         if (entrant.make)
             some.push_back(std::move(entrant));
@@ -133,23 +105,15 @@ std::vector<std::pair<std::string, MakeWork>> choose_works(const PeersOptions& o
         moving.steps = options.moving_steps;
         return avalanche("avalanche-moving", moving);
     });
-    std::vector<std::string> names;
-    names.reserve(works.size());
-    for (const auto& work : works) names.push_back(work.first);
-    refuse_unknown("--works", options.works, names);
     std::erase_if(works, [&](const auto& work) { return !chosen(options.works, work.first); });
+    if (works.empty()) throw InputError("--works: there are none of these with --mesh, or only with it");
     return works;
-}
-
-WorkNote note_of(const Work& work) {
-    return {work.name, work.source, static_cast<std::uint32_t>(work.steps.size()), work.pair_steps(), pace(work)};
 }
 
 void bench_peers(const PeersOptions& options) {
     const std::vector<Entrant> who = choose_entrants(options.only);
-    Machine machine = this_machine();
-    BenchFiles files(options.out, machine, {"peers"});
-    std::vector<WorkNote> notes;
+    Output out(options.out, {"peers"});
+    Json notes = Json::array();
     std::vector<Result> results;
     until_stopped([&] {
         for (const auto& [name, make] : choose_works(options)) {
@@ -160,53 +124,40 @@ void bench_peers(const PeersOptions& options) {
             results.insert(results.end(), some.begin(), some.end());
         }
     });
-    finish(machine);
-    if (results.empty() && machine.cut_short) return;
+    if (!out.finish(!results.empty())) return;
     name_absent(options.only);
-    std::cout << (options.json ? json(machine, notes, results) : table(machine, notes, results)) << std::flush;
-    if (files) {
-        write_results(files.folder(), machine, notes, results);
-        files.keep(machine);
-    }
+    const Json rows = json_list(results);
+    out.print(options.json, table(notes, results), {{"works", notes}, {"results", rows}});
+    out.write("peers", ".csv", csv(out.machine, result_columns, rows, notes));
+    out.write("peers", ".svg", chart(notes, results));
+    out.keep();
     if (std::any_of(results.begin(), results.end(), [](const Result& r) { return !r.agrees; }))
         throw std::runtime_error("basic or certified gave other bits than bvh; this must not be");
 }
 
 void bench_growth(const GrowthCommand& command) {
-    refuse_unknown("--only", command.options.parts, {std::begin(growth_parts), std::end(growth_parts)});
-    Machine machine = this_machine();
-    BenchFiles files(command.out, machine, {"growth"});
+    Output out(command.out, {"growth"});
     const std::vector<GrowthRow> rows = growth(command.options, tell);
-    finish(machine);
-    if (rows.empty() && machine.cut_short) return;
-    std::cout << (command.json ? json(machine, rows) : table(machine, rows)) << std::flush;
-    if (files) {
-        write_results(files.folder(), machine, rows);
-        files.keep(machine);
-    }
+    if (!out.finish(!rows.empty())) return;
+    out.print(command.json, table(rows), {{"rows", json_list(rows)}, {"slopes", json_list(slopes(rows))}});
+    out.write("growth", ".csv", csv(out.machine, growth_columns, json_list(rows)));
+    out.write("growth", ".svg", chart(rows));
+    out.keep();
 }
 
 std::vector<MakeWork> choose_sweeps(const SweepCommand& command) {
-    AvalancheWorkOptions steps;
-    steps.bodies = command.bodies;
-    steps.seed = command.seed;
-    steps.first = command.first;
-    steps.steps = command.steps;
+    const AvalancheWorkOptions steps{
+        .bodies = command.bodies, .first = command.first, .steps = command.steps, .seed = command.seed};
     if (!command.recording.empty()) return {[=] { return recorded_work(command.recording, steps); }};
-    SwarmOptions swarm;
-    swarm.steps = command.swarm_steps;
-    swarm.triangles = command.triangles;
-    swarm.seed = command.seed;
+    const SwarmOptions swarm{.steps = command.swarm_steps, .triangles = command.triangles, .seed = command.seed};
     return {[=] { return avalanche_work(steps); }, [=] { return swarm_work(swarm); }};
 }
 
 void bench_sweep(const SweepCommand& command) {
-    refuse_unknown("--only", command.only, {"thresholds", "seeds"});
     if (!command.recording.empty() && !command.only.empty() && chosen(command.only, "seeds"))
         throw InputError("--only seeds: simulates its avalanches itself; give no recording");
-    Machine machine = this_machine();
-    BenchFiles files(command.out, machine, {"sweep-thresholds", "sweep-seeds"});
-    std::vector<WorkNote> notes;
+    Output out(command.out, {"sweep-thresholds", "sweep-seeds"});
+    Json notes = Json::array();
     std::vector<ThresholdRow> thresholds;
     std::vector<SeedRow> seeds;
     if (chosen(command.only, "thresholds")) {
@@ -222,27 +173,33 @@ void bench_sweep(const SweepCommand& command) {
     }
     if (command.recording.empty() && chosen(command.only, "seeds"))
         seeds = sweep_seeds({command.seed, command.seeds, command.bodies, command.steps}, tell);
-    finish(machine);
-    if (thresholds.empty() && seeds.empty() && machine.cut_short) return;
-    if (command.json) {
-        std::cout << json(machine, notes, thresholds, seeds);
-    } else {
-        if (!thresholds.empty()) std::cout << table(machine, notes, thresholds);
-        if (!thresholds.empty() && !seeds.empty()) std::cout << '\n';
-        if (!seeds.empty()) std::cout << table(machine, seeds);
+    if (!out.finish(!thresholds.empty() || !seeds.empty())) return;
+    std::string text;
+    if (!thresholds.empty()) text += table(notes, thresholds);
+    if (!thresholds.empty() && !seeds.empty()) text += '\n';
+    if (!seeds.empty()) text += table(seeds);
+    const Json rows = json_list(thresholds), seed_rows = json_list(seeds);
+    std::vector<Reduction> reduced = reductions(seeds);
+    std::erase_if(reduced, [](const Reduction& r) { return r.of_seeds.empty(); });
+    out.print(command.json, text,
+              {{"works", notes},
+               {"thresholds", rows},
+               {"verdicts", json_list(verdicts(thresholds))},
+               {"seeds", seed_rows},
+               {"reductions", json_list(reduced)}});
+    if (!thresholds.empty()) {
+        out.write("sweep-thresholds", ".csv",
+                  csv(out.machine, std::string(threshold_columns) + count_columns, rows, notes));
+        out.write("sweep-thresholds", ".svg", chart(notes, thresholds));
     }
-    std::cout.flush();
-    if (files) {
-        if (!thresholds.empty()) write_results(files.folder(), machine, notes, thresholds);
-        if (!seeds.empty()) write_results(files.folder(), machine, seeds);
-        files.keep(machine);
+    if (!seeds.empty()) {
+        out.write("sweep-seeds", ".csv", csv(out.machine, std::string(seed_columns) + count_columns, seed_rows));
+        out.write("sweep-seeds", ".svg", chart(seeds));
     }
-    const bool wrong =
-        std::any_of(thresholds.begin(), thresholds.end(),
-                    [](const ThresholdRow& r) { return r.method == Method::certified && r.wrong.total() > 0; })
-        || std::any_of(seeds.begin(), seeds.end(),
-                       [](const SeedRow& r) { return r.method == Method::certified && r.wrong.total() > 0; });
-    if (wrong) throw std::runtime_error("certified gave other contacts than standard; this must not be");
+    out.keep();
+    const auto is_wrong = [](const auto& row) { return row.method == Method::certified && row.wrong.total() > 0; };
+    if (std::ranges::any_of(thresholds, is_wrong) || std::ranges::any_of(seeds, is_wrong))
+        throw std::runtime_error("certified gave other contacts than standard; this must not be");
 }
 
 } // namespace
@@ -256,15 +213,14 @@ void add_peers(CLI::App& app) {
     add_number(*command, "--pairs", o->approach.pairs, "approaching pairs, all in one step", 1u, 10'000u);
     add_number(*command, "--depth", o->approach.depth, "metres that they are pushed in beyond first touch", 0.0, 0.5);
     add_number(*command, "--runs", o->runs, "of everyone in turn; figures are medians", 1u, 1000u);
-    command
-        ->add_option("--only", o->only,
-                     "who: bvh,basic,iterative,iterative-basic,predictive,certified (all of vertices alone), edges "
-                     "(certified with edges), gimpact,fcl,ode,embree,rays,grid-rays,embree-rays")
-        ->type_name("NAMES")
-        ->delimiter(',');
-    command->add_option("--works", o->works, "what: pairs-453,pairs-1598,pairs-10000,avalanche,avalanche-moving")
-        ->type_name("NAMES")
-        ->delimiter(',');
+    std::vector<std::string> names;
+    for (const Entrant& entrant : entrants()) names.push_back(entrant.name);
+    add_words(*command, "--only", o->only, names,
+              "who: bvh,basic,iterative,iterative-basic,predictive,certified (all of vertices alone), edges "
+              "(certified with edges), gimpact,fcl,ode,embree,rays,grid-rays,embree-rays");
+    add_words(*command, "--works", o->works,
+              {"pairs-453", "pairs-1598", "pairs-10000", "avalanche", "avalanche-moving", "mesh"},
+              "what: pairs-453,pairs-1598,pairs-10000,avalanche,avalanche-moving");
     command->add_option("--mesh", o->mesh, "approaching pairs of this mesh instead, scaled to 1 m (work \"mesh\")")
         ->type_name("FILE");
     command->add_option("--recording", o->recording, "take the avalanche's poses and pairs from there (run --record)")
@@ -276,7 +232,7 @@ void add_peers(CLI::App& app) {
                "of those, every Nth for the others; 1 takes minutes a run", 1u, 1'000'000u);
     add_number(*command, "--moving-first", o->moving_first, "first step of the work avalanche-moving", 0u, 1'000'000u);
     add_number(*command, "--moving-steps", o->moving_steps, "its steps", 1u, 1'000'000u);
-    command->add_flag("--json", o->json, "print one JSON object on stdout");
+    add_json(*command, o->json);
     command->callback([o] { bench_peers(*o); });
 }
 
@@ -285,9 +241,8 @@ void add_growth(CLI::App& app) {
         app.add_subcommand("growth", "How the narrow phase grows with bodies, with triangles a mesh and with speed");
     auto c = std::make_shared<GrowthCommand>();
     add_out(*command, "--out", c->out, "write DIR/<machine>/growth-<date>.csv and .svg")->type_name("DIR");
-    command->add_option("--only", c->options.parts, "parts: triangles,contacts,creeping,still,displacement,bodies")
-        ->type_name("NAMES")
-        ->delimiter(',');
+    add_words(*command, "--only", c->options.parts, {std::begin(growth_parts), std::end(growth_parts)},
+              "parts: triangles,contacts,creeping,still,displacement,bodies");
     add_number(*command, "--bodies", c->options.bodies, "largest avalanche, 64 and its doubles up to here; 0: none", 0u,
                1'000'000u);
     add_number(*command, "--steps", c->options.steps, "of each avalanche; the last fifth is measured", 1u, 100'000u);
@@ -295,7 +250,7 @@ void add_growth(CLI::App& app) {
     add_number(*command, "--pairs", c->options.pairs, "of that mesh, at each size", 1u, 10'000u);
     add_number(*command, "--contacts", c->options.contacts, "of each rolling pair, about", 1u, 10'000u);
     add_number(*command, "--threads", c->options.threads, "0: one per core", 0u, 1024u);
-    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    add_json(*command, c->json);
     command->callback([c] { bench_growth(*c); });
 }
 
@@ -309,7 +264,7 @@ void add_sweep(CLI::App& app) {
         ->type_name("RECORDING");
     add_out(*command, "--out", c->out, "write DIR/<machine>/sweep-thresholds-<date>.csv and .svg, sweep-seeds too")
         ->type_name("DIR");
-    command->add_option("--only", c->only, "parts: thresholds,seeds")->type_name("NAMES")->delimiter(',');
+    add_words(*command, "--only", c->only, {"thresholds", "seeds"}, "parts: thresholds,seeds");
     add_number(*command, "--first", c->first, "first step of the thresholds' avalanche or recording", 0u, 1'000'000u);
     add_number(*command, "--steps", c->steps, "of each avalanche, or of the recording", 1u, 1'000'000u);
     add_number(*command, "--swarm-steps", c->swarm_steps, "of the few, fast bodies", 1u, 1'000'000u);
@@ -319,7 +274,7 @@ void add_sweep(CLI::App& app) {
     add_number(*command, "--seeds", c->seeds, "avalanches of the part seeds", 1u, 1000u);
     add_number(*command, "--values", c->thresholds.values, "fixed thresholds, 1e-4 to 1e-1 of the size", 1u, 100u);
     add_number(*command, "--runs", c->thresholds.runs, "of all settings in turn; times are medians", 1u, 1000u);
-    command->add_flag("--json", c->json, "print one JSON object on stdout");
+    add_json(*command, c->json);
     command->callback([c] { bench_sweep(*c); });
 }
 

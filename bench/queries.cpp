@@ -22,21 +22,21 @@
 #include <string>
 #include <vector>
 
-namespace rc = raycontact;
+namespace raycontact::bench {
 
 namespace {
 
 struct PosedPair {
-    rc::Pose a, b;
+    Pose a, b;
 };
 
 /// Pairs of two meshes of 1 m, turned at random, whose middles are `near` to `far` metres apart.
 std::vector<PosedPair> poses(std::size_t count, double near, double far) {
-    rc::reference::Random random(1);
+    reference::Random random(1);
     std::vector<PosedPair> pairs;
     for (std::size_t i = 0; i < count; ++i) {
         PosedPair pair{random.rotation(), random.rotation()};
-        const rc::Vec3 way = random.direction();
+        const Vec3 way = random.direction();
         const double apart = random.uniform(near, far);
         pair.b.translation = {apart * way.x, apart * way.y, apart * way.z};
         pairs.push_back(pair);
@@ -48,25 +48,25 @@ std::vector<PosedPair> poses(std::size_t count, double near, double far) {
 struct Query {
     std::string name;
     std::function<double(const PosedPair&)> ask;
-    std::vector<double> answers, microseconds;
+    std::vector<double> answers{}, microseconds{};
 };
 
 void measure(std::vector<Query>& queries, const std::vector<PosedPair>& pairs, std::size_t rounds) {
     for (std::size_t round = 0; round <= rounds; ++round) // the first warms up
         for (Query& query : queries) {
             query.answers.clear();
-            const double begin = rc::peers::now().cpu;
+            const double begin = peers::now().cpu;
             for (const PosedPair& pair : pairs) query.answers.push_back(query.ask(pair));
-            const double end = rc::peers::now().cpu;
+            const double end = peers::now().cpu;
             if (round > 0) query.microseconds.push_back((end - begin) / static_cast<double>(pairs.size()));
         }
 }
 
 #ifdef RAYCONTACT_HAS_FCL
 template <class Volume>
-std::shared_ptr<fcl::BVHModel<Volume>> model_of(const rc::Shape& shape) {
+std::shared_ptr<fcl::BVHModel<Volume>> model_of(const Shape& shape) {
     std::vector<fcl::Vector3d> points;
-    for (const rc::Vec3& v : shape.file_vertices()) points.emplace_back(v.x, v.y, v.z);
+    for (const Vec3& v : shape.file_vertices()) points.emplace_back(v.x, v.y, v.z);
     std::vector<fcl::Triangle> triangles;
     for (const auto& t : shape.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
     auto model = std::make_shared<fcl::BVHModel<Volume>>();
@@ -76,7 +76,7 @@ std::shared_ptr<fcl::BVHModel<Volume>> model_of(const rc::Shape& shape) {
     return model;
 }
 
-fcl::Transform3d transform_of(const rc::Pose& pose) {
+fcl::Transform3d transform_of(const Pose& pose) {
     fcl::Transform3d transform = fcl::Transform3d::Identity();
     for (int i = 0; i < 9; ++i) transform.linear()(i / 3, i % 3) = pose.rotation[static_cast<std::size_t>(i)];
     transform.translation() = fcl::Vector3d(pose.translation.x, pose.translation.y, pose.translation.z);
@@ -93,9 +93,9 @@ double differing(const std::vector<double>& p, const std::vector<double>& q) {
 void compare(const std::string& what, std::vector<Query>& queries, const std::vector<PosedPair>& pairs,
              std::size_t rounds) {
     measure(queries, pairs, rounds);
-    const double ours = rc::peers::median(queries[0].microseconds);
+    const double ours = peers::median(queries[0].microseconds);
     for (const Query& query : queries) {
-        const double theirs = rc::peers::median(query.microseconds);
+        const double theirs = peers::median(query.microseconds);
         std::printf("%-34s %-28s %9.2f us", what.c_str(), query.name.c_str(), theirs);
         if (&query != queries.data())
             std::printf("   %6.2f times ours, %.0f answers differ", theirs / ours,
@@ -106,8 +106,8 @@ void compare(const std::string& what, std::vector<Query>& queries, const std::ve
 }
 
 void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_count, std::size_t rounds) {
-    const auto a = rc::Shape::make(rc::scenes::scene_model(kind, triangles).mesh);
-    const auto b = rc::Shape::make(rc::scenes::scene_model("knot", triangles).mesh);
+    const auto a = Shape::make(scenes::scene_model(kind, triangles).mesh);
+    const auto b = Shape::make(scenes::scene_model("knot", triangles).mesh);
 #ifdef RAYCONTACT_HAS_FCL
     const auto fcl_a = model_of<fcl::OBBRSSd>(*a), fcl_b = model_of<fcl::OBBRSSd>(*b);
 #endif
@@ -119,30 +119,22 @@ void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_
          {Distances{"deep", 0, 0.2}, Distances{"near", 0.5, 1.0}, Distances{"apart", 1.2, 3}}) {
         const auto pairs = poses(pair_count, range.near, range.far);
         const std::string what = std::string(kind) + " " + std::to_string(triangles) + " " + range.name;
-        std::vector<Query> touch{
-            {"intersects", [&](const PosedPair& p) { return intersects(*a, p.a, *b, p.b); }, {}, {}}};
-        std::vector<Query> far{
-            {"distance", [&](const PosedPair& p) { return distance(*a, p.a, *b, p.b)->distance; }, {}, {}}};
+        std::vector<Query> touch{{"intersects", [&](const PosedPair& p) { return intersects(*a, p.a, *b, p.b); }}};
+        std::vector<Query> far{{"distance", [&](const PosedPair& p) { return distance(*a, p.a, *b, p.b)->distance; }}};
 #ifdef RAYCONTACT_HAS_FCL
-        touch.push_back({"fcl::collide OBBRSS",
-                         [&](const PosedPair& p) {
+        touch.push_back({"fcl::collide OBBRSS", [&](const PosedPair& p) {
                              const fcl::CollisionRequestd request(1, false);
                              fcl::CollisionResultd result;
                              return double(fcl::collide(fcl_a.get(), transform_of(p.a), fcl_b.get(), transform_of(p.b),
                                                         request, result)
                                            > 0);
-                         },
-                         {},
-                         {}});
-        far.push_back({"fcl::distance OBBRSS",
-                       [&](const PosedPair& p) {
+                         }});
+        far.push_back({"fcl::distance OBBRSS", [&](const PosedPair& p) {
                            const fcl::DistanceRequestd request(true);
                            fcl::DistanceResultd result;
                            return fcl::distance(fcl_a.get(), transform_of(p.a), fcl_b.get(), transform_of(p.b), request,
                                                 result);
-                       },
-                       {},
-                       {}});
+                       }});
 #endif
         compare(what, touch, pairs, rounds);
         compare(what, far, pairs, rounds);
@@ -150,8 +142,6 @@ void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_queries(CLI::App& app) {
     CLI::App* command = app.add_subcommand(

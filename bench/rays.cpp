@@ -22,29 +22,29 @@
 #include <cstdio>
 #include <xxhash.h>
 
-namespace rc = raycontact;
-namespace rk = raycontact::kernels;
-using rc::peers::median;
+namespace raycontact::bench {
+
+namespace rk = kernels;
 
 namespace {
 
-std::vector<rc::PlacedBody> random_pairs(const rc::Shape& shape, std::size_t pairs) {
-    rc::scenes::Random random(7);
-    std::vector<rc::PlacedBody> bodies(2 * pairs);
-    for (rc::PlacedBody& body : bodies) {
+std::vector<PlacedBody> random_pairs(const Shape& shape, std::size_t pairs) {
+    scenes::Random random(7);
+    std::vector<PlacedBody> bodies(2 * pairs);
+    for (PlacedBody& body : bodies) {
         const double apart = 0.35 * shape.data().diagonal;
-        const rc::Vec3 at{apart * random.symmetric(), apart * random.symmetric(), apart * random.symmetric()};
+        const Vec3 at{apart * random.symmetric(), apart * random.symmetric(), apart * random.symmetric()};
         body.shape = &shape;
-        body.pose = rc::pose_from_quaternion(at, random.symmetric(), random.symmetric(), random.symmetric(),
-                                             random.symmetric());
-        body.centred = rc::centred_pose(shape, body.pose);
+        body.pose =
+            pose_from_quaternion(at, random.symmetric(), random.symmetric(), random.symmetric(), random.symmetric());
+        body.centred = centred_pose(shape, body.pose);
     }
     return bodies;
 }
 
 // Contacts found; the transform of the vertex is part of the work, as it is of ours.
-std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::DirectedPair>& pairs,
-                 const rk::ShapeHeader& shape, const std::vector<rk::Ray>& rays) {
+std::size_t cast(const EmbreeScene& scene, const std::vector<rk::DirectedPair>& pairs, const rk::ShapeHeader& shape,
+                 const std::vector<rk::Ray>& rays) {
     std::size_t contacts = 0;
     for (const rk::Ray& ray : rays) {
         const rk::prototype::SourceRay source =
@@ -58,31 +58,31 @@ std::size_t cast(const rc::bench::EmbreeScene& scene, const std::vector<rk::Dire
 // Of processor time: the work runs on this one thread, and other jobs on the machine then count less.
 template <typename Work>
 double milliseconds(Work&& work) {
-    const double start = rc::peers::now().cpu;
+    const double start = peers::now().cpu;
     work();
-    return 1e-3 * (rc::peers::now().cpu - start);
+    return 1e-3 * (peers::now().cpu - start);
 }
 
 // Passes everything on to a device that works on this thread, and takes the time in which it casts rays.
-class CastClock : public rc::ForwardingDevice {
+class CastClock : public ForwardingDevice {
 public:
     using ForwardingDevice::ForwardingDevice;
 
     double cast_ms = 0;
 
 private:
-    void launch(rc::KernelId kernel, rc::Count count, std::span<const rc::Argument> arguments) override {
+    void launch(KernelId kernel, Count count, std::span<const Argument> arguments) override {
         const double ms = milliseconds([&] { inner().launch(kernel, count, arguments); });
-        if (kernel == rc::KernelId::cast_rays_bvh || kernel == rc::KernelId::cast_rays_basic) cast_ms += ms;
+        if (kernel == KernelId::cast_rays_bvh || kernel == KernelId::cast_rays_basic) cast_ms += ms;
     }
 };
 
 // One instruction set with its own copy of everything.
 class Contender {
 public:
-    Contender(rc::Executor& executor, std::string_view instruction_set, const std::shared_ptr<const rc::Shape>& shape,
-              std::span<const rc::PlacedBody> bodies, std::span<const rc::SlotPair> pairs)
-        : executor_(executor), device_(rc::cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
+    Contender(Executor& executor, std::string_view instruction_set, const std::shared_ptr<const Shape>& shape,
+              std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs)
+        : executor_(executor), device_(cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
           pairs_(pairs) {
         store_.add(shape);
         settings_.paper.skip_outside = false; // every ray of the rule
@@ -95,68 +95,68 @@ public:
     }
 
     void run_bvh() {
-        const double all = run(rc::Caster::bvh);
+        const double all = run(Caster::bvh);
         bvh_ms.push_back(device_.cast_ms);
         queue_ms.push_back(all - device_.cast_ms);
         hash = hash_hits();
     }
     void run_basic() {
-        run(rc::Caster::basic);
+        run(Caster::basic);
         basic_ms.push_back(device_.cast_ms);
         basic_hash = hash_hits();
     }
 
     const std::string& driver() const { return device_.info().driver; }
-    std::vector<rk::Ray> rays() { return read(batch_.rays, batch_.sums[rc::RayBatch::ray_sum].results); }
+    std::vector<rk::Ray> rays() { return read(batch_.rays, batch_.sums[RayBatch::ray_sum].results); }
     std::vector<rk::DirectedPair> ordered() { return read(*batch_.pairs, batch_.pairs->size()); }
 
     std::vector<double> queue_ms, bvh_ms, basic_ms; ///< of each run; queue: finding the rays
     std::uint64_t hash = 0, basic_hash = 0;         ///< of the last
 
 private:
-    double run(rc::Caster caster) {
+    double run(Caster caster) {
         settings_.paper.caster = caster;
         device_.cast_ms = 0;
         return milliseconds([&] { standard_.cast(update(), batch_); });
     }
-    rc::Update update() { return {device_, executor_, store_, bodies_, pairs_, motion_, settings_}; }
+    Update update() { return {device_, executor_, store_, bodies_, pairs_, motion_, settings_}; }
 
     template <typename T>
-    std::vector<T> read(const rc::Array<T>& array, std::size_t count) {
+    std::vector<T> read(const Array<T>& array, std::size_t count) {
         std::vector<T> host(count);
         array.read(device_, host);
         return host;
     }
     std::uint64_t hash_hits() {
-        const std::vector<rk::Hit> hits = read(batch_.hits, batch_.sums[rc::RayBatch::ray_sum].results);
+        const std::vector<rk::Hit> hits = read(batch_.hits, batch_.sums[RayBatch::ray_sum].results);
         return XXH64(hits.data(), hits.size() * sizeof(rk::Hit), 0);
     }
 
-    rc::Executor& executor_;
+    Executor& executor_;
     CastClock device_;
-    rc::ShapeStore store_;
-    std::span<const rc::PlacedBody> bodies_;
-    std::span<const rc::SlotPair> pairs_;
-    rc::Motion motion_;
-    rc::Settings settings_;
-    rc::StandardRays standard_;
-    rc::RayBatch batch_;
+    ShapeStore store_;
+    std::span<const PlacedBody> bodies_;
+    std::span<const SlotPair> pairs_;
+    Motion motion_;
+    Settings settings_;
+    StandardRays standard_;
+    RayBatch batch_;
 };
 
 void compare(const std::string& file, std::size_t pair_count, int runs) {
-    const auto shape = rc::Shape::make(rc::load_mesh(file));
-    const std::vector<rc::PlacedBody> bodies = random_pairs(*shape, pair_count);
-    std::vector<rc::SlotPair> pairs;
-    for (rc::BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
+    const auto shape = Shape::make(load_mesh(file));
+    const std::vector<PlacedBody> bodies = random_pairs(*shape, pair_count);
+    std::vector<SlotPair> pairs;
+    for (BodySlot i = 0; i < 2 * pair_count; i += 2) pairs.emplace_back(i, i + 1);
 
-    rc::Executor executor(1);
+    Executor executor(1);
     std::vector<std::unique_ptr<Contender>> contenders;
-    for (const rc::cpu::KernelTable* table : rc::cpu::usable_tables())
+    for (const cpu::KernelTable* table : cpu::usable_tables())
         contenders.push_back(std::make_unique<Contender>(executor, table->instruction_set, shape, bodies, pairs));
     const std::vector<rk::Ray> rays = contenders[0]->rays();
     const std::vector<rk::DirectedPair> ordered = contenders[0]->ordered();
-    const rc::bench::EmbreeDevice embree_device;
-    const rc::bench::EmbreeScene embree(embree_device, *shape);
+    const EmbreeDevice embree_device;
+    const EmbreeScene embree(embree_device, *shape);
     std::vector<double> embree_ms;
     std::size_t embree_contacts = 0;
     const auto cast_theirs = [&] { embree_contacts = cast(embree, ordered, shape->data().header, rays); };
@@ -184,8 +184,6 @@ void compare(const std::string& file, std::size_t pair_count, int runs) {
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_rays(CLI::App& app) {
     CLI::App* command =

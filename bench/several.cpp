@@ -17,8 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace rc = raycontact;
-using rc::peers::median;
+namespace raycontact::bench {
 
 namespace {
 
@@ -29,14 +28,14 @@ struct Times {
     std::string hash;
 };
 
-Times replay(const std::string& file, const rc::Settings& settings) {
-    rc::recording::Reader reader(file);
-    const rc::recording::Replay result = rc::recording::replay(reader, {settings, false, {}, {}});
+Times replay(const std::string& file, const Settings& settings) {
+    recording::Reader reader(file);
+    const recording::Replay result = recording::replay(reader, {settings, false, {}, {}});
     Times times;
     double pairs = 0;
-    for (const rc::recording::ReplayStep& step : result.steps) {
+    for (const recording::ReplayStep& step : result.steps) {
         double busy = 0, ms = 0;
-        for (const rc::DeviceWork& work : step.details.work) {
+        for (const DeviceWork& work : step.details.work) {
             busy = std::max(busy, work.busy_ms);
             ms = std::max(ms, work.ms);
         }
@@ -53,9 +52,9 @@ Times replay(const std::string& file, const rc::Settings& settings) {
     return times;
 }
 
-void compare(const std::string& file, const std::string& devices, rc::Method method, rc::Schedule schedule, int runs) {
-    rc::Settings alone, shared;
-    alone.features = shared.features = rc::Features::vertices;
+void compare(const std::string& file, const std::string& devices, Method method, Schedule schedule, int runs) {
+    Settings alone, shared;
+    alone.features = shared.features = Features::vertices;
     alone.method = shared.method = method;
     shared.execution.schedule = schedule;
     shared.execution.devices = devices;
@@ -83,25 +82,19 @@ void compare(const std::string& file, const std::string& devices, rc::Method met
 struct Options {
     std::string recording, devices;
     int runs = 5;
-    std::vector<std::string> methods;
+    std::vector<Method> methods = {Method::standard, Method::certified, Method::iterative, Method::predictive};
 };
 
 void run(const Options& options) {
-    std::vector<rc::Method> methods;
-    for (const std::string& word : options.methods) methods.push_back(rc::method_from(word));
-    if (methods.empty())
-        methods = {rc::Method::standard, rc::Method::certified, rc::Method::iterative, rc::Method::predictive};
     std::printf("%s, %d runs by turns, one device over all\n", options.devices.c_str(), options.runs);
     std::printf("%-11s %-9s %8s %8s %8s   %s %6s %8s %11s %9s\n", "method", "schedule", "device", "part", "narrow",
                 "least..most", "one ms", "all ms", "moved/1000", "kB/step");
-    for (const rc::Method method : methods)
-        for (const rc::Schedule schedule : {rc::Schedule::sticky, rc::Schedule::balanced})
+    for (const Method method : options.methods)
+        for (const Schedule schedule : {Schedule::sticky, Schedule::balanced})
             compare(options.recording, options.devices, method, schedule, options.runs);
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_several(CLI::App& app) {
     CLI::App* command = app.add_subcommand("several", "What several devices gain over the first of them");
@@ -111,8 +104,7 @@ void add_several(CLI::App& app) {
         ->type_name("RECORDING");
     command->add_option("devices", o->devices, "a list, as cpu/0,cpu/1")->required()->type_name("DEVICES");
     add_number(*command, "runs", o->runs, "by turns; figures are medians", 1, 1000);
-    command->add_option("methods", o->methods, "standard certified iterative predictive; without: all")
-        ->type_name("METHOD");
+    add_values(*command, "methods", o->methods, method_from, "standard certified iterative predictive; without: all");
     command->callback([o] { run(*o); });
 }
 

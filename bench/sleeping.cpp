@@ -14,12 +14,11 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <vector>
 
-namespace rc = raycontact;
+namespace raycontact::bench {
 
 namespace {
 
@@ -27,19 +26,19 @@ constexpr int bodies = 1000, steps = 200;
 enum class Kind { vertices, box, gimpact };
 constexpr Kind kinds[] = {Kind::vertices, Kind::box, Kind::gimpact};
 
-std::unique_ptr<btCollisionShape> make_shape(Kind kind, const std::shared_ptr<const rc::Shape>& mesh,
+std::unique_ptr<btCollisionShape> make_shape(Kind kind, const std::shared_ptr<const Shape>& mesh,
                                              btTriangleMesh& triangles) {
-    if (kind == Kind::vertices) return std::make_unique<rc::bullet::MeshShape>(mesh);
-    if (kind == Kind::box) return std::make_unique<rc::bullet::MeshShape>(mesh, rc::bullet::Bounds::box);
+    if (kind == Kind::vertices) return std::make_unique<bullet::MeshShape>(mesh);
+    if (kind == Kind::box) return std::make_unique<bullet::MeshShape>(mesh, bullet::Bounds::box);
     auto shape = std::make_unique<btGImpactMeshShape>(&triangles);
     shape->updateBound();
     return shape;
 }
 
 /// Microseconds of a step.
-double run(Kind kind, const std::shared_ptr<const rc::Shape>& mesh, btTriangleMesh& triangles) {
+double run(Kind kind, const std::shared_ptr<const Shape>& mesh, btTriangleMesh& triangles) {
     btDefaultCollisionConfiguration configuration;
-    rc::bullet::CollisionDispatcher dispatcher(&configuration);
+    bullet::CollisionDispatcher dispatcher(&configuration);
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
@@ -58,27 +57,27 @@ double run(Kind kind, const std::shared_ptr<const rc::Shape>& mesh, btTriangleMe
     }
     std::vector<double> times;
     for (int i = 0; i < steps; ++i) {
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = peers::now().wall;
         world.stepSimulation(btScalar(1.0 / 60), 0);
-        times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+        times.push_back(peers::now().wall - begin);
     }
     for (const auto& body : all) world.removeRigidBody(body.get());
-    return rc::peers::median(times);
+    return peers::median(times);
 }
 
 void run_all(int rounds) {
     std::printf("%s\n%d sleeping bodies; least of %d medians, microseconds a step\n",
-                heading(rc::report::this_machine()).c_str(), bodies, rounds);
+                heading(report::this_machine()).c_str(), bodies, rounds);
     std::printf("%9s  %10s %10s %10s\n", "triangles", "MeshShape", "and a box", "GImpact");
     for (const std::uint32_t triangles : {600u, 2000u, 20000u}) {
-        const rc::Mesh mesh = rc::scenes::scene_model("torus", triangles).mesh;
+        const Mesh mesh = scenes::scene_model("torus", triangles).mesh;
         btTriangleMesh for_gimpact;
         const auto corner = [&](std::uint32_t v) {
-            const rc::Vec3& p = mesh.vertices[v];
+            const Vec3& p = mesh.vertices[v];
             return btVector3(btScalar(p.x), btScalar(p.y), btScalar(p.z));
         };
         for (const auto& [a, b, c] : mesh.triangles) for_gimpact.addTriangle(corner(a), corner(b), corner(c));
-        const auto shape = rc::Shape::make(mesh);
+        const auto shape = Shape::make(mesh);
         double least[std::size(kinds)] = {1e30, 1e30, 1e30};
         for (int round = 0; round < rounds; ++round)
             for (std::size_t k = 0; k < std::size(kinds); ++k)
@@ -89,8 +88,6 @@ void run_all(int rounds) {
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_sleeping(CLI::App& app) {
     CLI::App* command =

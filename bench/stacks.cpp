@@ -5,17 +5,21 @@
 #include "bench/commands.h"
 #include "bench/options.h"
 
+#include <scenes/peers/clock.h>
 #include <scenes/stacks/stack_world.h>
 #include <scenes/stacks/verdict.h>
 
-#include <chrono>
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
 
-namespace rc = raycontact;
-using namespace rc::scenes;
+namespace raycontact::bench {
+
+using namespace scenes;
 
 namespace {
 
@@ -30,22 +34,21 @@ struct Options {
 };
 
 struct Row {
-    Verdict verdict;
+    scenes::Verdict verdict;
     double ms = 0; ///< of a step
-    bool ran = false, fell = false;
+    bool fell = false;
 };
 
 Row run(const Stack& stack, Ground ground, Finder finder, const Options& options, double allowed) {
     StackWorld world(stack, ground, finder, options.solver);
     Row row;
-    row.ran = true;
     const int steps = static_cast<int>(std::lround(options.seconds * 60));
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = peers::now().wall;
     bool down = false;
     for (int i = 0; i < steps; ++i) {
         world.step();
         if (!options.watch || down) continue;
-        const Verdict now = judge(stack, world.poses());
+        const scenes::Verdict now = judge(stack, world.poses());
         down = now.fell(stack, allowed);
         if (i < 3 || i % 30 == 0 || down) {
             std::printf("step %d: drift %.5f turn %.3f sunk %.5f overlap %.5f\n", i, now.drift, now.turn, now.sunk,
@@ -53,10 +56,10 @@ Row run(const Stack& stack, Ground ground, Finder finder, const Options& options
             if (i < 3 || down) world.print_points(stdout);
         }
     }
-    row.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / steps;
+    row.ms = 1e-3 * (peers::now().wall - begin) / steps;
     row.verdict = judge(stack, world.poses());
     for (std::size_t i = 0; options.watch && i < stack.bodies.size(); ++i) {
-        const rc::Vec3 a = stack.bodies[i].pose.translation, b = world.pose(i).translation;
+        const Vec3 a = stack.bodies[i].pose.translation, b = world.pose(i).translation;
         std::printf("body %zu has moved by %.4f %.4f %.4f m\n", i, b.x - a.x, b.y - a.y, b.z - a.z);
     }
     row.fell = row.verdict.fell(stack, allowed);
@@ -64,65 +67,54 @@ Row run(const Stack& stack, Ground ground, Finder finder, const Options& options
 }
 
 std::string cell(const Stack& stack, const Row& row) {
-    if (!row.ran) return "-";
-    char text[64];
-    const Verdict& v = row.verdict;
-    if (stack.stands)
-        std::snprintf(text, sizeof text, "%.2f%% %.2f %s", 100 * v.drift, v.turn, row.fell ? "FELL" : "ok");
-    else
-        std::snprintf(text, sizeof text, "s%.2f%% o%.2f%% %s", 100 * v.sunk, 100 * v.overlap, row.fell ? "FELL" : "ok");
-    return text;
+    const scenes::Verdict& v = row.verdict;
+    return fmt::format("{} {}",
+                       stack.stands ? fmt::format("{:.2f}% {:.2f}", 100 * v.drift, v.turn)
+                                    : fmt::format("s{:.2f}% o{:.2f}%", 100 * v.sunk, 100 * v.overlap),
+                       row.fell ? "FELL" : "ok");
 }
 
 void run_all(const Options& options) {
-    rc::report::Machine machine = rc::report::this_machine();
-    rc::bench::BenchFiles files(options.out, machine, {"stacks"}, {".csv"});
-    std::printf("%s\n%g s; drift in parts of a body's size, turn in degrees; of plates: sunk, overlap\n",
-                heading(machine).c_str(), options.seconds);
-    std::printf("%-14s %-6s", "stack", "ground");
-    for (const Finder finder : finders) std::printf(" %-24s", std::string(to_string(finder)).c_str());
-    std::printf("\n");
-    std::string csv = std::string(rc::bench::machine_columns)
-                      + ",stack,ground,finder,seconds,drift,turn_degrees,sunk,overlap,fell,step_ms\n";
-    rc::bench::until_stopped([&] {
+    Output out(options.out, {"stacks"}, {".csv"});
+    fmt::print("{}\n{} s; drift in parts of a body's size, turn in degrees; of plates: sunk, overlap\n",
+               heading(out.machine), options.seconds);
+    fmt::print("{:<14} {:<6}", "stack", "ground");
+    for (const Finder finder : finders) fmt::print(" {:<24}", to_string(finder));
+    fmt::print("\n");
+    Json rows = Json::array();
+    until_stopped([&] {
         for (const Stack& stack : all_stacks()) {
             if (stack.name.find(options.only) == std::string::npos) continue;
             for (const Ground ground : grounds) {
                 if (!options.ground.empty() && to_string(ground) != options.ground) continue;
-                std::printf("%-14s %-6s", stack.name.c_str(), std::string(to_string(ground)).c_str());
+                fmt::print("{:<14} {:<6}", stack.name, to_string(ground));
                 double allowed = drift_limit;
                 for (const Finder finder : finders) {
-                    rc::bench::end_if_stopped();
-                    Row row;
+                    end_if_stopped();
+                    std::string told = "-";
                     if ((options.finder.empty() || to_string(finder) == options.finder)
                         && (finder != Finder::convex || stack.convex())) {
-                        row = run(stack, ground, finder, options, allowed);
-                        if (finder == Finder::convex) allowed = std::max(allowed, 2 * row.verdict.drift);
-                        char line[256];
-                        std::snprintf(line, sizeof line, ",%s,%s,%s,%g,%.6f,%.4f,%.6f,%.6f,%d,%.4f\n",
-                                      stack.name.c_str(), std::string(to_string(ground)).c_str(),
-                                      std::string(to_string(finder)).c_str(), options.seconds, row.verdict.drift,
-                                      row.verdict.turn, row.verdict.sunk, row.verdict.overlap, row.fell ? 1 : 0,
-                                      row.ms);
-                        csv += rc::bench::machine_fields(machine) + line;
+                        const Row row = run(stack, ground, finder, options, allowed);
+                        const scenes::Verdict& v = row.verdict;
+                        if (finder == Finder::convex) allowed = std::max(allowed, 2 * v.drift);
+                        rows.push_back(Json::array({stack.name, to_string(ground), to_string(finder), options.seconds,
+                                                    v.drift, v.turn, v.sunk, v.overlap, row.fell, row.ms}));
+                        told = cell(stack, row);
                     }
-                    std::printf(" %-24s", cell(stack, row).c_str());
+                    fmt::print(" {:<24}", told);
                     std::fflush(stdout);
                 }
-                std::printf("\n");
+                fmt::print("\n");
             }
         }
     });
-    rc::bench::finish(machine);
-    if (files) {
-        files.folder().write(rc::bench::result_name(machine, "stacks", ".csv"), csv);
-        files.keep(machine);
-    }
+    out.finish();
+    out.write("stacks", ".csv",
+              csv(out.machine, "stack,ground,finder,seconds,drift,turn_degrees,sunk,overlap,fell,step_ms", rows));
+    out.keep();
 }
 
 } // namespace
-
-namespace raycontact::bench {
 
 void add_stacks(CLI::App& app) {
     CLI::App* command = app.add_subcommand(

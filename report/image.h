@@ -18,4 +18,7 @@ std::string encode_png(const Image& image);
 std::string encode_jpeg(const Image& image, int quality);
 std::string base64(std::string_view bytes);
 
+/// An animated WebP that begins anew at its end; frames of one size. Throws std::runtime_error if libwebp fails.
+std::string encode_webp(const std::vector<Image>& frames, int milliseconds_a_frame);
+
 } // namespace raycontact::report

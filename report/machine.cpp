@@ -70,9 +70,10 @@ Machine this_machine() {
     return machine;
 }
 
-std::string heading(const Machine& m) {
-    return fmt::format("{}, {}, {} cores, governor {}, load {:.2f}; built by {} from {}{}\n", m.date, m.cpu, m.cores,
-                       m.governor, m.load, m.compiler, m.commit, m.cut_short ? "; cut short" : "");
+std::string heading(const Machine& m, bool with_load) {
+    return fmt::format("{}, {}, {} cores, governor {}{}; built by {} from {}{}\n", m.date, m.cpu, m.cores, m.governor,
+                       with_load ? fmt::format(", load {:.2f}", m.load) : "", m.compiler, m.commit,
+                       m.cut_short ? "; cut short" : "");
 }
 
 } // namespace raycontact::report

@@ -23,6 +23,6 @@ struct Machine {
 Machine this_machine();
 
 /// One line for a person.
-std::string heading(const Machine& machine);
+std::string heading(const Machine& machine, bool with_load = true);
 
 } // namespace raycontact::report

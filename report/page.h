@@ -2,6 +2,7 @@
 #pragma once
 
 #include <report/plot.h>
+#include <scenes/run_log.h>
 
 #include <string>
 #include <vector>
@@ -43,5 +44,9 @@ struct Page {
 
 /// One HTML document with everything inside: no link, no font, no script from elsewhere.
 std::string make_page(const Page& page);
+
+/// The words of the page: title, summary, table, command, footer, from the log and its summary_json. A summary that is
+/// not JSON, or lacks a key, leaves that out; a key that is not known here is shown as it is.
+void describe(const scenes::RunLog& log, Page& page);
 
 } // namespace raycontact::report

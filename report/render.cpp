@@ -4,7 +4,6 @@
 #include <report/camera.h>
 #include <report/colour.h>
 #include <report/denoise.h>
-#include <report/stage.h>
 
 #include <embree3/rtcore.h>
 #include <tbb/blocked_range2d.h>

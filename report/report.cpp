@@ -2,11 +2,9 @@
 #include <report/report.h>
 
 #include <raycontact/error.h>
-#include <report/film.h>
 #include <report/image.h>
 #include <report/page.h>
 #include <report/render.h>
-#include <report/summary.h>
 
 #include <fmt/format.h>
 
@@ -194,10 +192,9 @@ void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Re
         page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
     }
     if (!page.stills.empty() || !page.film.empty())
-        page.footer =
-            fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. The "
-                        "camera follows the pile from picture to picture. {}",
-                        log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
+        page.footer = fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. "
+                                  "The camera follows the pile from picture to picture. {}",
+                                  log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
     if (drawing.done() < work_of(log, options))
         page.footer = "Drawing was ended before all pictures were made. " + page.footer;
     folder.write(page_name, make_page(page));

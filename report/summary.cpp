@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <report/summary.h>
+#include <report/page.h>
 
 #include <raycontact/settings.h>
 #include <report/counted.h>
+#include <report/machine.h>
 #include <report/svg.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-#include <thread>
+#include <algorithm>
 
 namespace raycontact::report {
 namespace {
@@ -116,22 +116,13 @@ void flatten(const Json& object, const std::string& before, std::vector<std::pai
     }
 }
 
-std::string processor() {
-    std::ifstream in("/proc/cpuinfo");
-    for (std::string line; std::getline(in, line);)
-        if (line.starts_with("model name"))
-            if (const auto colon = line.find(':'); colon != std::string::npos && colon + 2 <= line.size())
-                return line.substr(colon + 2);
-    return "processor unknown";
-}
-
 std::string word(const Json& summary, const char* key, const char* otherwise) {
     const auto at = summary.find(key);
     return at == summary.end() ? otherwise : as_text(*at, 1);
 }
 
 /// The plain number of a key, as the command line takes it.
-std::string option(const Json& summary, const char* key, const char* name) {
+std::string option(const Json& summary, std::string key) {
     const auto at = summary.find(key);
     if (at == summary.end() || at->is_object()) return "";
     std::string text;
@@ -141,29 +132,26 @@ std::string option(const Json& summary, const char* key, const char* name) {
                 fmt::format("{}{}", text.empty() ? "" : ",", item.is_string() ? item.get<std::string>() : item.dump());
     else
         text = at->is_string() ? at->get<std::string>() : at->dump();
-    return text.empty() ? "" : fmt::format(" {} {}", name, text);
+    std::replace(key.begin(), key.end(), '_', '-');
+    return text.empty() ? "" : fmt::format(" --{} {}", key, text);
 }
 
 /// The thresholds that are not what they are anyway.
 std::string thresholds(const Json& summary) {
-    const Settings usual;
-    const auto differs = [&](const char* key, const Json& otherwise) {
-        const auto at = summary.find(key);
-        return at != summary.end() && *at != otherwise;
-    };
+    const PaperOptions usual;
+    const std::pair<const char*, Json> all[] = {{"displacement_threshold", nullptr},
+                                                {"confidence", usual.confidence},
+                                                {"culling_distance", nullptr},
+                                                {"distance_extension", nullptr},
+                                                {"max_iterations", usual.max_iterations},
+                                                {"cast_lost_walks", usual.cast_lost_walks},
+                                                {"speculative", "auto"},
+                                                {"max_contacts_per_pair", 0},
+                                                {"max_contacts", 0}};
     std::string text;
-    if (differs("displacement_threshold", nullptr))
-        text += option(summary, "displacement_threshold", "--displacement-threshold");
-    if (differs("confidence", usual.paper.confidence)) text += option(summary, "confidence", "--confidence");
-    if (differs("culling_distance", nullptr)) text += option(summary, "culling_distance", "--culling-distance");
-    if (differs("distance_extension", nullptr)) text += option(summary, "distance_extension", "--distance-extension");
-    if (differs("max_iterations", usual.paper.max_iterations))
-        text += option(summary, "max_iterations", "--max-iterations");
-    if (differs("cast_lost_walks", usual.paper.cast_lost_walks)) text += " --no-walk-casts";
-    if (differs("speculative", "auto")) text += option(summary, "speculative", "--speculative");
-    if (differs("max_contacts_per_pair", 0))
-        text += option(summary, "max_contacts_per_pair", "--max-contacts-per-pair");
-    if (differs("max_contacts", 0)) text += option(summary, "max_contacts", "--max-contacts");
+    for (const auto& [key, otherwise] : all)
+        if (const auto at = summary.find(key); at != summary.end() && *at != otherwise)
+            text += key == std::string("cast_lost_walks") ? " --no-walk-casts" : option(summary, key);
     return text;
 }
 
@@ -176,21 +164,19 @@ void describe(const scenes::RunLog& log, Page& page) {
     std::size_t moving = 0;
     for (const bool moves : log.body_moves) moving += moves;
     const double seconds = static_cast<double>(log.rows.size()) * log.dt;
-    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+    const Machine machine = this_machine();
     page.title = fmt::format("{}: {}", log.scene.empty() ? "run" : log.scene, counted(moving, "mesh", "meshes"));
     page.title[0] =
         static_cast<char>(page.title[0] >= 'a' && page.title[0] <= 'z' ? page.title[0] - 'a' + 'A' : page.title[0]);
     page.summary = fmt::format(
         "{} over {}, {:.3g} s of simulated time at {:.4g} steps a second. Meshes: {}. All contacts between meshes were "
-        "found by RayContact by casting rays from the vertices of one mesh into the other (method {}, "
-        "caster {}, "
+        "found by RayContact by casting rays from the vertices of one mesh into the other (method {}, caster {}, "
         "direction {}, features {}); the response is Bullet's sequential impulse solver. Times are wall clock on {} "
-        "core{} ({}), "
-        "devices: {}.",
+        "core{} ({}), devices: {}.",
         counted(moving, "body", "bodies"), counted(log.rows.size(), "step", "steps"), seconds, 1 / log.dt,
         log.mesh_source.empty() ? "of unknown origin" : log.mesh_source, word(summary, "method", "standard"),
         word(summary, "caster", "bvh"), word(summary, "direction", "reprojected"), word(summary, "features", "edges"),
-        cores, cores == 1 ? "" : "s", processor(), word(summary, "devices", "cpu"));
+        machine.cores, machine.cores == 1 ? "" : "s", machine.cpu, word(summary, "devices", "cpu"));
 
     std::vector<std::pair<std::string, Json>> figures;
     flatten(summary, "", figures);
@@ -231,11 +217,10 @@ void describe(const scenes::RunLog& log, Page& page) {
     if (!page.zeros.empty()) page.zeros += ".";
     std::erase_if(page.rows, nothing);
 
-    page.command = "raycontact run " + (log.arguments.empty() ? "SCENE" : log.arguments)
-                   + option(summary, "steps", "--steps") + " --seed " + std::to_string(log.seed)
-                   + option(summary, "method", "--method") + option(summary, "caster", "--caster")
-                   + option(summary, "direction", "--direction") + option(summary, "features", "--features")
-                   + thresholds(summary) + option(summary, "devices", "--devices") + " --out DIR";
+    page.command = "raycontact run " + (log.arguments.empty() ? "SCENE" : log.arguments) + option(summary, "steps")
+                   + " --seed " + std::to_string(log.seed);
+    for (const char* key : {"method", "caster", "direction", "features"}) page.command += option(summary, key);
+    page.command += thresholds(summary) + option(summary, "devices") + " --out DIR";
     page.footer = "The same command gives the same contacts and hash; times differ from machine to machine.";
 }
 

@@ -9,10 +9,10 @@ namespace raycontact::report {
 namespace {
 
 // The page's colours by day: a file of its own has no style sheet to take them from.
-constexpr const char* style =
-    "text{font:12px system-ui,\"DejaVu Sans\",sans-serif;fill:#23262b}.title{font-weight:bold;font-size:14px}"
-    ".tick,.label,.soft{fill:#6a7079;font-size:11.5px}.grid{stroke:#e4e1dc}.axis,.notch{stroke:#6a7079}"
-    ".line{fill:none;stroke-width:1.8;stroke-linejoin:round}";
+const std::string style =
+    "text{font:12px system-ui,\"DejaVu "
+    "Sans\",sans-serif;fill:#23262b}.title{font-weight:bold;font-size:14px}.tick,.label,.soft{fill:#6a7079;font-size:"
+    "11.5px}.grid{stroke:#e4e1dc}.axis,.notch{stroke:#6a7079}.line{fill:none;stroke-width:1.8;stroke-linejoin:round}";
 
 // Told apart with and without colour vision (Okabe and Ito 2008), two more at the end (Tol 2021).
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9",
@@ -101,14 +101,18 @@ std::string svg_line(double x1, double y1, double x2, double y2, const char* loo
                        x2, y2);
 }
 
-std::string svg_file(double width, double height, const std::string& title, const std::string& drawing) {
-    std::string looks = style;
+std::string colour_style() {
+    std::string looks;
     for (std::size_t k = 0; k < std::size(colours); ++k)
-        looks += fmt::format(".s{0}{{stroke:{1}}}.k{0}{{fill:{1}}}", k, colours[k]);
-    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-                       "height=\"{1}\" role=\"img\" aria-label=\"{2}\"><style>{3}</style>\n"
+        looks += fmt::format(".s{0}{{stroke:{1}}}i.s{0}{{background:{1}}}.k{0}{{fill:{1}}}", k, colours[k]);
+    return looks;
+}
+
+std::string svg_file(double width, double height, const std::string& title, const std::string& drawing) {
+    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+                       "role=\"img\" aria-label=\"{2}\"><style>{3}</style>\n"
                        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{4}</svg>\n",
-                       width, height, escape_html(title), looks, drawing);
+                       width, height, escape_html(title), style + colour_style(), drawing);
 }
 
 } // namespace raycontact::report

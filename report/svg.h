@@ -30,9 +30,12 @@ std::string escape_html(const std::string& text);
 std::string readable(double value);
 
 // Pieces of a drawing. What they look like is their class's affair: title, label, tick, soft; grid, axis, notch. Of the
-// n-th thing (counted from 0) sn is a stroke and kn a filling.
+// n-th thing (counted from 0) sn is a stroke and kn a filling, of one colour out of ten.
 std::string svg_text(double x, double y, const char* anchor, const char* look, const std::string& words);
 std::string svg_line(double x1, double y1, double x2, double y2, const char* look);
+
+/// The colours as a style sheet; those of a page's legend, i.sn, too.
+std::string colour_style();
 
 /// A file of its own, with its colours in it.
 std::string svg_file(double width, double height, const std::string& title, const std::string& drawing);

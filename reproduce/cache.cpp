@@ -2,12 +2,14 @@
 #include <reproduce/cache.h>
 
 #include <raycontact/error.h>
-#include <reproduce/write_file.h>
 
 #include <fmt/format.h>
 #include <xxhash.h>
 
 #include <fstream>
+#include <stdexcept>
+
+#include <unistd.h>
 
 namespace raycontact::reproduce {
 
@@ -33,6 +35,20 @@ std::optional<Json> Cache::find(const std::string& name, const Json& key) const 
 
 void Cache::keep(const std::string& name, const Json& key, const Json& result) const {
     write_whole(file(name, key, ".json"), Json{{"key", key}, {"result", result}}.dump());
+}
+
+void write_whole(const std::filesystem::path& file, const std::string& bytes) {
+    // The process id keeps two programs with one folder from writing into one draft.
+    const std::filesystem::path draft = file.string() + "." + std::to_string(::getpid()) + ".part";
+    std::ofstream out(draft, std::ios::binary | std::ios::trunc);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    std::error_code error;
+    if (out) std::filesystem::rename(draft, file, error);
+    if (!out || error) {
+        std::filesystem::remove(draft, error);
+        throw std::runtime_error(file.string() + ": cannot be written; is the folder writable, is the disk full?");
+    }
 }
 
 } // namespace raycontact::reproduce

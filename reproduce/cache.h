@@ -30,4 +30,8 @@ private:
     std::filesystem::path folder_;
 };
 
+/// Writes beside and renames: a reader sees the old file or the whole new one. Throws std::runtime_error naming the
+/// file.
+void write_whole(const std::filesystem::path& file, const std::string& bytes);
+
 } // namespace raycontact::reproduce

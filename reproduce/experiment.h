@@ -11,7 +11,7 @@
 
 namespace raycontact::reproduce {
 
-/// Told of work as it is done, in the unit of Part::cost.
+/// Told of work as it is done: what share of its part.
 using Tick = std::function<void(double)>;
 
 /// A piece of work whose result is kept.

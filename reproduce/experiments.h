@@ -20,7 +20,5 @@ Experiment lga13(const Workshop& shop);                                 ///< LGA
 
 /// "avalanche" and "rain".
 std::vector<std::string> scene_names();
-/// All that can be run, in the order of the paper.
-std::vector<Experiment> all_experiments(const Workshop& shop);
 
 } // namespace raycontact::reproduce

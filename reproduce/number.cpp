@@ -18,17 +18,8 @@ void check(const std::string& id, double ours) {
 } // namespace
 
 std::string_view to_string(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::passed:
-        return "passed";
-    case Verdict::reached:
-        return "reached";
-    case Verdict::missed:
-        return "missed";
-    case Verdict::not_comparable:
-        break;
-    }
-    return "not comparable";
+    constexpr std::string_view words[] = {"passed", "reached", "missed", "not comparable"};
+    return words[static_cast<std::size_t>(verdict)];
 }
 
 Verdict verdict_of(double paper, double ours, Better better) {

@@ -47,10 +47,6 @@ for (const button of document.querySelectorAll('button[data-view]')) button.oncl
 };
 )js";
 
-// The colours of report's SVG files: told apart with and without colour vision (Okabe and Ito 2008; Tol 2021).
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9",
-                                   "#cc79a7", "#777777", "#000000", "#882255", "#999933"};
-
 std::string row(const char* cell, const std::vector<std::string>& cells) {
     std::string html = "<tr>";
     for (const std::string& text : cells) html += fmt::format("<{0}>{1}</{0}>", cell, escape_html(text));
@@ -65,8 +61,8 @@ std::string table(const Table& t) {
 
 std::string verdicts(const std::vector<Number>& numbers) {
     std::string html =
-        "<div class=\"wide\"><table class=\"numbers\"><tr><th>number</th><th>paper</th><th>ours</th><th>unit</th>"
-        "<th>verdict</th><th>how ours was measured, and what differs</th></tr>\n";
+        "<div class=\"wide\"><table class=\"numbers\">"
+        + row("th", {"number", "paper", "ours", "unit", "verdict", "how ours was measured, and what differs"});
     for (const Number& n : numbers) {
         const std::string word(to_string(n.verdict));
         html +=
@@ -103,18 +99,15 @@ std::string section(const Section& s) {
 } // namespace
 
 std::string make_page(const Page& page) {
-    std::string looks = style;
-    for (std::size_t k = 0; k < std::size(colours); ++k)
-        looks += fmt::format(".s{0}{{stroke:{1}}}i.s{0}{{background:{1}}}.k{0}{{fill:{1}}}", k, colours[k]);
     const std::string title = page.plan.is_full() ? "The paper, reproduced" : "The paper, reproduced: short version";
     std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
                        "content=\"width=device-width,initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>"
-                       + title + "</title><style>" + looks + "</style></head>\n<body><main>\n<h1>" + title + "</h1>\n";
-    html +=
-        paragraph("Lehericey, Gouranton, Arnaldi: Ray-Traced Collision Detection: Interpenetration Control and "
-                  "Multi-GPU Performance (2013). Each number that the paper states stands beside ours. passed: better "
-                  "than the paper; reached: within 5 % of its figure; missed: worse. \"not comparable\" says that the "
-                  "paper leaves undefined what it measured, or that this machine lacks the devices.");
+                       + title + "</title><style>" + style + report::colour_style()
+                       + "</style></head>\n<body><main>\n<h1>" + title + "</h1>\n";
+    html += paragraph("Lehericey, Gouranton, Arnaldi: Ray-Traced Collision Detection: Interpenetration Control and "
+                      "Multi-GPU Performance (2013). Each number that the paper states stands beside ours. passed: "
+                      "better than the paper; reached: within 5 % of its figure; missed: worse. \"not comparable\" "
+                      "says that the paper leaves undefined what it measured, or that this machine lacks the devices.");
     if (!page.plan.is_full()) html += paragraph(page.plan.warning(), "short");
     if (!page.not_run.empty()) {
         std::string names;
@@ -127,13 +120,12 @@ std::string make_page(const Page& page) {
     html += "<h2>All numbers</h2>\n" + verdicts(all);
     html +=
         "<h2>What the paper leaves open</h2>\n"
-        + paragraph("Its constants have no values; of ours the displacement threshold was chosen by the figures of "
-                    "section 5.2, confidence and distanceExtension are the least that section 3.1 allows. Its meshes "
-                    "are not available; ours are "
-                    "stand-ins of the same size. The percentages of its Table 2 (59 and 42; the "
-                    "abstract says 52) do not follow from its lengths, which give 33.0 and 41.9. Section 3.1 cuts "
-                    "predictive rays at distanceExtension, section 5.3 at cullingDist. Its times were measured on a "
-                    "GTX 660 and two GTX 580.");
+        + paragraph(
+            "Its constants have no values; of ours the displacement threshold was chosen by the figures of section "
+            "5.2, confidence and distanceExtension are the least that section 3.1 allows. Its meshes are not "
+            "available; ours are stand-ins of the same size. The percentages of its Table 2 (59 and 42; the abstract "
+            "says 52) do not follow from its lengths, which give 33.0 and 41.9. Section 3.1 cuts predictive rays at "
+            "distanceExtension, section 5.3 at cullingDist. Its times were measured on a GTX 660 and two GTX 580.");
     for (const Section& s : page.sections) html += section(s);
     return html + "</main><script>" + script + "</script></body></html>\n";
 }

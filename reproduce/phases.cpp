@@ -6,8 +6,7 @@
 namespace raycontact::reproduce {
 
 namespace {
-constexpr std::size_t second = 60; // steps
-constexpr double no_time = 1e-6;   // milliseconds: below any clock's resolution, and never zero
+constexpr double no_time = 1e-6; // milliseconds: below any clock's resolution, and never zero
 } // namespace
 
 std::vector<Phase> phases(const Series& full, const Series& ordered_pairs) {
@@ -44,16 +43,19 @@ double speed_up(const Series& first_ms, const Series& second_ms, const std::vect
     return first / other;
 }
 
+double of_second(const Series& first_ms, const Series& second_ms, std::size_t from) {
+    double first = no_time, other = no_time;
+    for (std::size_t i = from; i < std::min(first_ms.size(), from + second); ++i) {
+        first += first_ms[i];
+        other += second_ms[i];
+    }
+    return first / other;
+}
+
 double best_second(const Series& first_ms, const Series& second_ms) {
     double best = 0;
-    for (std::size_t from = 0; from < first_ms.size(); from += second) {
-        double first = no_time, other = no_time;
-        for (std::size_t i = from; i < std::min(first_ms.size(), from + second); ++i) {
-            first += first_ms[i];
-            other += second_ms[i];
-        }
-        best = std::max(best, first / other);
-    }
+    for (std::size_t from = 0; from < first_ms.size(); from += second)
+        best = std::max(best, of_second(first_ms, second_ms, from));
     return best;
 }
 

@@ -18,7 +18,11 @@ std::vector<Phase> phases(const Series& full, const Series& ordered_pairs);
 /// The first's time over the second's, in that phase; over all steps where there is no such step. Always finite.
 double speed_up(const Series& first_ms, const Series& second_ms, const std::vector<Phase>& phase, Phase which);
 
-/// The largest ratio of the first's time over the second's in a second (60 steps) of the run.
+constexpr std::size_t second = 60; ///< steps
+
+/// The same in the second that begins with this step.
+double of_second(const Series& first_ms, const Series& second_ms, std::size_t from);
+/// The largest of these.
 double best_second(const Series& first_ms, const Series& second_ms);
 
 } // namespace raycontact::reproduce

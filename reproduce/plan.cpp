@@ -15,44 +15,27 @@ std::string Plan::warning() const {
 }
 
 Plan quick_plan() {
-    Plan plan;
-    plan.name = "quick";
-    plan.avalanche = {343, 300};
-    plan.volume_every = 30;
-    plan.rain = {160, 960};
-    plan.seeds = 1;
-    plan.thresholds = {0.01};
-    plan.orientations = 100;
-    plan.depths = 10;
-    plan.picture_width = 1280;
-    return plan;
+    return {.name = "quick",
+            .avalanche = {343, 300},
+            .rain = {160, 960},
+            .seeds = 1,
+            .thresholds = {0.01},
+            .volume_every = 30,
+            .orientations = 100,
+            .depths = 10,
+            .picture_width = 1280};
 }
 
 Plan tiny_plan() {
-    Plan plan;
-    plan.name = "tiny";
-    plan.avalanche = {8, 90};
-    plan.rain = {6, 90};
-    plan.volume_every = 10;
-    plan.seeds = 2;
-    plan.thresholds = {0.01};
-    plan.orientations = 6;
-    plan.depths = 3;
-    plan.picture_width = 96;
-    return plan;
-}
-
-Settings as_in_the_paper(Method method, const Constants& constants) {
-    Settings settings;
-    settings.features = Features::vertices; // the paper's rule
-    settings.method = method;
-    settings.paper.displacement_threshold = constants.displacement_threshold;
-    settings.paper.confidence = constants.confidence;
-    settings.paper.distance_extension = constants.distance_extension;
-    settings.paper.max_iterations = constants.max_iterations;
-    settings.paper.cast_lost_walks = false;
-    settings.paper.skip_outside = false; // grids are not the paper's
-    return settings;
+    return {.name = "tiny",
+            .avalanche = {8, 90},
+            .rain = {6, 90},
+            .seeds = 2,
+            .thresholds = {0.01},
+            .volume_every = 10,
+            .orientations = 6,
+            .depths = 3,
+            .picture_width = 96};
 }
 
 // But for edges, which the paper has not.
@@ -60,6 +43,17 @@ Settings by_default(Method method) {
     Settings settings;
     settings.features = Features::vertices;
     settings.method = method;
+    return settings;
+}
+
+Settings as_in_the_paper(Method method, const Constants& constants) {
+    Settings settings = by_default(method);
+    settings.paper.displacement_threshold = constants.displacement_threshold;
+    settings.paper.confidence = constants.confidence;
+    settings.paper.distance_extension = constants.distance_extension;
+    settings.paper.max_iterations = constants.max_iterations;
+    settings.paper.cast_lost_walks = false;
+    settings.paper.skip_outside = false; // grids are not the paper's
     return settings;
 }
 

@@ -40,7 +40,7 @@ struct Plan {
     std::uint32_t volume_every = 20;                  ///< steps; for volume
     std::uint32_t orientations = 400, depths = 20;
     std::uint32_t picture_width = 1920;
-    Constants constants;
+    Constants constants{};
 
     bool is_full() const { return name == "full"; }
     SceneSize size(const std::string& scene) const { return scene == "rain" ? rain : avalanche; }

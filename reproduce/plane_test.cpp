@@ -3,8 +3,10 @@
 
 #include <raycontact/scene.h>
 #include <reproduce/penalty.h>
+#include <reproduce/plan.h>
 #include <scenes/models/trigonometry.h>
 #include <scenes/random.h>
+#include <scenes/stacks/solids.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +16,6 @@
 namespace raycontact::reproduce {
 
 namespace {
-
-std::shared_ptr<const Shape> slab() {
-    constexpr double half_width = 10, depth = 10; // objects are 1 m
-    Mesh mesh;
-    mesh.name = "plane";
-    for (int i = 0; i < 8; ++i)
-        mesh.vertices.push_back(
-            {i & 1 ? half_width : -half_width, i & 2 ? half_width : -half_width, i & 4 ? 0 : -depth});
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return Shape::make(mesh);
-}
 
 /// Evenly distributed over all rotations (Shoemake 1992); no library sine, so the same bits from every compiler.
 std::array<double, 9> rotation(scenes::Random& random) {
@@ -49,9 +39,7 @@ double lowest(const Shape& shape, const std::array<double, 9>& r) {
 Deviation plane_deviation(const PlaneTest& test, Direction direction) {
     // Nothing moves: no damper acts, and nothing slides. A ratio of forces does not depend on the stiffness.
     constexpr Penalty springs{.stiffness = 1};
-    Settings settings;
-    settings.features = Features::vertices;
-    settings.method = Method::standard;
+    Settings settings = by_default(Method::standard);
     settings.direction = direction;
     Scene scene(settings);
     // The objects come first, so that a contact's normal points from the object into the plane, and all of a step's
@@ -66,7 +54,8 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
         height[k] = -lowest(*test.shape, poses[k].rotation);
         bodies.push_back(scene.add(test.shape, poses[k]));
     }
-    const BodyId plane = scene.add(slab());
+    // 20 m wide, objects are 1 m; its top is at 0.
+    const BodyId plane = scene.add(Shape::make(scenes::solid_box({20, 20, 10})), {.translation = {0, 0, -5}});
     pairs.reserve(bodies.size());
     for (const BodyId body : bodies) pairs.emplace_back(body, plane);
     const Vec3 low = test.shape->box_min(), high = test.shape->box_max();

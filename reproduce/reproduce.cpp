@@ -5,12 +5,14 @@
 #include <report/machine.h>
 #include <reproduce/experiments.h>
 #include <reproduce/page.h>
-#include <reproduce/write_file.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <map>
 #include <optional>
-#include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace raycontact::reproduce {
 
@@ -33,69 +35,56 @@ void run(const Workshop& shop, const Experiment& experiment, const Options& opti
     double before = 0;
     for (const Part* part : missing) {
         double done = 0;
-        const Json result = part->make([&](double cost) {
-            done = std::min(done + cost, part->cost);
+        const Json result = part->make([&](double share) {
+            done = std::min(done + share * part->cost, part->cost);
             options.progress(static_cast<std::uint32_t>(before + done));
         });
-        shop.cache().keep(part->name, part->key,
-                          {{"value", result}, {"machine", report::heading(report::this_machine())}});
+        const report::Machine machine = report::this_machine();
+        std::string heading = report::heading(machine, false);
+        heading.pop_back(); // the line's end
+        shop.cache().keep(part->name, part->key, {{"value", result}, {"machine", heading}, {"load", machine.load}});
         before += part->cost;
         options.progress(static_cast<std::uint32_t>(before));
     }
     options.end();
 }
 
-/// Headings that differ in their load alone become one, with its range.
-std::vector<std::string> merged(const std::vector<std::string>& headings) {
-    struct Merged {
-        std::string before, after;
-        std::string least, most; ///< the loads as they were printed
-    };
-    constexpr std::string_view mark = ", load ";
-    std::vector<Merged> all;
-    for (const std::string& heading : headings) {
-        const std::size_t at = heading.find(mark);
-        const std::size_t end = heading.find(';', std::min(at, heading.size()));
-        if (end == std::string::npos) {
-            all.push_back({heading, "", "", ""});
-            continue;
-        }
-        const std::string load = heading.substr(at + mark.size(), end - at - mark.size());
-        const std::string before = heading.substr(0, at + mark.size()), after = heading.substr(end);
-        const auto same = std::find_if(all.begin(), all.end(),
-                                       [&](const Merged& one) { return one.before == before && one.after == after; });
-        if (same == all.end()) {
-            all.push_back({before, after, load, load});
-            continue;
-        }
-        if (std::strtod(load.c_str(), nullptr) < std::strtod(same->least.c_str(), nullptr)) same->least = load;
-        if (std::strtod(load.c_str(), nullptr) > std::strtod(same->most.c_str(), nullptr)) same->most = load;
-    }
-    std::vector<std::string> texts;
-    texts.reserve(all.size());
-    for (const Merged& one : all)
-        texts.push_back(one.before + one.least + (one.least == one.most ? "" : " to " + one.most) + one.after);
-    return texts;
-}
-
 /// Nothing where a part was never run.
 std::optional<Section> section(const Workshop& shop, const Experiment& experiment) {
     Section result{experiment.name, experiment.title, {}, {}};
     std::vector<Json> values;
+    std::map<std::string, std::pair<double, double>> loads; // least and most, by machine
     for (const Part& part : experiment.parts) {
         const auto entry = kept(shop, part);
         if (!entry) return std::nullopt;
         values.push_back(entry->at("value"));
-        const auto machine = entry->at("machine").get<std::string>();
-        if (std::find(result.machines.begin(), result.machines.end(), machine) == result.machines.end())
-            result.machines.push_back(machine);
+        const auto load = entry->at("load").get<double>();
+        auto& [least, most] = loads.try_emplace(entry->at("machine").get<std::string>(), load, load).first->second;
+        std::tie(least, most) = std::pair(std::min(least, load), std::max(most, load));
     }
-    result.machines = merged(result.machines);
+    for (const auto& [machine, load] : loads)
+        result.machines.push_back(fmt::format("{}, load {:.2f}{}", machine, load.first,
+                                              load.first < load.second ? fmt::format(" to {:.2f}", load.second) : ""));
     result.outcome = experiment.show(values);
     if (!shop.plan().is_full())
         for (Number& number : result.outcome.numbers)
             number.why = "short version, less work than the paper's; " + number.why;
     return result;
+}
+
+/// In the order of the paper.
+std::vector<Experiment> all_experiments(const Workshop& shop) {
+    std::vector<Experiment> all;
+    const std::vector<std::string> scenes = scene_names();
+    all.push_back(table1(shop));
+    for (const std::string& scene : scenes) all.push_back(wrong_rays(shop, scene));
+    all.push_back(lengths(shop));
+    all.push_back(volumes(shop));
+    for (const std::string& scene : scenes) all.push_back(times(shop, scene));
+    all.push_back(table2(shop));
+    for (const std::string& scene : scenes) all.push_back(two_devices(shop, scene));
+    all.push_back(lga13(shop));
+    return all;
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace raycontact::reproduce {
@@ -30,17 +31,24 @@ double sum(const Series& values, std::size_t from, std::size_t end) {
                            values.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
 }
 
+Series ranks(const Series& values) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return values[i] < values[k]; });
+    Series rank(values.size());
+    for (std::size_t from = 0; from < order.size();) {
+        std::size_t end = from + 1;
+        while (end < order.size() && values[order[end]] == values[order[from]]) ++end;
+        for (std::size_t k = from; k < end; ++k) rank[order[k]] = static_cast<double>(from + end - 1) / 2;
+        from = end;
+    }
+    return rank;
+}
+
 } // namespace
 
 double sum(const Series& values) {
     return sum(values, 0, values.size());
-}
-
-double median(Series values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 report::Line line(std::string name, const Series& values) {
@@ -66,6 +74,18 @@ double less_by(double first, double second) {
 
 std::string percent(double value, int digits) {
     return fmt::format("{:.{}f} %", value, digits);
+}
+
+double rank_correlation(const Series& a, const Series& b) {
+    const Series x = ranks(a), y = ranks(b);
+    const double middle = (static_cast<double>(x.size()) - 1) / 2; // of either's ranks
+    double xy = 0, xx = 0, yy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        xy += (x[k] - middle) * (y[k] - middle);
+        xx += (x[k] - middle) * (x[k] - middle);
+        yy += (y[k] - middle) * (y[k] - middle);
+    }
+    return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
 }
 
 } // namespace raycontact::reproduce

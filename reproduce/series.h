@@ -3,6 +3,7 @@
 
 #include <report/plot.h>
 #include <reproduce/cache.h>
+#include <scenes/peers/clock.h>
 
 #include <cstddef>
 #include <string>
@@ -13,7 +14,7 @@ namespace raycontact::reproduce {
 using Series = std::vector<double>; ///< a number a step
 
 double sum(const Series& values);
-double median(Series values); ///< the upper one of two in the middle; 0 of none
+using peers::median;
 
 /// Means over at most 200 windows of equal length; a point lies at its window's middle step.
 report::Line line(std::string name, const Series& values);
@@ -26,5 +27,9 @@ double share(double part, double whole);
 double less_by(double first, double second);
 /// "12.3 %", with so many digits after the point.
 std::string percent(double value, int digits = 1);
+
+/// Spearman's: 1 where both rise together, however; -1 where one falls as the other rises. Equal values share the mean
+/// of their ranks. 0 where either has fewer than two different values. Both have as many.
+double rank_correlation(const Series& a, const Series& b);
 
 } // namespace raycontact::reproduce

@@ -22,9 +22,8 @@ SimulationOptions with(const Workshop& shop, Direction direction, const std::str
     return options;
 }
 
-constexpr const char* why_rain =
-    "Torus and knot are smooth: their plain rays are nearly straight (Table 1's test, rows "
-    "torus and knot), so there is less to re-project";
+constexpr const char* why_rain = "Torus and knot are smooth: their plain rays are nearly straight (Table 1's test, "
+                                 "rows torus and knot), so there is less to re-project";
 
 /// By how much the re-projected runs of a scene are shorter, percent, a number a seed.
 struct Compared {
@@ -83,9 +82,8 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
             out.numbers.push_back(compared(
                 id, paper, median(of.shorter), "% shorter", Better::higher,
                 fmt::format(
-                    "{}; median of {} seeds, range {} to {}; the paper's lengths give {}, its table prints {} "
-                    "%. One pair of bodies has up to {} of a run's length; without the longest pair of each run "
-                    "{}. {}",
+                    "{}; median of {} seeds, range {} to {}; the paper's lengths give {}, its table prints {} %. One "
+                    "pair of bodies has up to {} of a run's length; without the longest pair of each run {}. {}",
                     how, of.shorter.size(), percent(*least), percent(*most), percent(paper), rain ? 42 : 59,
                     percent(of.most_of_one), percent(median(of.without)), rain ? why_rain : "Meshes differ")));
         };
@@ -98,12 +96,11 @@ Outcome show(const Workshop& shop, const std::vector<Json>& found) {
         at += 2 * runs;
     }
     out.paragraphs = {
-        "Two simulations, one with normal and depth along the ray, one re-projected; both with exact "
-        "contacts, the defaults of Bullet's sequential impulses, at most four points a pair of bodies, and "
-        "no point kept longer than its contact. A re-projected ray is r . n long (section 3.2: it is "
-        "re-projected on the normal of the surface, which \"minimizes the length of the rays\"). The last "
-        "two columns have the same rays before re-projection, |r|: they are shorter only because the "
-        "bodies interpenetrate less.",
+        "Two simulations, one with normal and depth along the ray, one re-projected; both with exact contacts, the "
+        "defaults of Bullet's sequential impulses, at most four points a pair of bodies, and no point kept longer than "
+        "its contact. A re-projected ray is r . n long (section 3.2: it is re-projected on the normal of the surface, "
+        "which \"minimizes the length of the rays\"). The last two columns have the same rays before re-projection, "
+        "|r|: they are shorter only because the bodies interpenetrate less.",
         "The paper has no speculative contacts. The second table of each scene has them in both of its runs."};
     return out;
 }

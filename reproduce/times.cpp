@@ -12,20 +12,16 @@ namespace raycontact::reproduce {
 
 namespace {
 
-SimulationOptions driven_by(const Workshop& shop, Method method, const std::string& scene) {
-    return {scene, 1, shop.plan().size(scene), as_in_the_paper(method, shop.plan().constants), true};
-}
-
 constexpr Method both[] = {Method::iterative, Method::predictive};
 
 /// Milliseconds of the contact finding in each step.
-Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool own, double cost, const Tick& tick) {
+Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool own, const Tick& tick) {
     std::vector<Follow> follow;
     for (const Method method : both) {
         Settings settings = as_in_the_paper(method, shop.plan().constants);
         settings.paper.caster = caster;
-        const SimulationOptions options = own ? driven_by(shop, method, scene) : shop.base(scene);
-        follow.push_back({shop.recording(options, [](double) {}), settings});
+        const SimulationOptions options = own ? shop.driven_by(method, scene) : shop.base(scene);
+        follow.push_back({shop.recording(options), settings});
     }
     Json result;
     side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
@@ -37,7 +33,7 @@ Json measure(const Workshop& shop, const std::string& scene, Caster caster, bool
             of["full"].push_back(stats.details.pairs_full);
             of["ordered_pairs"].push_back(2 * stats.pairs);
         }
-        tick(cost / shop.plan().size(scene).steps);
+        tick(1.0 / shop.plan().size(scene).steps);
     });
     return result;
 }
@@ -90,20 +86,18 @@ Outcome show(const Constants& constants, const std::string& scene, const std::ve
             out.numbers.push_back(compared(
                 basic ? "speedup.basic" : "speedup.stackless", basic ? 1.27 : 0.78, in_b, "times as fast",
                 Better::higher,
-                fmt::format("time of iterative over that of predictive in phase B of the avalanche, caster {}, on this "
-                            "machine; phase C {:.2f}. There predictive casts {:.1f} times as many rays: it looks at "
-                            "the vertices "
-                            "of bounds that are {:.0f} cm wider on each side, and a body's size is 1 m. The paper does "
-                            "not state "
-                            "by how much it widens them; it measured on a GTX 660, \"an average\"",
-                            word, in_c, rays, 100 * constants.distance_extension)));
+                fmt::format(
+                    "time of iterative over that of predictive in phase B of the avalanche, caster {}, on this "
+                    "machine; phase C {:.2f}. There predictive casts {:.1f} times as many rays: it looks at the "
+                    "vertices of bounds that are {:.0f} cm wider on each side, and a body's size is 1 m. The paper "
+                    "does not state by how much it widens them; it measured on a GTX 660, \"an average\"",
+                    word, in_c, rays, 100 * constants.distance_extension)));
     }
     out.tables.push_back(table);
-    out.paragraphs = {
-        "The paper's text names two parts of Figure 11: B, in which most pairs are cast in full, and C, in "
-        "which most are updated. Here a second is of phase B if the share of ordered pairs that iterative "
-        "tests in full lies above the middle between the least and the largest share of the run's "
-        "seconds with pairs; all other seconds are of phase C. Constants fixed as in Figure 9."};
+    out.paragraphs = {"The paper's text names two parts of Figure 11: B, in which most pairs are cast in full, and C, "
+                      "in which most are updated. Here a second is of phase B if the share of ordered pairs that "
+                      "iterative tests in full lies above the middle between the least and the largest share of the "
+                      "run's seconds with pairs; all other seconds are of phase C. Constants fixed as in Figure 9."};
     return out;
 }
 
@@ -115,18 +109,14 @@ Experiment times(const Workshop& shop, const std::string& scene) {
     e.name = rain ? "fig12" : "fig11";
     e.title = fmt::format("{}: time with and without prediction, {}", rain ? "Figure 12" : "Figure 11", scene);
     for (const auto& [caster, own] : all_measured) {
-        Json settings{{"scene", scene},
-                      {"own", own},
-                      {"caster", to_string(caster)},
-                      {"bodies", shop.plan().size(scene).bodies},
-                      {"steps", shop.plan().size(scene).steps}};
+        Json settings{{"scene", scene}, {"own", own}, {"caster", to_string(caster)}};
         for (const Method method : both)
             settings[std::string(to_string(method))] = to_json(as_in_the_paper(method, shop.plan().constants));
         const double cost = Workshop::cost(shop.base(scene)) * (caster == Caster::basic ? (rain ? 12 : 4) : 0.7);
         e.parts.push_back({fmt::format("times-{}-{}-{}", scene, to_string(caster), own ? "own" : "same"),
                            shop.key("times", settings), cost,
-                           [&shop, scene, caster = caster, own = own, cost](const Tick& tick) {
-                               return measure(shop, scene, caster, own, cost, tick);
+                           [&shop, scene, caster = caster, own = own](const Tick& tick) {
+                               return measure(shop, scene, caster, own, tick);
                            }});
     }
     e.show = [&shop, scene](const std::vector<Json>& found) { return show(shop.plan().constants, scene, found); };

@@ -42,9 +42,9 @@ Settings on(const Plan& plan, const Choice& choice, std::size_t count) {
     return settings;
 }
 
-Json measure(const Workshop& shop, const std::string& scene, double cost, const Tick& tick) {
+Json measure(const Workshop& shop, const std::string& scene, const Tick& tick) {
     const Choice choice = devices();
-    const auto file = shop.recording(shop.base(scene), [](double) {});
+    const auto file = shop.recording(shop.base(scene));
     std::vector<Follow> follow;
     for (std::size_t count = 1; count <= choice.ids.size(); ++count)
         follow.push_back({file, on(shop.plan(), choice, count)});
@@ -52,7 +52,7 @@ Json measure(const Workshop& shop, const std::string& scene, double cost, const 
     result["devices"] = choice.ids.size();
     side_by_side(follow, [&](std::uint32_t, std::span<Scene* const> scenes) {
         for (std::size_t k = 0; k < scenes.size(); ++k) result["ms"][k].push_back(scenes[k]->stats().narrow_ms);
-        tick(cost / shop.plan().size(scene).steps);
+        tick(1.0 / shop.plan().size(scene).steps);
     });
     return result;
 }
@@ -75,9 +75,8 @@ Outcome show(const std::string& scene, const Json& found) {
                       report::over_steps(1.0 / 60)};
     if (two) plot.lines.push_back(line("two devices", two_ms));
     out.plots.push_back(plot);
-    out.paragraphs = {
-        "One device and two follow the same recording, step after step in turn. Without two GPUs a device "
-        "is one core of the CPU, and the host has as many threads as there are cores in use."};
+    out.paragraphs = {"One device and two follow the same recording, step after step in turn. Without two GPUs a "
+                      "device is one core of the CPU, and the host has as many threads as there are cores in use."};
     return out;
 }
 
@@ -92,12 +91,9 @@ Experiment two_devices(const Workshop& shop, const std::string& scene) {
     const Json settings{{"scene", scene},
                         {"one", to_json(on(shop.plan(), choice, 1))},
                         {"count", choice.ids.size()},
-                        {"last", choice.ids.back()},
-                        {"bodies", shop.plan().size(scene).bodies},
-                        {"steps", shop.plan().size(scene).steps}};
-    const double cost = Workshop::cost(shop.base(scene));
-    e.parts = {{"devices-" + scene, shop.key("devices", settings), cost,
-                [&shop, scene, cost](const Tick& tick) { return measure(shop, scene, cost, tick); }}};
+                        {"last", choice.ids.back()}};
+    e.parts = {{"devices-" + scene, shop.key("devices", settings), Workshop::cost(shop.base(scene)),
+                [&shop, scene](const Tick& tick) { return measure(shop, scene, tick); }}};
     e.show = [scene](const std::vector<Json>& found) { return show(scene, found[0]); };
     return e;
 }

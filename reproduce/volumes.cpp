@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/experiments.h>
-#include <reproduce/rank_correlation.h>
 #include <reproduce/series.h>
 
 #include <raycontact/collide.h>
@@ -49,8 +48,8 @@ using Sums = std::map<Pair, double>;
 /// "weighted", "volume": sums over the pairs, a number a sampled step; "of_pairs": the correlation of each measure with
 /// the volume, over all pairs of all sampled steps; "unseen": how many have a volume and no contact, and
 /// "unseen_volume"}.
-Json measure(const Workshop& shop, const SimulationOptions& options, double cost, const Tick& tick) {
-    const auto file = shop.recording(options, tick);
+Json measure(const Workshop& shop, const SimulationOptions& options, const Tick& tick) {
+    const auto file = shop.recording(options, [&](double share) { tick(share / 3); });
     Settings weighted = by_default(Method::standard), reprojected = weighted;
     weighted.direction = Direction::weighted;
     Json result{{"steps", Json::array()}, {"volume", Json::array()}};
@@ -58,7 +57,7 @@ Json measure(const Workshop& shop, const SimulationOptions& options, double cost
     std::uint64_t unseen = 0, pairs_met = 0;
     double unseen_volume = 0;
     side_by_side({{file, weighted}, {file, reprojected}}, [&](std::uint32_t step, std::span<Scene* const> scenes) {
-        tick(cost / options.size.steps);
+        tick(2.0 / 3 / options.size.steps);
         if ((step + 1) % shop.plan().volume_every != 0) return;
         const Scene& placed = *scenes[0];
         std::map<std::string, Sums> found;
@@ -108,9 +107,8 @@ Outcome show(const std::vector<Run>& all, const std::vector<Json>& found) {
     Outcome out;
     Table sums{"Cumulative length and volume over the sampled steps, avalanche, seed 1",
                {"run", "ray", "reprojected", "ray x area", "volume",
-                "rank correlation over steps (ray, reprojected, "
-                "ray x area)",
-                "over pairs", "pairs without a contact", "their volume"},
+                "rank correlation over steps (ray, reprojected, ray x area)", "over pairs", "pairs without a contact",
+                "their volume"},
                {}};
     Table steps{"Sampled steps: length of the rays, volume of overlap", {"step"}, {}};
     report::Plot lengths{"Length of the rays of standard", "m", "Sampled steps.", {}, "step"};
@@ -172,9 +170,9 @@ Outcome show(const std::vector<Run>& all, const std::vector<Json>& found) {
         "volume that bodies share stands beside it, summed over all pairs, on sampled steps of several runs. It is "
         "exact but for rounding. The rays are those of standard along the poses of each run, before re-projection "
         "(ray), after it, and times the area of their vertex, which is a volume, too.",
-        "A negative share of volume means that length and volume put two runs in another order. "
-        "Rank correlation is Spearman's: over the sampled steps of a run, and over all pairs of bodies in all of them. "
-        "Pairs without a contact share a volume, but have no vertex in each other by the paper's rule."};
+        "A negative share of volume means that length and volume put two runs in another order. Rank correlation is "
+        "Spearman's: over the sampled steps of a run, and over all pairs of bodies in all of them. Pairs without a "
+        "contact share a volume, but have no vertex in each other by the paper's rule."};
     return out;
 }
 
@@ -186,12 +184,10 @@ Experiment volumes(const Workshop& shop) {
     e.title = "Section 5.2: the length of the rays beside the volume of overlap";
     const std::vector<Run> all = runs(shop);
     for (const Run& run : all) {
-        const double cost = 2 * Workshop::cost(run.options);
         Json key = shop.key("volume", run.options);
         key["settings"]["every"] = shop.plan().volume_every;
-        e.parts.push_back(
-            {"volume-" + std::to_string(e.parts.size()), key, 1.5 * cost,
-             [&shop, options = run.options, cost](const Tick& tick) { return measure(shop, options, cost, tick); }});
+        e.parts.push_back({"volume-" + std::to_string(e.parts.size()), key, 3 * Workshop::cost(run.options),
+                           [&shop, options = run.options](const Tick& tick) { return measure(shop, options, tick); }});
     }
     e.show = [all](const std::vector<Json>& found) { return show(all, found); };
     return e;

@@ -42,7 +42,11 @@ Workshop::Workshop(const Plan& plan, const std::filesystem::path& cache_folder) 
 }
 
 Json Workshop::key(const std::string& what, Json settings) const {
-    return {{"what", what}, {"settings", std::move(settings)}, {"made_by", here_}};
+    const SceneSize &avalanche = plan_.avalanche, &rain = plan_.rain;
+    return {{"what", what},
+            {"settings", std::move(settings)},
+            {"sizes", {avalanche.bodies, avalanche.steps, rain.bodies, rain.steps}},
+            {"made_by", here_}};
 }
 
 Json Workshop::key(const std::string& what, const SimulationOptions& o) const {
@@ -53,6 +57,10 @@ Json Workshop::key(const std::string& what, const SimulationOptions& o) const {
                           {"paper_response", o.paper_response},
                           {"speculative", o.speculative},
                           {"settings", to_json(o.settings)}});
+}
+
+SimulationOptions Workshop::driven_by(Method method, const std::string& scene, std::uint64_t seed) const {
+    return {scene, seed, plan_.size(scene), as_in_the_paper(method, plan_.constants), true};
 }
 
 SimulationOptions Workshop::base(const std::string& scene) const {

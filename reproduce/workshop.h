@@ -41,17 +41,21 @@ public:
 
     const Plan& plan() const { return plan_; }
     const Cache& cache() const { return cache_; }
-    /// A key with the program's commit and the machine, so that neither another build nor another machine finds it.
+    /// A key with the sizes of the scenes, the program's commit and the machine, so that neither another build nor
+    /// another machine finds it.
     Json key(const std::string& what, Json settings) const;
     Json key(const std::string& what, const SimulationOptions& options) const;
 
+    /// By the contacts of a method of the paper, and with the response of its time.
+    SimulationOptions driven_by(Method method, const std::string& scene, std::uint64_t seed = 1) const;
     /// The simulation whose poses are the same for every method: by the library's defaults, whose contacts are exact.
     SimulationOptions base(const std::string& scene) const;
     /// Its Part: pairs, contacts, a picture; its recording is kept.
     Part base_part(const std::string& scene) const;
 
     /// The simulation's recording, made where it is missing or not whole.
-    std::filesystem::path recording(const SimulationOptions& options, const Tick& tick) const;
+    std::filesystem::path recording(
+        const SimulationOptions& options, const Tick& tick = [](double) {}) const;
     void drop_recording(const SimulationOptions& options) const;
     /// Rough milliseconds of a simulation.
     static double cost(const SimulationOptions& options);

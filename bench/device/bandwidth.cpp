@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/device/bandwidth.h"
+#include "bench/device/measure.h"
 
 #include "device/launch.h"
 
 #include <scenes/peers/clock.h>
 
-#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -24,9 +23,9 @@ double median_seconds(Work&& work) {
     work(); // pages are made at the first touch
     std::vector<double> seconds;
     for (int i = 0; i < times; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = peers::now().wall;
         work();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(1e-6 * (peers::now().wall - start));
     }
     return median(seconds);
 }

@@ -2,12 +2,13 @@
 #include "bench/device/measure.h"
 
 #include "bench/device/replayer.h"
-#include "bench/device/timing_device.h"
+#include "device/forwarding.h"
 
-#include <bench/peers/stopped.h>
 #include <scenes/peers/clock.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,63 @@
 namespace raycontact::bench {
 
 namespace {
+
+/// How often a kernel ran, over how many items in all, and how long each launch took.
+struct KernelTimes {
+    std::uint64_t launches = 0, items = 0;
+    std::vector<double> us; ///< by the device's own clock, one entry a launch; a scan of several launches is one
+};
+
+/// By KernelId, then prefix sums.
+constexpr std::string_view row_names[] = {
+#define RAYCONTACT_KERNEL(name) #name,
+#define RAYCONTACT_CPU_KERNEL(name) #name,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+    "scan"};
+
+/// What a TimingDevice measures while `on`.
+struct Timings {
+    bool on = false;
+    std::array<KernelTimes, std::size(row_names)> kernels;
+};
+
+/// Waits after each launch to see how long it took. Off, it only passes everything on. So one device, opened once,
+/// serves both: whole steps, which waiting would disturb, and single kernels.
+class TimingDevice : public ForwardingDevice {
+public:
+    /// The timings outlive the device, which a part takes for itself.
+    TimingDevice(std::unique_ptr<Device> inner, std::shared_ptr<Timings> timings)
+        : ForwardingDevice(std::move(inner)), timings_(std::move(timings)) {}
+
+private:
+    void launch(KernelId kernel, Count count, std::span<const Argument> arguments) override {
+        const double before = timings_->on ? inner().busy_ms() : 0;
+        inner().launch(kernel, count, arguments);
+        if (timings_->on) add(timings_->kernels[static_cast<std::size_t>(kernel)], count, 1, before);
+    }
+    kernels::uint scan(const ScanOf& scan) override {
+        const double before = timings_->on ? inner().busy_ms() : 0;
+        const kernels::uint launches = inner().scan(scan);
+        if (timings_->on) add(timings_->kernels.back(), scan.count, launches, before);
+        return launches;
+    }
+
+    void add(KernelTimes& times, const Count& count, std::uint64_t launches, double busy_before) {
+        inner().finish();
+        times.us.push_back(1e3 * (inner().busy_ms() - busy_before));
+        times.launches += launches;
+        kernels::uint items = count.value;
+        if (count.buffer) {
+            const Piece piece{&items, count.buffer, count.value * sizeof items, sizeof items};
+            inner().read({&piece, 1});
+        }
+        times.items += items;
+    }
+
+    std::shared_ptr<Timings> timings_;
+};
 
 struct Way {
     Method method;
@@ -24,10 +82,7 @@ struct Way {
 };
 
 Settings settings_of(const Way& way, const DeviceOptions& options) {
-    Settings settings;
-    settings.features = Features::vertices;
-    settings.method = way.method;
-    settings.paper.caster = way.caster;
+    Settings settings = one_thread(way.method, way.caster);
     settings.execution.threads = options.threads;
     return settings;
 }
@@ -54,46 +109,27 @@ std::vector<Way> ways_of(const Work& work, const DeviceOptions& options) {
     return ways;
 }
 
-/// Medians of what a step is, over steps and runs.
-class Medians {
-public:
-    void add(const Replayer& replayer) {
-        const StepStats& stats = replayer.stats();
-        const DeviceWork& work = stats.details.work.front();
-        const double values[] = {static_cast<double>(stats.pairs),
-                                 static_cast<double>(stats.details.rays_cast),
-                                 static_cast<double>(stats.details.walks),
-                                 static_cast<double>(stats.contacts),
-                                 replayer.step_us(),
-                                 1e3 * stats.narrow_ms,
-                                 1e3 * work.busy_ms,
-                                 static_cast<double>(work.launches),
-                                 static_cast<double>(work.reads),
-                                 static_cast<double>(work.bytes_up),
-                                 static_cast<double>(work.bytes_down)};
-        for (std::size_t i = 0; i < count; ++i) all_[i].push_back(values[i]);
-    }
-    void put(DeviceResult& r) const {
-        double* const places[] = {&r.pairs,   &r.rays_cast, &r.walks, &r.contacts, &r.step_us,   &r.narrow_us,
-                                  &r.busy_us, &r.launches,  &r.reads, &r.bytes_up, &r.bytes_down};
-        for (std::size_t i = 0; i < count; ++i) *places[i] = median(all_[i]);
-    }
+/// Of a step, in the order of device_figures.
+using StepFigures = std::array<double, std::size(device_figures)>;
 
-private:
-    static constexpr std::size_t count = 11;
-    std::vector<double> all_[count];
-};
+StepFigures figures_of(const Replayer& replayer) {
+    const StepStats& stats = replayer.stats();
+    const DeviceWork& work = stats.details.work.front();
+    return {double(stats.pairs), double(stats.details.rays_cast), double(stats.details.walks), double(stats.contacts),
+            replayer.step_us(),  1e3 * stats.narrow_ms,           1e3 * work.busy_ms,          double(work.launches),
+            double(work.reads),  double(work.bytes_up),           double(work.bytes_down)};
+}
 
 std::vector<KernelRow> rows_of(const Timings& timings, std::uint32_t steps) {
     std::vector<std::pair<double, KernelRow>> found;
     double all = 0;
-    for (std::size_t row = 0; row < Timings::rows; ++row) {
+    for (std::size_t row = 0; row < timings.kernels.size(); ++row) {
         const KernelTimes& times = timings.kernels[row];
         if (times.us.empty()) continue;
         const double sum = std::accumulate(times.us.begin(), times.us.end(), 0.0);
         all += sum;
         found.push_back({sum,
-                         {std::string(name_of_row(row)), static_cast<double>(times.launches) / steps,
+                         {std::string(row_names[row]), static_cast<double>(times.launches) / steps,
                           static_cast<double>(times.items) / steps, median(times.us), 0}});
     }
     std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -111,25 +147,26 @@ void measure(Replayer& replayer, Timings& timings, const Way& way, const DeviceO
         // Every run must find the same: one that differs is what is kept.
         if (result.hash.empty() || hash != way.cpu_hash) result.hash = hash;
     };
-    Medians medians;
+    std::vector<StepFigures> figures; // of all runs
     for (std::uint32_t i = 0; i < options.runs; ++i)
         take(run(replayer, settings, way.steps, [&](std::uint32_t k) {
-            if (k > 0) medians.add(replayer);
+            if (k > 0) figures.push_back(figures_of(replayer));
         }));
-    medians.put(result);
+    for (std::size_t i = 0; i < std::size(device_figures); ++i) {
+        std::vector<double> values;
+        for (const StepFigures& one : figures) values.push_back(one[i]);
+        result.*device_figures[i].second = median(values);
+    }
 
     timings.kernels = {};
     take(run(replayer, settings, way.steps, [&](std::uint32_t k) { timings.on = k + 1 < way.steps; }));
     result.kernels = rows_of(timings, way.steps - 1);
 }
 
-void measure_all(const Work& work, const DeviceOptions& options, const std::function<void(const std::string&)>& tell,
-                 DeviceResults& all) {
+void measure_all(const Work& work, const DeviceOptions& options, const Progress& tell, DeviceResults& all) {
     std::vector<Way> ways = ways_of(work, options);
     {
-        Settings settings;
-        settings.execution.threads = options.threads;
-        Replayer cpu(work, options.copies, settings, open_device("cpu", options.threads));
+        Replayer cpu(work, options.copies, settings_of(ways.front(), options), open_device("cpu", options.threads));
         for (Way& way : ways) {
             tell("cpu: hash of " + std::string(to_string(way.method)) + " " + std::string(to_string(way.caster)));
             way.cpu_hash = run(cpu, settings_of(way, options), way.steps, [](std::uint32_t) {});
@@ -141,9 +178,7 @@ void measure_all(const Work& work, const DeviceOptions& options, const std::func
         all.devices.push_back({opened.device->info(), measure_bandwidth(*opened.device)});
         const auto timings = std::make_shared<Timings>();
         opened.device = std::make_unique<TimingDevice>(std::move(opened.device), timings);
-        Settings settings;
-        settings.execution.threads = options.threads;
-        Replayer replayer(work, options.copies, settings, std::move(opened));
+        Replayer replayer(work, options.copies, settings_of(ways.front(), options), std::move(opened));
         for (const Way& way : ways) {
             tell(id + ": " + std::string(to_string(way.method)) + " " + std::string(to_string(way.caster)));
             DeviceResult& result = all.results.emplace_back();
@@ -164,14 +199,9 @@ void measure_all(const Work& work, const DeviceOptions& options, const std::func
 
 } // namespace
 
-DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
-                              const std::function<void(const std::string&)>& tell) {
+DeviceResults measure_devices(const Work& work, const DeviceOptions& options, const Progress& tell) {
     DeviceResults all;
-    try {
-        measure_all(work, options, tell, all);
-    } catch (const Stopped&) {
-        // What was measured before counts.
-    }
+    until_stopped([&] { measure_all(work, options, tell, all); });
     return all;
 }
 

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/device/bandwidth.h"
-
-#include <bench/peers/work.h>
+#include <bench/peers/results.h>
 
 #include <raycontact/device.h>
 #include <raycontact/settings.h>
 
 #include <cstdint>
-#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
+
+namespace raycontact {
+class Device;
+}
 
 namespace raycontact::bench {
 
@@ -52,6 +54,24 @@ struct DeviceResult {
     bool agrees() const { return fault.empty() && hash == cpu_hash; }
 };
 
+/// The medians by the names that the JSON gives them.
+inline constexpr std::pair<const char*, double DeviceResult::*> device_figures[] = {
+    {"pairs", &DeviceResult::pairs},          {"rays_cast", &DeviceResult::rays_cast},
+    {"walks", &DeviceResult::walks},          {"contacts", &DeviceResult::contacts},
+    {"step_us", &DeviceResult::step_us},      {"narrow_us", &DeviceResult::narrow_us},
+    {"busy_us", &DeviceResult::busy_us},      {"launches", &DeviceResult::launches},
+    {"reads", &DeviceResult::reads},          {"bytes_up", &DeviceResult::bytes_up},
+    {"bytes_down", &DeviceResult::bytes_down}};
+
+/// What a device's memory, bus and driver allow, measured: medians of nine.
+struct Bandwidth {
+    double write = 0, read = 0; ///< GB/s between host and device, through Queue::write and read
+    double copy = 0;            ///< GB/s within the device, every byte counted twice: read and written
+    double launch_us = 0;       ///< an empty launch, as one of a hundred in a row
+    double wait_us = 0;         ///< an empty launch and the wait for it
+};
+Bandwidth measure_bandwidth(Device& device);
+
 struct MeasuredDevice {
     DeviceInfo info;
     Bandwidth bandwidth;
@@ -62,8 +82,19 @@ struct DeviceResults {
     std::vector<DeviceResult> results;
 };
 
-/// The work must have two steps or more. tell: what is being done.
-DeviceResults measure_devices(const Work& work, const DeviceOptions& options,
-                              const std::function<void(const std::string&)>& tell);
+/// The work must have two steps or more.
+DeviceResults measure_devices(const Work& work, const DeviceOptions& options, const Progress& tell);
+
+/// For a person.
+std::string table(const Work& work, const DeviceOptions& options, const DeviceResults& results);
+Json json(const KernelRow& row);
+Json json(const DeviceResult& result);
+Json json(const Work& work, const DeviceOptions& options, const DeviceResults& results);
+/// For each device, method and caster a row of the step and one of each kernel; for each device a row of each
+/// bandwidth.
+Json csv_rows(const Work& work, const DeviceOptions& options, const DeviceResults& results);
+inline constexpr const char* device_columns =
+    "device,device_name,driver,first,copies,bodies,method,caster,steps,what,pairs,rays_cast,walks,contacts,launches,"
+    "items,us,share,narrow_us,busy_us,reads,bytes_up,bytes_down,gb_per_s,hash,agrees,fault";
 
 } // namespace raycontact::bench

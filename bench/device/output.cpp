@@ -1,64 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/device/output.h"
-
-#include <bench/peers/files.h>
+#include "bench/device/measure.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace raycontact::bench {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-const DeviceInfo& info_of(const DeviceResults& results, const std::string& id) {
-    return std::ranges::find(results.devices, id, [](const MeasuredDevice& d) { return d.info.id; })->info;
+Json json(const KernelRow& k) {
+    return {{"kernel", k.name}, {"launches", k.launches}, {"items", k.items}, {"us", k.us}, {"share", k.share}};
 }
 
-std::string scale_of(const Work& work, const DeviceOptions& options) {
-    return fmt::format("{},{},{}", options.first, options.copies, work.body_shape.size() * options.copies);
+Json json(const DeviceResult& r) {
+    Json row{
+        {"device", r.device}, {"method", to_string(r.method)}, {"caster", to_string(r.caster)}, {"steps", r.steps}};
+    for (const auto& [name, figure] : device_figures) row[name] = r.*figure;
+    row.update(Json{{"hash", r.hash},
+                    {"cpu_hash", r.cpu_hash},
+                    {"agrees", r.agrees()},
+                    {"fault", r.fault},
+                    {"kernels", json_list(r.kernels)}});
+    return row;
 }
 
-constexpr const char* columns =
-    ",device,device_name,driver,first,copies,bodies,method,caster,steps,what,pairs,rays_cast,walks,contacts,launches,"
-    "items,us,share,narrow_us,busy_us,reads,bytes_up,bytes_down,gb_per_s,hash,agrees,fault\n";
-
-std::string csv(const Machine& machine, const Work& work, const DeviceOptions& options, const DeviceResults& results) {
-    std::string text = machine_columns + std::string(columns);
-    const auto begin = [&](const DeviceInfo& info) {
-        return fmt::format("{},{},{},{},{}", machine_fields(machine), info.id, quoted(info.name), quoted(info.driver),
-                           scale_of(work, options));
-    };
-    for (const auto& [info, bandwidth] : results.devices) {
-        for (const auto& [name, value] : {std::pair{"write", bandwidth.write}, std::pair{"read", bandwidth.read},
-                                          std::pair{"copy", bandwidth.copy}})
-            text += fmt::format("{},,,,{},,,,,,,,,,,,,,{:.3f},,,\n", begin(info), name, value);
-        for (const auto& [name, value] :
-             {std::pair{"launch", bandwidth.launch_us}, std::pair{"launch-and-wait", bandwidth.wait_us}})
-            text += fmt::format("{},,,,{},,,,,,,{:.3f},,,,,,,,,,\n", begin(info), name, value);
-    }
-    for (const DeviceResult& r : results.results) {
-        const std::string way = fmt::format("{},{},{},{}", begin(info_of(results, r.device)), to_string(r.method),
-                                            to_string(r.caster), r.steps);
-        text += fmt::format("{},step,{},{},{},{},{},,{:.3f},,{:.3f},{:.3f},{},{},{},,{},{},{}\n", way, r.pairs,
-                            r.rays_cast, r.walks, r.contacts, r.launches, r.step_us, r.narrow_us, r.busy_us, r.reads,
-                            r.bytes_up, r.bytes_down, r.hash, r.agrees() ? 1 : 0, quoted(r.fault));
-        for (const KernelRow& k : r.kernels)
-            text += fmt::format("{},{},,,,,{:.3f},{:.1f},{:.3f},{:.4f},,,,,,,,,\n", way, k.name, k.launches, k.items,
-                                k.us, k.share);
-    }
-    return text;
-}
-
-} // namespace
-
-std::string table(const Machine& machine, const Work& work, const DeviceOptions& options,
-                  const DeviceResults& results) {
-    std::string text = heading(machine);
-    text += fmt::format("{}; {} times\n", work.source, options.copies);
+std::string table(const Work& work, const DeviceOptions& options, const DeviceResults& results) {
+    std::string text = fmt::format("{}; {} times\n", work.source, options.copies);
     for (const auto& [info, b] : results.devices) {
         text += fmt::format("\n{}: {} ({})\n", info.id, info.name, info.driver);
         text +=
@@ -84,9 +48,12 @@ std::string table(const Machine& machine, const Work& work, const DeviceOptions&
     return text;
 }
 
-std::string json(const Machine& machine, const Work& work, const DeviceOptions& options, const DeviceResults& results) {
-    Json out{{"machine", machine_json(machine)}, {"source", work.source},    {"first", options.first},
-             {"copies", options.copies},         {"devices", Json::array()}, {"results", Json::array()}};
+Json json(const Work& work, const DeviceOptions& options, const DeviceResults& results) {
+    Json out{{"source", work.source},
+             {"first", options.first},
+             {"copies", options.copies},
+             {"devices", Json::array()},
+             {"results", json_list(results.results)}};
     for (const auto& [info, b] : results.devices)
         out["devices"].push_back({{"device", info.id},
                                   {"name", info.name},
@@ -96,39 +63,38 @@ std::string json(const Machine& machine, const Work& work, const DeviceOptions& 
                                   {"copy_gb_per_s", b.copy},
                                   {"launch_us", b.launch_us},
                                   {"launch_and_wait_us", b.wait_us}});
-    for (const DeviceResult& r : results.results) {
-        Json kernels = Json::array();
-        for (const KernelRow& k : r.kernels)
-            kernels.push_back(
-                {{"kernel", k.name}, {"launches", k.launches}, {"items", k.items}, {"us", k.us}, {"share", k.share}});
-        out["results"].push_back({{"device", r.device},
-                                  {"method", to_string(r.method)},
-                                  {"caster", to_string(r.caster)},
-                                  {"steps", r.steps},
-                                  {"pairs", r.pairs},
-                                  {"rays_cast", r.rays_cast},
-                                  {"walks", r.walks},
-                                  {"contacts", r.contacts},
-                                  {"step_us", r.step_us},
-                                  {"narrow_us", r.narrow_us},
-                                  {"busy_us", r.busy_us},
-                                  {"launches", r.launches},
-                                  {"reads", r.reads},
-                                  {"bytes_up", r.bytes_up},
-                                  {"bytes_down", r.bytes_down},
-                                  {"hash", r.hash},
-                                  {"cpu_hash", r.cpu_hash},
-                                  {"agrees", r.agrees()},
-                                  {"fault", r.fault},
-                                  {"kernels", kernels}});
-    }
-    // Drivers choose their own names: what is not UTF-8 in them must not end the program.
-    return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return out;
 }
 
-void write_results(output::OutFolder& folder, const Machine& machine, const Work& work, const DeviceOptions& options,
-                   const DeviceResults& results) {
-    folder.write(result_name(machine, "device", ".csv"), csv(machine, work, options, results));
+Json csv_rows(const Work& work, const DeviceOptions& options, const DeviceResults& results) {
+    Json rows = Json::array();
+    for (const auto& [info, b] : results.devices) {
+        const Json device{{"device", info.id},        {"device_name", info.name},
+                          {"driver", info.driver},    {"first", options.first},
+                          {"copies", options.copies}, {"bodies", work.body_shape.size() * options.copies}};
+        const auto add = [&rows](Json row, const Json& more) {
+            row.update(more);
+            rows.push_back(row);
+        };
+        add(device, {{"what", "write"}, {"gb_per_s", b.write}});
+        add(device, {{"what", "read"}, {"gb_per_s", b.read}});
+        add(device, {{"what", "copy"}, {"gb_per_s", b.copy}});
+        add(device, {{"what", "launch"}, {"us", b.launch_us}});
+        add(device, {{"what", "launch-and-wait"}, {"us", b.wait_us}});
+        for (const DeviceResult& r : results.results) {
+            if (r.device != info.id) continue;
+            Json step = device;
+            step.update(json(r));
+            add(step, {{"what", "step"}, {"us", r.step_us}});
+            Json way = device;
+            way.update({{"method", step["method"]}, {"caster", step["caster"]}, {"steps", r.steps}});
+            for (Json kernel : step["kernels"]) {
+                kernel["what"] = kernel["kernel"];
+                add(way, kernel);
+            }
+        }
+    }
+    return rows;
 }
 
 } // namespace raycontact::bench

@@ -3,7 +3,8 @@
 
 #include "executor/float_environment.h"
 
-#include <chrono>
+#include <scenes/peers/clock.h>
+
 #include <utility>
 
 namespace raycontact::bench {
@@ -45,14 +46,14 @@ void Replayer::step(std::size_t k) {
     for (std::uint32_t copy = 0; copy < copies_; ++copy)
         for (const auto& [a, b] : now.pairs) pairs_.emplace_back(copy * count + a.slot, copy * count + b.slot);
     const FloatEnvironment environment;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = peers::now().wall;
     narrow_.parts().wake();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         bodies_[i].pose = now.poses[i % count];
         bodies_[i].centred = centred_pose(*bodies_[i].shape, bodies_[i].pose);
     }
     narrow_.step(bodies_, pairs_, contacts_, stats_);
-    step_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    step_us_ = peers::now().wall - start;
 }
 
 } // namespace raycontact::bench

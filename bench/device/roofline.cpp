@@ -5,10 +5,7 @@
 #include "bench/device/replayer.h"
 #include "device/forwarding.h"
 
-#include <bench/peers/files.h>
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -21,23 +18,20 @@ namespace raycontact::bench {
 
 namespace {
 
-struct KindSum {
-    std::uint64_t rays = 0, nodes = 0, blocks = 0, faces = 0, operations = 0, loaded = 0, sectors = 0;
-
-    void add(const RayCost& cost) {
-        ++rays;
-        nodes += cost.nodes;
-        blocks += cost.blocks;
-        faces += cost.faces;
-        operations += cost.operations;
-        loaded += cost.loaded;
-        sectors += sector_bytes * cost.sectors.size();
-    }
-};
+/// Sums over all steps until row_of() has made means of them.
+void add(RayKind& sums, const RayCost& cost) {
+    sums.a_step += 1;
+    sums.nodes += double(cost.nodes);
+    sums.blocks += double(cost.blocks);
+    sums.faces += double(cost.faces);
+    sums.operations += double(cost.operations);
+    sums.loaded += double(cost.loaded);
+    sums.sectors += double(sector_bytes * cost.sectors.size());
+}
 
 struct Counts {
     bool on = false;
-    KindSum cast, update;
+    RayKind cast{"cast"}, update{"update"};
     std::uint64_t unique = 0, written = 0;
     bool agrees = true;
 };
@@ -90,7 +84,7 @@ private:
         for (kernels::uint i = 0; i < items; ++i) {
             const RayCost cost = count_ray(kernel, i, items, raw);
             all.insert(cost.sectors.begin(), cost.sectors.end());
-            (!follows || was_cast(raw, i) ? counts_->cast : counts_->update).add(cost);
+            add(!follows || was_cast(raw, i) ? counts_->cast : counts_->update, cost);
         }
         counts_->unique += sector_bytes * all.size();
         // A hit and three outcomes; what follows has two words more.
@@ -100,29 +94,17 @@ private:
     std::shared_ptr<Counts> counts_;
 };
 
-RayKind kind_of(const char* name, const KindSum& sum, double steps) {
-    const double rays = static_cast<double>(std::max<std::uint64_t>(sum.rays, 1));
-    const auto mean = [&](std::uint64_t all) { return static_cast<double>(all) / rays; };
-    return {name,
-            static_cast<double>(sum.rays) / steps,
-            mean(sum.nodes),
-            mean(sum.blocks),
-            mean(sum.faces),
-            mean(sum.operations),
-            mean(sum.loaded),
-            mean(sum.sectors)};
-}
-
 RooflineRow row_of(Method method, const Counts& counts, double steps, const Peak& peak) {
     RooflineRow row;
     row.method = method;
     double operations = 0, sectors = 0;
-    for (const auto& [name, sum] :
-         {std::pair<const char*, const KindSum&>{"cast", counts.cast}, {"update", counts.update}}) {
-        if (sum.rays == 0) continue;
-        row.kinds.push_back(kind_of(name, sum, steps));
-        operations += static_cast<double>(sum.operations) / steps;
-        sectors += static_cast<double>(sum.sectors) / steps;
+    for (RayKind kind : {counts.cast, counts.update}) {
+        if (kind.a_step == 0) continue;
+        operations += kind.operations / steps;
+        sectors += kind.sectors / steps;
+        for (const auto& [name, figure] : ray_figures) kind.*figure /= kind.a_step;
+        kind.a_step /= steps;
+        row.kinds.push_back(kind);
     }
     row.unique = static_cast<double>(counts.unique) / steps;
     row.written = static_cast<double>(counts.written) / steps;
@@ -135,16 +117,11 @@ RooflineRow row_of(Method method, const Counts& counts, double steps, const Peak
 
 } // namespace
 
-std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions& options,
-                                        const std::function<void(const std::string&)>& tell) {
+std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions& options, const Progress& tell) {
     std::vector<RooflineRow> rows;
     for (const Method method : options.methods) {
         tell("counting " + std::string(to_string(method)));
-        Settings settings;
-        settings.features = Features::vertices;
-        settings.method = method;
-        settings.paper.caster = options.caster;
-        settings.execution.threads = 1;
+        const Settings settings = one_thread(method, options.caster);
         const auto counts = std::make_shared<Counts>();
         OpenDevice opened = open_device("cpu", 1);
         opened.device = std::make_unique<RayCounter>(std::move(opened.device), counts);
@@ -159,11 +136,9 @@ std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions&
     return rows;
 }
 
-std::string table(const Machine& machine, const Work& work, const RooflineOptions& options,
-                  const std::vector<RooflineRow>& rows) {
-    std::string text = heading(machine) + work.source + "\n";
-    text += fmt::format("floors at {:g} GB/s and {:g} TFLOP/s; caster {}\n", options.peak.gb_per_s, options.peak.tflops,
-                        to_string(options.caster));
+std::string table(const Work& work, const RooflineOptions& options, const std::vector<RooflineRow>& rows) {
+    std::string text = fmt::format("{}\nfloors at {:g} GB/s and {:g} TFLOP/s; caster {}\n", work.source,
+                                   options.peak.gb_per_s, options.peak.tflops, to_string(options.caster));
     for (const RooflineRow& row : rows) {
         text +=
             fmt::format("\n{}{}\n", to_string(row.method), row.agrees ? "" : ": THE COUNTING KERNELS GAVE OTHER BITS");
@@ -181,23 +156,18 @@ std::string table(const Machine& machine, const Work& work, const RooflineOption
     return text;
 }
 
-std::string json(const Machine& machine, const Work& work, const RooflineOptions& options,
-                 const std::vector<RooflineRow>& rows) {
-    using Json = nlohmann::ordered_json;
-    Json out{{"machine", machine_json(machine)},    {"source", work.source},
-             {"caster", to_string(options.caster)}, {"peak_gb_per_s", options.peak.gb_per_s},
-             {"peak_tflops", options.peak.tflops},  {"rows", Json::array()}};
+Json json(const Work& work, const RooflineOptions& options, const std::vector<RooflineRow>& rows) {
+    Json out{{"source", work.source},
+             {"caster", to_string(options.caster)},
+             {"peak_gb_per_s", options.peak.gb_per_s},
+             {"peak_tflops", options.peak.tflops},
+             {"rows", Json::array()}};
     for (const RooflineRow& row : rows) {
         Json kinds = Json::array();
-        for (const RayKind& k : row.kinds)
-            kinds.push_back({{"rays", k.name},
-                             {"a_step", k.a_step},
-                             {"nodes", k.nodes},
-                             {"blocks", k.blocks},
-                             {"faces", k.faces},
-                             {"operations", k.operations},
-                             {"bytes_loaded", k.loaded},
-                             {"bytes_in_sectors", k.sectors}});
+        for (const RayKind& k : row.kinds) {
+            Json& kind = kinds.emplace_back(Json{{"rays", k.name}, {"a_step", k.a_step}});
+            for (const auto& [name, figure] : ray_figures) kind[name] = k.*figure;
+        }
         out["rows"].push_back({{"method", to_string(row.method)},
                                {"agrees", row.agrees},
                                {"kinds", kinds},
@@ -207,7 +177,7 @@ std::string json(const Machine& machine, const Work& work, const RooflineOptions
                                {"floor_us_every_ray", row.floor_sectors},
                                {"floor_us_operations", row.floor_operations}});
     }
-    return out.dump() + "\n";
+    return out;
 }
 
 } // namespace raycontact::bench

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/files.h>
-#include <bench/peers/work.h>
+#include <bench/peers/results.h>
 
 #include <raycontact/settings.h>
 
 #include <cstdint>
-#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raycontact::bench {
@@ -34,6 +33,10 @@ struct RayKind {
     double loaded = 0;                       ///< bytes: what memory must deliver if nothing is kept
     double sectors = 0;                      ///< bytes: the same if a ray keeps what it has read, and other rays do not
 };
+/// The means by the names that the JSON gives them.
+inline constexpr std::pair<const char*, double RayKind::*> ray_figures[] = {
+    {"nodes", &RayKind::nodes},           {"blocks", &RayKind::blocks},       {"faces", &RayKind::faces},
+    {"operations", &RayKind::operations}, {"bytes_loaded", &RayKind::loaded}, {"bytes_in_sectors", &RayKind::sectors}};
 
 /// A method's ray kernel.
 struct RooflineRow {
@@ -48,12 +51,9 @@ struct RooflineRow {
 };
 
 /// Counts by running the kernels' own text with numbers that count, on every ray of the work.
-std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions& options,
-                                        const std::function<void(const std::string&)>& tell);
+std::vector<RooflineRow> count_roofline(const Work& work, const RooflineOptions& options, const Progress& tell);
 
-std::string table(const Machine& machine, const Work& work, const RooflineOptions& options,
-                  const std::vector<RooflineRow>& rows);
-std::string json(const Machine& machine, const Work& work, const RooflineOptions& options,
-                 const std::vector<RooflineRow>& rows);
+std::string table(const Work& work, const RooflineOptions& options, const std::vector<RooflineRow>& rows);
+Json json(const Work& work, const RooflineOptions& options, const std::vector<RooflineRow>& rows);
 
 } // namespace raycontact::bench

@@ -2,39 +2,187 @@
 // Runs steps of each method on fixed inputs, and what the host does beside, for callgrind to count instructions;
 // scripts/instructions reads what is printed: the compiler, then a line `kernel,input,items` for each count. Everything
 // is done once beforehand, so that no array has to grow while it counts.
-#include "bench/instructions/batch.h"
-#include "bench/instructions/callgrind_device.h"
-
+#include "broadphase/sweep_and_prune.h"
 #include "contacts/place.h"
 #include "device/cpu/device.h"
+#include "device/forwarding.h"
+#include "pairs/directed_pairs.h"
 #include "part/part.h"
+#include "scenes/models/model.h"
+#include "scenes/random.h"
 #include "shape/accelerators.h"
+#include "shape/shape_data.h"
 
 #include <raycontact/error.h>
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <valgrind/callgrind.h>
 
-namespace rb = raycontact::bench;
-namespace rc = raycontact;
+namespace raycontact::bench {
 
 namespace {
 
 // What valgrind 3.19 knows; it has no AVX-512.
 constexpr const char* instruction_set = "avx2";
 
+/// The fixed input of the instruction counts: one shape, many overlapping pairs of it, some steps.
+/// Equal arguments give equal bits on every machine, so that a count of instructions can be compared with an old one.
+struct Batch {
+    Mesh mesh;
+    std::shared_ptr<const Shape> shape;
+    std::vector<SlotPair> pairs; ///< bodies 2 i and 2 i + 1, at random: turned anyhow, middles up to 0.35 box diagonals
+                                 ///< apart along each axis
+    /// The bodies in each step. A quarter of the pairs creeps, and each further quarter moves four times as far: from
+    /// 0.01 % of the diagonal a step along each axis and a hundredth of a degree, at most, to 0.64 %.
+    std::vector<std::vector<PlacedBody>> steps;
+};
+
+using Matrix = std::array<double, 9>;
+
+Matrix product(const Matrix& a, const Matrix& b) {
+    Matrix c{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            c[3 * i + j] = (a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j]) + a[3 * i + 2] * b[6 + j];
+    return c;
+}
+
+/// A procedural knot of so many triangles, 1 m across.
+Batch make_batch(std::uint32_t triangles, std::size_t pairs, std::size_t steps) {
+    Batch batch;
+    batch.mesh = scenes::scene_model("knot", triangles).mesh;
+    batch.shape = Shape::make(batch.mesh);
+    batch.shape->prepare();
+    const double diagonal = batch.shape->data().diagonal;
+    scenes::Random random(7);
+    std::vector<PlacedBody> bodies;
+    for (std::size_t i = 0; i < 2 * pairs; ++i) {
+        double at[3], turn[4];
+        for (double& x : at) x = 0.35 * diagonal * random.symmetric();
+        for (double& x : turn) x = random.symmetric();
+        PlacedBody& body = bodies.emplace_back();
+        body.shape = batch.shape.get();
+        body.pose = pose_from_quaternion({at[0], at[1], at[2]}, turn[0], turn[1], turn[2], turn[3]);
+    }
+    for (BodySlot i = 0; i < 2 * pairs; i += 2) batch.pairs.emplace_back(i, i + 1);
+
+    std::vector<Pose> ways; // a step's
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const double share = 0.0001 * static_cast<double>(1u << 2 * (i / 2 % 4));
+        const auto shift = [&] { return share * diagonal * random.symmetric(); };
+        const double x = shift(), y = shift(), z = shift();
+        const std::array<double, 4> turn = random.tilt(2 * share);
+        ways.push_back(pose_from_quaternion({x, y, z}, turn[0], turn[1], turn[2], turn[3]));
+    }
+    for (std::size_t step = 0; step < steps; ++step) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            Pose& pose = bodies[i].pose;
+            const Vec3 &at = pose.translation, &way = ways[i].translation;
+            if (step > 0) pose = {product(pose.rotation, ways[i].rotation), {at.x + way.x, at.y + way.y, at.z + way.z}};
+            bodies[i].centred = centred_pose(*batch.shape, pose);
+        }
+        batch.steps.push_back(bodies);
+    }
+    return batch;
+}
+
+/// Unit boxes scattered so that each meets about three others.
+std::vector<WorldBox> make_boxes(std::size_t count) {
+    // Two unit cubes overlap when their middles are less than 1 apart on every axis: a volume of 8.
+    const double half = 0.5 * std::cbrt(8.0 * static_cast<double>(count) / 3);
+    scenes::Random random(11);
+    std::vector<WorldBox> boxes;
+    for (BodySlot i = 0; i < count; ++i) {
+        const double x = half * random.symmetric(), y = half * random.symmetric(), z = half * random.symmetric();
+        boxes.push_back({{{x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}}, i});
+    }
+    return boxes;
+}
+
+/// Over a device that works on this thread, in memory that the host shares. While it counts, under callgrind, what each
+/// kernel took is dumped as `KERNEL,INPUT`, that of prefix sums as `scan,INPUT`, and what ran in between as
+/// `host,INPUT`: a dump for each time, to be added up.
+class CallgrindDevice : public ForwardingDevice {
+public:
+    CallgrindDevice(std::unique_ptr<Device> inner, std::string_view input) : ForwardingDevice(std::move(inner)) {
+        if (!traits().shares_memory) throw std::logic_error("only a device on this thread can be counted");
+        names_ = {
+#define RAYCONTACT_KERNEL(name) #name,
+#define RAYCONTACT_CPU_KERNEL(name) #name,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+            "scan", "host"};
+        for (std::string& name : names_) name.append(",").append(input);
+    }
+
+    /// From start() to stop() it counts.
+    void start() {
+        counts_ = true;
+        CALLGRIND_START_INSTRUMENTATION;
+    }
+    void stop() {
+        CALLGRIND_STOP_INSTRUMENTATION;
+        dump(host_row);
+        counts_ = false;
+    }
+    /// Prints `KERNEL,INPUT,ITEMS` of each kernel that ran since it was made, `host` by so many items.
+    void print(std::uint64_t host_items) const {
+        for (std::size_t row = 0; row < row_count; ++row) {
+            const std::uint64_t items = row == host_row ? host_items : items_[row];
+            if (items > 0) std::printf("%s,%llu\n", names_[row].c_str(), static_cast<unsigned long long>(items));
+        }
+    }
+
+private:
+    static constexpr std::size_t scan_row = static_cast<std::size_t>(KernelId::count), host_row = scan_row + 1,
+                                 row_count = host_row + 1;
+
+    void launch(KernelId kernel, Count count, std::span<const Argument> arguments) override {
+        const auto row = static_cast<std::size_t>(kernel);
+        add_items(row, count);
+        dump(host_row);
+        inner().launch(kernel, count, arguments);
+        dump(row);
+    }
+    kernels::uint scan(const ScanOf& scan) override {
+        add_items(scan_row, scan.count);
+        dump(host_row);
+        const kernels::uint launches = inner().scan(scan);
+        dump(scan_row);
+        return launches;
+    }
+
+    // A dump sets the counters back to zero.
+    void dump(std::size_t row) const {
+        if (counts_) CALLGRIND_DUMP_STATS_AT(names_[row].c_str());
+    }
+    void add_items(std::size_t row, const Count& count) {
+        if (!counts_) return;
+        items_[row] +=
+            count.buffer ? static_cast<const kernels::uint*>(count.buffer->host())[count.value] : count.value;
+    }
+
+    std::array<std::string, row_count> names_; ///< made beforehand, so that no dump counts it
+    std::array<std::uint64_t, row_count> items_{};
+    bool counts_ = false;
+};
+
 /// A part that does every step of a batch.
 class Run {
 public:
-    Run(const rb::Batch& batch, const std::string& input, const rc::Settings& settings)
-        : batch_(batch), settings_(settings) {
-        rc::OpenDevice opened{std::make_unique<rc::Executor>(1), nullptr};
-        auto device = std::make_unique<rb::CallgrindDevice>(rc::cpu::open(*opened.executor, instruction_set), input);
+    Run(const Batch& batch, const std::string& input, const Settings& settings) : batch_(batch), settings_(settings) {
+        OpenDevice opened{std::make_unique<Executor>(1), nullptr};
+        auto device = std::make_unique<CallgrindDevice>(cpu::open(*opened.executor, instruction_set), input);
         device_ = device.get();
         opened.device = std::move(device);
-        part_ = std::make_unique<rc::Part>(std::move(opened));
+        part_ = std::make_unique<Part>(std::move(opened));
         part_->shapes().add(batch.shape);
     }
 
@@ -43,7 +191,7 @@ public:
         part_->forget();
         for (auto bodies : batch_.steps) {
             // Others in the same slots: that the bodies went back to where they began is no motion.
-            for (rc::PlacedBody& body : bodies) ++body.generation;
+            for (PlacedBody& body : bodies) ++body.generation;
             device_->start();
             step(bodies);
             device_->stop();
@@ -53,16 +201,16 @@ public:
     }
 
 private:
-    void step(std::span<const rc::PlacedBody> bodies) {
+    void step(std::span<const PlacedBody> bodies) {
         part_->begin(bodies, batch_.pairs, settings_);
         part_->end(contacts_);
     }
 
-    const rb::Batch& batch_;
-    rc::Settings settings_;
-    rb::CallgrindDevice* device_ = nullptr; ///< the part's
-    std::unique_ptr<rc::Part> part_;
-    std::vector<rc::Contact> contacts_;
+    const Batch& batch_;
+    Settings settings_;
+    CallgrindDevice* device_ = nullptr; ///< the part's
+    std::unique_ptr<Part> part_;
+    std::vector<Contact> contacts_;
 };
 
 /// Counts what needs no device.
@@ -75,55 +223,55 @@ void count_host(const char* name, std::size_t items, const std::function<void()>
     std::printf("%s,%zu\n", name, items);
 }
 
-rc::Settings settings(rc::Method method, rc::Caster caster = rc::Caster::bvh) {
-    rc::Settings settings;
-    settings.features = rc::Features::vertices;
+Settings settings(Method method, Caster caster = Caster::bvh) {
+    Settings settings;
+    settings.features = Features::vertices;
     settings.method = method;
     settings.paper.caster = caster;
     return settings;
 }
 
 void count_all() {
-    const rb::Batch small = rb::make_batch(902, 64, 4), large = rb::make_batch(20000, 8, 4);
-    for (const rb::Batch* batch : {&small, &large}) {
+    const Batch small = make_batch(902, 64, 4), large = make_batch(20000, 8, 4);
+    for (const Batch* batch : {&small, &large}) {
         const std::string size = batch == &small ? "" : "_large";
-        Run(*batch, "standard" + size, settings(rc::Method::standard)).count();
-        Run(*batch, "certified" + size, settings(rc::Method::certified)).count();
-        Run(*batch, "predictive" + size, settings(rc::Method::predictive)).count();
+        Run(*batch, "standard" + size, settings(Method::standard)).count();
+        Run(*batch, "certified" + size, settings(Method::certified)).count();
+        Run(*batch, "predictive" + size, settings(Method::predictive)).count();
     }
     // Every triangle for every ray; more of them would only be more of the same.
-    const rb::Batch few = rb::make_batch(902, 8, 2);
-    Run(few, "standard_basic", settings(rc::Method::standard, rc::Caster::basic)).count();
-    Run(few, "predictive_basic", settings(rc::Method::predictive, rc::Caster::basic)).count();
+    const Batch few = make_batch(902, 8, 2);
+    Run(few, "standard_basic", settings(Method::standard, Caster::basic)).count();
+    Run(few, "predictive_basic", settings(Method::predictive, Caster::basic)).count();
 
-    rc::OpenDevice opened = rc::open_device("cpu", 1);
-    rc::Executor& executor = *opened.executor;
-    rc::ShapeStore shapes(*opened.device);
+    OpenDevice opened = open_device("cpu", 1);
+    Executor& executor = *opened.executor;
+    ShapeStore shapes(*opened.device);
     shapes.add(small.shape);
-    const rc::Settings standard = settings(rc::Method::standard);
-    const rc::Motion motion;
-    const rc::Update update{*opened.device, executor, shapes, small.steps[0], small.pairs, motion, standard};
-    rc::Pipeline pipeline;
+    const Settings standard = settings(Method::standard);
+    const Motion motion;
+    const Update update{*opened.device, executor, shapes, small.steps[0], small.pairs, motion, standard};
+    Pipeline pipeline;
     pipeline.begin(update);
     pipeline.end(update);
     const auto local = pipeline.contacts().all();
-    rc::Placer placer;
-    std::vector<rc::Contact> placed;
+    Placer placer;
+    std::vector<Contact> placed;
     count_host("place_contacts,standard", local.size(),
-               [&] { placer.run(executor, rc::Direction::reprojected, small.steps[0], small.pairs, local, placed); });
+               [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, placed); });
 
-    const std::vector<rc::WorldBox> boxes = rb::make_boxes(4096);
-    std::vector<rc::WorldBox> sorted;
-    std::vector<rc::SlotPair> pairs;
+    const std::vector<WorldBox> boxes = make_boxes(4096);
+    std::vector<WorldBox> sorted;
+    std::vector<SlotPair> pairs;
     count_host("sweep,boxes", boxes.size(), [&] {
         sorted = boxes;
-        rc::sweep_and_prune(sorted, pairs);
+        sweep_and_prune(sorted, pairs);
     });
-    count_host("make_shape,knot", small.mesh.triangles.size(), [&] { rc::Shape::make(small.mesh); });
-    const auto made = rc::Shape::make(small.mesh);
-    rc::Executor one_thread(1);
+    count_host("make_shape,knot", small.mesh.triangles.size(), [&] { Shape::make(small.mesh); });
+    const auto made = Shape::make(small.mesh);
+    Executor one_thread(1);
     count_host("prepare_shape,knot", small.mesh.triangles.size(),
-               [&] { rc::build_accelerators(made->data(), one_thread, {}); });
+               [&] { build_accelerators(made->data(), one_thread, {}); });
 }
 
 std::string compiler() {
@@ -136,11 +284,13 @@ std::string compiler() {
 
 } // namespace
 
+} // namespace raycontact::bench
+
 int main() try {
-    std::printf("%s\n", compiler().c_str());
-    count_all();
+    std::printf("%s\n", raycontact::bench::compiler().c_str());
+    raycontact::bench::count_all();
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "raycontact_instructions: %s\n", error.what());
-    return dynamic_cast<const rc::InputError*>(&error) ? 2 : 1;
+    return dynamic_cast<const raycontact::InputError*>(&error) ? 2 : 1;
 }

@@ -2,9 +2,11 @@
 #include <bench/peers/contest.h>
 
 #include <bench/peers/reference.h>
-#include <bench/peers/sums.h>
 #include <raycontact/contact.h>
+#include <report/plot.h>
 #include <scenes/peers/clock.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -16,6 +18,16 @@
 namespace raycontact::bench {
 
 namespace {
+
+/// Bytes the C library's allocator has handed out and not got back; 0 where it cannot be asked.
+std::uint64_t heap_in_use() {
+#if defined(__GLIBC__)
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+#else
+    return 0;
+#endif
+}
 
 /// An entrant at work.
 struct Runner {
@@ -133,19 +145,23 @@ Result figures(const Work& work, const Runner& runner, const std::vector<Runner>
     return r;
 }
 
-} // namespace
-
-std::uint64_t heap_in_use() {
-#if defined(__GLIBC__)
-    const struct mallinfo2 info = mallinfo2();
-    return info.uordblks + info.hblkhd;
-#else
-    return 0;
-#endif
+double per(std::uint64_t what, std::uint64_t of) {
+    return static_cast<double>(what) / static_cast<double>(std::max<std::uint64_t>(of, 1));
 }
 
+double ns_per_ray(const Result& r) {
+    return 1000 * r.us * static_cast<double>(r.pair_steps) / static_cast<double>(std::max<std::uint64_t>(r.rays, 1));
+}
+
+std::string hash_of(const Result& r) {
+    if (!r.agrees) return "DIFFERS from bvh";
+    return r.peer == "basic" && r.ratio > 0 ? "same bits as bvh" : r.hash;
+}
+
+} // namespace
+
 std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entrants, std::uint32_t runs,
-                            const std::function<void(const std::string&)>& progress) {
+                            const Progress& progress) {
     if (work.steps.empty()) return {};
     progress(work.name + ": what standard finds");
     std::map<Features, Reference> references; // by what is asked, made when somebody needs it
@@ -184,6 +200,83 @@ std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entran
     results.reserve(runners.size());
     for (const Runner& runner : runners) results.push_back(figures(work, runner, runners));
     return results;
+}
+
+std::string table(const Json& works, std::span<const Result> results) {
+    std::string text;
+    for (const Json& note : works) {
+        const auto work = note["work"].get<std::string>();
+        text += heading_of(note);
+        text += fmt::format("  {:<16}{:>10}{:>10} | {:>8}{:>13}{:>12}{:>12} | {:>10}{:>10}{:>11}  {}\n", "", "us/pair",
+                            "wall us", "x bvh", "x iterative", "x predict.", "x certif.", "rays/pair", "contacts",
+                            "memory MB", "hash");
+        for (const Result& r : results) {
+            if (r.work != work || r.rays_alone) continue;
+            text += fmt::format(
+                "  {:<16}{:>10.3f}{:>10.3f} | {:>8.2f}{:>13.2f}{:>12.2f}{:>12.2f} | {:>10.2f}{:>10.3f}{:>10.2f}{} {}\n",
+                r.peer, r.us, r.wall_us, r.ratio, r.method_ratios[0], r.method_ratios[1], r.method_ratios[2],
+                per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps), static_cast<double>(r.memory_bytes) / 1e6,
+                r.memory_is_own_count ? '*' : ' ', hash_of(r));
+        }
+        for (const Result& r : results) {
+            if (r.work != work || !r.rays_alone) continue;
+            text +=
+                fmt::format("  {:<16}{:>7.1f} ns a ray, {:.2f} x rays, {:.1f} rays and {:.2f} contacts a pair\n",
+                            r.peer, ns_per_ray(r), r.ratio, per(r.rays, r.pair_steps), per(r.contacts, r.pair_steps));
+        }
+        if (std::none_of(results.begin(), results.end(),
+                         [&](const Result& r) { return r.work == work && r.wrong.has_value(); }))
+            continue;
+        text += fmt::format("  {:<16}{:>10}{:>10}{:>10}{:>10}{:>10} | {:>8}{:>9}{:>8}{:>8}{:>14}{:>12}\n", "ours",
+                            "cast/pair", "walks", "lost", "full %", "kept MB", "missed", "invented", "other", "wrong",
+                            "of rays", "of contacts");
+        for (const Result& r : results) {
+            if (r.work != work || !r.wrong) continue;
+            text += fmt::format(
+                "  {:<16}{:>10.3f}{:>10.3f}{:>10.4f}{:>10.2f}{:>10.2f} | {:>8}{:>9}{:>8}{:>8}{:>14}{:>12}\n", r.peer,
+                per(r.sums.details.rays_cast, r.pair_steps), per(r.sums.details.walks, r.pair_steps),
+                per(r.sums.details.walks_lost, r.pair_steps), 50 * per(r.sums.details.pairs_full, r.pair_steps),
+                static_cast<double>(r.sums.pair_bytes) / 1e6, r.wrong->missed, r.wrong->invented,
+                r.wrong->other_triangle, r.wrong->total(), r.wrong->rays_compared, r.wrong->contacts_compared);
+        }
+    }
+    return text
+           + "\nTimes are of one processor, medians of the runs; ratios are over the steps that both were given; rays "
+             "and contacts are a pair and step; memory is the growth of the C library's heap, * the library's own "
+             "count. Of ours: rays cast and followed (walks), of these lost, pairs tested in full, memory kept for "
+             "pairs; wrong against standard with every ray cast: contacts missed, invented, on another triangle.\n";
+}
+
+Json json(const Result& r) {
+    Json row{{"work", r.work},
+             {"peer", r.peer},
+             {"what", r.what},
+             {"steps", r.steps},
+             {"pair_steps", r.pair_steps},
+             {"us_per_pair_step", r.us},
+             {"wall_us_per_pair_step", r.wall_us},
+             {"times_ours", r.ratio},
+             {"rays", r.rays},
+             {"contacts", r.contacts},
+             {"memory_bytes", r.memory_bytes},
+             {"memory_count", r.memory_is_own_count ? "own" : "heap"},
+             {"hash", r.hash},
+             {"agrees", r.agrees}};
+    for (std::size_t m = 0; m < coherent_methods.size(); ++m)
+        row[std::string("times_") + coherent_methods[m]] = r.method_ratios[m];
+    if (r.wrong) put_counts(row, r.sums, *r.wrong);
+    return row;
+}
+
+std::string chart(const Json& works, std::span<const Result> results) {
+    std::vector<report::BarGroup> groups;
+    for (const Json& work : works) {
+        report::BarGroup& group = groups.emplace_back();
+        group.name = work["work"];
+        for (const Result& r : results)
+            if (r.work == group.name && !r.rays_alone) group.bars.emplace_back(r.peer, r.us);
+    }
+    return report::bar_chart("Microseconds a pair and step, one thread", "us, logarithmic", groups);
 }
 
 } // namespace raycontact::bench

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <bench/peers/entrants.h>
-#include <recording/replay.h>
+#include <bench/peers/results.h>
 
 #include <array>
-#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,9 +39,16 @@ struct Result {
 /// Every entrant over its steps, one after the other, `runs` times: A B C A B C. Ours go once more beforehand, when
 /// their contacts are compared. `progress` is told what is next.
 std::vector<Result> contest(const Work& work, const std::vector<Entrant>& entrants, std::uint32_t runs,
-                            const std::function<void(const std::string&)>& progress);
+                            const Progress& progress);
 
-/// Bytes the C library's allocator has handed out and not got back; 0 where it cannot be asked.
-std::uint64_t heap_in_use();
+/// For a person; `works` are notes.
+std::string table(const Json& works, std::span<const Result> results);
+Json json(const Result& result);
+/// Of the CSV: those of earlier results come first, so that both can be read alike.
+inline constexpr const char* result_columns =
+    "work,source,peer,what,steps,pair_steps,us_per_pair_step,wall_us_per_pair_step,times_ours,rays,contacts,"
+    "memory_bytes,memory_count,hash,times_iterative,times_predictive,times_certified,pace_median,pace_most,rays_cast,"
+    "walks,walks_lost,pairs_full,pair_bytes,missed,invented,other_triangle,wrong,rays_compared,contacts_compared";
+std::string chart(const Json& works, std::span<const Result> results);
 
 } // namespace raycontact::bench

@@ -115,11 +115,7 @@ private:
 } // namespace
 
 Entrant embree() {
-    Entrant entrant;
-    entrant.name = "embree";
-    entrant.what = "Embree " RTC_VERSION_STRING " rtcIntersect1, our rule vertex by vertex";
-    entrant.make = [](const Work& work) { return std::make_unique<Embree>(work); };
-    return entrant;
+    return entrant_of<Embree>("embree", "Embree " RTC_VERSION_STRING " rtcIntersect1, our rule vertex by vertex");
 }
 
 } // namespace raycontact::bench

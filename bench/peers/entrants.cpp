@@ -44,12 +44,8 @@ std::vector<Entrant> entrants() {
     };
 }
 
-std::uint32_t stride(const Entrant& entrant, const Work& work) {
-    return entrant.all_steps ? 1 : std::max(entrant.every, work.stride);
-}
-
 bool is_given(const Entrant& entrant, const Work& work, std::size_t step) {
-    const std::size_t apart = stride(entrant, work);
+    const std::size_t apart = entrant.all_steps ? 1 : std::max(entrant.every, work.stride);
     return step % apart == std::min(apart / 2, work.steps.size() - 1);
 }
 

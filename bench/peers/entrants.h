@@ -6,6 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace raycontact::bench {
@@ -13,9 +16,19 @@ namespace raycontact::bench {
 /// All there are, ours first.
 std::vector<Entrant> entrants();
 
-/// Which steps of a work an entrant is given: all, or one in the middle of every `stride`.
-std::uint32_t stride(const Entrant& entrant, const Work& work);
+/// Whether an entrant is given a step of a work: it gets all, or one in the middle of every `stride`.
 bool is_given(const Entrant& entrant, const Work& work, std::size_t step);
+
+/// One whose peer is a Made.
+template <class Made>
+Entrant entrant_of(std::string name, std::string what, bool rays_alone = false) {
+    Entrant entrant;
+    entrant.name = std::move(name);
+    entrant.what = std::move(what);
+    entrant.rays_alone = rays_alone;
+    entrant.make = [](const Work& work) { return std::make_unique<Made>(work); };
+    return entrant;
+}
 
 // One a file; those of libraries that CMake did not find are answered by entrants() itself.
 Entrant fcl();

@@ -61,11 +61,7 @@ private:
 } // namespace
 
 Entrant fcl() {
-    Entrant entrant;
-    entrant.name = "fcl";
-    entrant.what = "FCL " FCL_VERSION " BVHModel<OBBRSS>, double, contacts on";
-    entrant.make = [](const Work& work) { return std::make_unique<Fcl>(work); };
-    return entrant;
+    return entrant_of<Fcl>("fcl", "FCL " FCL_VERSION " BVHModel<OBBRSS>, double, contacts on");
 }
 
 } // namespace raycontact::bench

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/growth.h>
 
-#include <bench/peers/approaching.h>
-#include <bench/peers/rolling.h>
-#include <bench/peers/stopped.h>
-#include <bench/peers/work.h>
+#include <bench/peers/motion.h>
+#include <report/plot.h>
 #include <scenes/models/model.h>
 #include <scenes/peers/clock.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ double mean(const std::vector<double>& values) {
 struct Trial {
     Method method;
     std::unique_ptr<Scene> scene;
-    std::vector<double> pairs, rays, contacts, rays_cast, walks, narrow_ms;
+    std::vector<GrowthRow> steps;
 
     void run(const Work& work, bool first) {
         rest(*scene, work.steps.front());
@@ -48,15 +48,16 @@ struct Trial {
             const StepStats& stats = scene->stats();
             // The same work each time: what exceeds the least is other programs'.
             if (!first) {
-                narrow_ms[k - 1] = std::min(narrow_ms[k - 1], stats.narrow_ms);
+                steps[k - 1].narrow_ms = std::min(steps[k - 1].narrow_ms, stats.narrow_ms);
                 continue;
             }
-            pairs.push_back(static_cast<double>(stats.pairs));
-            rays.push_back(static_cast<double>(stats.details.rays));
-            contacts.push_back(static_cast<double>(stats.contacts));
-            rays_cast.push_back(static_cast<double>(stats.details.rays_cast));
-            walks.push_back(static_cast<double>(stats.details.walks));
-            narrow_ms.push_back(stats.narrow_ms);
+            GrowthRow& step = steps.emplace_back();
+            step.pairs = static_cast<double>(stats.pairs);
+            step.rays = static_cast<double>(stats.details.rays);
+            step.contacts = static_cast<double>(stats.contacts);
+            step.rays_cast = static_cast<double>(stats.details.rays_cast);
+            step.walks = static_cast<double>(stats.details.walks);
+            step.narrow_ms = stats.narrow_ms;
         }
     }
 };
@@ -65,30 +66,25 @@ void measure(const Work& work, const std::string& part, double size, int runs, c
              std::vector<GrowthRow>& rows) {
     std::vector<Trial> trials;
     for (const Method method : methods) {
-        Settings settings;
-        settings.features = Features::vertices;
-        settings.method = method;
+        Settings settings = one_thread(method);
         settings.execution.threads = options.threads;
-        trials.push_back({method, make_scene(work, settings), {}, {}, {}, {}, {}, {}});
+        trials.push_back({method, make_scene(work, settings), {}});
     }
     for (int run = 0; run < runs; ++run)
         for (Trial& trial : trials) trial.run(work, run == 0);
     const double moved = pace(work).median;
     for (const Trial& trial : trials) {
-        const auto middle = [&](const std::vector<double>& values) {
-            return part == "bodies" ? median(values) : mean(values);
-        };
         GrowthRow& row = rows.emplace_back();
         row.part = part;
         row.size = size;
         row.method = trial.method;
-        row.steps = static_cast<std::uint32_t>(trial.pairs.size());
-        row.pairs = middle(trial.pairs);
-        row.rays = middle(trial.rays);
-        row.contacts = middle(trial.contacts);
-        row.rays_cast = middle(trial.rays_cast);
-        row.walks = middle(trial.walks);
-        row.narrow_ms = middle(trial.narrow_ms);
+        row.steps = static_cast<std::uint32_t>(trial.steps.size());
+        for (const auto figure : {&GrowthRow::pairs, &GrowthRow::rays, &GrowthRow::contacts, &GrowthRow::rays_cast,
+                                  &GrowthRow::walks, &GrowthRow::narrow_ms}) {
+            std::vector<double> values;
+            for (const GrowthRow& step : trial.steps) values.push_back(step.*figure);
+            row.*figure = part == "bodies" ? median(values) : mean(values);
+        }
         row.us_per_pair = 1000 * row.narrow_ms / std::max(row.pairs, 1e-9);
         row.pace = moved;
     }
@@ -96,12 +92,8 @@ void measure(const Work& work, const std::string& part, double size, int runs, c
 
 /// The last fifth of an avalanche, and the step before it, in which every pair is new.
 Work end_of_avalanche(std::uint32_t bodies, const GrowthOptions& options) {
-    AvalancheWorkOptions how;
-    how.bodies = bodies;
-    how.steps = std::min(std::max(options.steps / 5, 1u) + 1, options.steps);
-    how.first = options.steps - how.steps;
-    how.stride = 1;
-    return avalanche_work(how);
+    const std::uint32_t steps = std::min(std::max(options.steps / 5, 1u) + 1, options.steps);
+    return avalanche_work({.bodies = bodies, .first = options.steps - steps, .steps = steps, .stride = 1});
 }
 
 /// Always the procedural sphere, which every count can have: the same surface, sampled more and more finely.
@@ -110,15 +102,11 @@ std::shared_ptr<const Shape> sphere(std::uint32_t triangles) {
 }
 
 Work rolling(std::uint32_t triangles, double displacement, const GrowthOptions& options) {
-    RollingOptions roll;
-    roll.pairs = options.pairs;
-    roll.contacts = options.contacts;
-    roll.displacement = displacement;
-    return rolling_pairs("rolling", sphere(triangles), "a bumpy sphere", roll);
+    return rolling_pairs("rolling", sphere(triangles), "a bumpy sphere",
+                         {.pairs = options.pairs, .contacts = options.contacts, .displacement = displacement});
 }
 
-void grow(const GrowthOptions& options, const std::function<void(const std::string&)>& progress,
-          std::vector<GrowthRow>& rows) {
+void grow(const GrowthOptions& options, const Progress& progress, std::vector<GrowthRow>& rows) {
     const auto wanted = [&](const char* part) {
         return options.parts.empty()
                || std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
@@ -126,9 +114,7 @@ void grow(const GrowthOptions& options, const std::function<void(const std::stri
     for (const std::uint32_t triangles : sizes) {
         if (triangles > options.triangles || !wanted("triangles")) break;
         progress("approaching meshes of " + std::to_string(triangles) + " triangles");
-        ApproachOptions approach;
-        approach.pairs = options.pairs;
-        approach.steps = 40;
+        const ApproachOptions approach{.pairs = options.pairs, .steps = 40};
         measure(approaching_pairs("triangles", sphere(triangles), "a bumpy sphere", approach), "triangles", triangles,
                 5, options, rows);
     }
@@ -153,20 +139,22 @@ void grow(const GrowthOptions& options, const std::function<void(const std::stri
     }
 }
 
-} // namespace
-
-std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress) {
-    std::vector<GrowthRow> rows;
-    try {
-        grow(options, progress, rows);
-    } catch (const Stopped&) {
-        // The sizes before count.
-    }
-    return rows;
-}
-
+/// Of the parts with contacts alike: what grows is the mesh alone.
 bool only_mesh_grows(const std::string& part) {
     return std::any_of(std::begin(paces), std::end(paces), [&](const auto& pace) { return part == pace.first; });
+}
+
+std::string unit_of(const std::string& part) {
+    if (only_mesh_grows(part)) return "triangles (" + part + ")";
+    return part;
+}
+
+} // namespace
+
+std::vector<GrowthRow> growth(const GrowthOptions& options, const Progress& progress) {
+    std::vector<GrowthRow> rows;
+    until_stopped([&] { grow(options, progress, rows); });
+    return rows;
 }
 
 std::vector<Slope> slopes(std::span<const GrowthRow> rows) {
@@ -194,6 +182,62 @@ std::vector<Slope> slopes(std::span<const GrowthRow> rows) {
         }
     }
     return all;
+}
+
+std::string table(std::span<const GrowthRow> rows) {
+    std::string text = fmt::format("  {:<13}{:>9} {:<11}{:>10}{:>12}{:>11}{:>11}{:>9}{:>12}{:>10}{:>8}\n", "", "", "",
+                                   "pairs", "rays", "cast", "contacts", "walks", "narrow ms", "us/pair", "pace %");
+    for (const GrowthRow& r : rows)
+        text +=
+            fmt::format("  {:<13}{:>9g} {:<11}{:>10.1f}{:>12.1f}{:>11.1f}{:>11.1f}{:>9.1f}{:>12.4f}{:>10.3f}{:>8.2f}\n",
+                        r.part, r.size, to_string(r.method), r.pairs, r.rays, r.rays_cast, r.contacts, r.walks,
+                        r.narrow_ms, r.us_per_pair, 100 * r.pace);
+    for (const Slope& s : slopes(rows))
+        text += fmt::format("us a pair grows as {} to the power of {:.2f} with {} ({:g} to {:g})\n", unit_of(s.part),
+                            s.power, to_string(s.method), s.from, s.to);
+    return text;
+}
+
+Json json(const GrowthRow& r) {
+    return {{"part", r.part},           {"size", r.size},           {"method", to_string(r.method)},
+            {"steps", r.steps},         {"pairs", r.pairs},         {"rays", r.rays},
+            {"contacts", r.contacts},   {"narrow_ms", r.narrow_ms}, {"us_per_pair", r.us_per_pair},
+            {"rays_cast", r.rays_cast}, {"walks", r.walks},         {"pace_median", r.pace}};
+}
+
+Json json(const Slope& s) {
+    return {{"part", s.part}, {"method", to_string(s.method)}, {"power", s.power}, {"from", s.from}, {"to", s.to}};
+}
+
+std::string chart(std::span<const GrowthRow> rows) {
+    struct Part {
+        const char *part, *title, *over;
+    };
+    std::vector<report::Plot> plots;
+    for (const Part& part :
+         {Part{"bodies", "Avalanche", "bodies"}, Part{"triangles", "Approaching pairs", "triangles a mesh"},
+          Part{"contacts", "Rolling pairs, contacts alike", "triangles a mesh"},
+          Part{"creeping", "Creeping pairs, contacts alike", "triangles a mesh"},
+          Part{"still", "The same pairs, still", "triangles a mesh"},
+          Part{"displacement", "Rolling pairs, contacts alike", "displacement a step, part of the size"}}) {
+        report::Plot& plot = plots.emplace_back();
+        plot.title = part.title;
+        plot.unit = "us a pair and step";
+        plot.over = part.over;
+        plot.logarithmic = true;
+        for (const Method method : methods) {
+            report::Line& line = plot.lines.emplace_back();
+            line.name = to_string(method);
+            for (const GrowthRow& r : rows)
+                if (r.part == part.part && r.method == method) line.points.emplace_back(r.size, r.us_per_pair);
+        }
+        report::Line& contacts = plot.lines.emplace_back();
+        contacts.name = "contacts a pair";
+        for (const GrowthRow& r : rows)
+            if (r.part == part.part && r.method == Method::standard)
+                contacts.points.emplace_back(r.size, r.contacts / std::max(r.pairs, 1e-9));
+    }
+    return report::plot_svg(plots);
 }
 
 } // namespace raycontact::bench

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/work.h>
+#include <bench/peers/results.h>
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,10 +42,7 @@ struct GrowthRow {
 };
 
 /// Where `progress` throws Stopped, the rows before.
-std::vector<GrowthRow> growth(const GrowthOptions& options, const std::function<void(const std::string&)>& progress);
-
-/// Of the parts with contacts alike: what grows is the mesh alone.
-bool only_mesh_grows(const std::string& part);
+std::vector<GrowthRow> growth(const GrowthOptions& options, const Progress& progress);
 
 /// The time a pair takes grows as its size to this power: the slope of a line through the logarithms, least squares.
 struct Slope {
@@ -57,5 +53,13 @@ struct Slope {
 };
 
 std::vector<Slope> slopes(std::span<const GrowthRow> rows);
+
+/// For a person.
+std::string table(std::span<const GrowthRow> rows);
+Json json(const GrowthRow& row);
+Json json(const Slope& slope);
+inline constexpr const char* growth_columns =
+    "part,size,steps,pairs,rays,contacts,narrow_ms,us_per_pair,method,rays_cast,walks,pace_median";
+std::string chart(std::span<const GrowthRow> rows);
 
 } // namespace raycontact::bench

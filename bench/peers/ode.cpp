@@ -87,11 +87,7 @@ private:
 } // namespace
 
 Entrant ode() {
-    Entrant entrant;
-    entrant.name = "ode";
-    entrant.what = "ODE " RAYCONTACT_ODE_VERSION " trimesh-trimesh (OPCODE), double, dCollide";
-    entrant.make = [](const Work& work) { return std::make_unique<Ode>(work); };
-    return entrant;
+    return entrant_of<Ode>("ode", "ODE " RAYCONTACT_ODE_VERSION " trimesh-trimesh (OPCODE), double, dCollide");
 }
 
 } // namespace raycontact::bench

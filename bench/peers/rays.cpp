@@ -150,30 +150,16 @@ private:
 } // namespace
 
 Entrant rays_of_ours() {
-    Entrant entrant;
-    entrant.name = "rays";
-    entrant.what = "RayContact, casting alone";
-    entrant.rays_alone = true;
-    entrant.make = [](const Work& work) { return std::make_unique<OurRays>(work); };
-    return entrant;
+    return entrant_of<OurRays>("rays", "RayContact, casting alone", true);
 }
 
 Entrant spared_rays_of_ours() {
-    Entrant entrant;
-    entrant.name = "grid-rays";
-    entrant.what = "RayContact, finding the vertices and casting what the outside grid leaves";
-    entrant.rays_alone = true;
-    entrant.make = [](const Work& work) { return std::make_unique<OurSparedRays>(work); };
-    return entrant;
+    return entrant_of<OurSparedRays>("grid-rays",
+                                     "RayContact, finding the vertices and casting what the outside grid leaves", true);
 }
 
 Entrant rays_of_embree() {
-    Entrant entrant;
-    entrant.name = "embree-rays";
-    entrant.what = "Embree " RTC_VERSION_STRING " rtcIntersect1, casting alone";
-    entrant.rays_alone = true;
-    entrant.make = [](const Work& work) { return std::make_unique<EmbreeRays>(work); };
-    return entrant;
+    return entrant_of<EmbreeRays>("embree-rays", "Embree " RTC_VERSION_STRING " rtcIntersect1, casting alone", true);
 }
 
 } // namespace raycontact::bench

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/seeds.h>
 
-#include <bench/peers/stopped.h>
-#include <bench/peers/sums.h>
+#include <report/plot.h>
 #include <scenes/avalanche.h>
 #include <scenes/peers/clock.h>
 #include <scenes/simulation.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
 namespace raycontact::bench {
-
-using peers::median;
 
 namespace {
 
@@ -50,8 +49,7 @@ std::vector<Watcher> watchers(std::uint64_t seed) {
     return all;
 }
 
-void sweep(const SeedOptions& options, const std::function<void(const std::string&)>& progress,
-           std::vector<SeedRow>& rows) {
+void sweep(const SeedOptions& options, const Progress& progress, std::vector<SeedRow>& rows) {
     for (std::uint32_t i = 0; i < options.count; ++i) {
         scenes::AvalancheOptions how;
         how.bodies = options.bodies;
@@ -91,15 +89,20 @@ void sweep(const SeedOptions& options, const std::function<void(const std::strin
     }
 }
 
+const char* setting_of(bool fixed) {
+    return fixed ? "fixed" : "auto";
+}
+
+std::string name_of(const SeedRow& row) {
+    return std::string(to_string(row.method)) + ", " + setting_of(row.fixed)
+           + (row.method == Method::predictive && !row.cast_lost_walks ? ", lost walks given up" : "");
+}
+
 } // namespace
 
-std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function<void(const std::string&)>& progress) {
+std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const Progress& progress) {
     std::vector<SeedRow> rows;
-    try {
-        sweep(options, progress, rows);
-    } catch (const Stopped&) {
-        // The seeds before count.
-    }
+    until_stopped([&] { sweep(options, progress, rows); });
     return rows;
 }
 
@@ -126,6 +129,55 @@ std::vector<Reduction> reductions(std::span<const SeedRow> rows) {
         }
     }
     return all;
+}
+
+std::string table(std::span<const SeedRow> rows) {
+    std::string text =
+        fmt::format("fixed: displacement threshold {:g} of the size, confidence {:g}; auto: as the library chooses\n",
+                    fixed_displacement, fixed_confidence);
+    text += fmt::format("  {:>6} {:<42}{:>9}{:>9}{:>9}{:>9}{:>14}{:>12}\n", "seed", "", "missed", "invented", "other",
+                        "wrong", "of rays", "of contacts");
+    for (const SeedRow& r : rows)
+        text += fmt::format("  {:>6} {:<42}{:>9}{:>9}{:>9}{:>9}{:>14}{:>12}\n", r.seed, name_of(r), r.wrong.missed,
+                            r.wrong.invented, r.wrong.other_triangle, r.wrong.total(), r.wrong.rays_compared,
+                            r.wrong.contacts_compared);
+    for (const Reduction& r : reductions(rows)) {
+        if (r.of_seeds.empty()) continue;
+        text += fmt::format("fewer wrong rays, 1 - predictive / iterative, {}, lost walks {}: median {:.3f}, {:.3f} to "
+                            "{:.3f} over {} seeds\n",
+                            setting_of(r.fixed), r.cast_lost_walks ? "cast" : "given up", r.median, r.least, r.most,
+                            r.of_seeds.size());
+    }
+    return text;
+}
+
+Json json(const SeedRow& r) {
+    Json row{{"seed", r.seed},
+             {"method", to_string(r.method)},
+             {"setting", setting_of(r.fixed)},
+             {"cast_lost_walks", r.cast_lost_walks},
+             {"steps", r.steps}};
+    put_counts(row, r.sums, r.wrong);
+    return row;
+}
+
+Json json(const Reduction& r) {
+    return {{"setting", setting_of(r.fixed)},
+            {"cast_lost_walks", r.cast_lost_walks},
+            {"of_seeds", r.of_seeds},
+            {"median", r.median},
+            {"least", r.least},
+            {"most", r.most}};
+}
+
+std::string chart(std::span<const SeedRow> rows) {
+    std::vector<report::BarGroup> groups;
+    for (const SeedRow& r : rows) {
+        const std::string name = "seed " + std::to_string(r.seed);
+        if (groups.empty() || groups.back().name != name) groups.push_back({name, {}});
+        groups.back().bars.emplace_back(name_of(r), 1e4 * r.wrong.percent());
+    }
+    return report::bar_chart("Wrong rays over the avalanche", "a million rays, logarithmic; none: no bar", groups);
 }
 
 } // namespace raycontact::bench

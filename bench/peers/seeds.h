@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/scene.h>
-#include <recording/replay.h>
+#include <bench/peers/results.h>
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,7 +34,7 @@ struct SeedOptions {
 
 /// Every avalanche is simulated with the contacts of `certified`; the methods watch it.
 /// Where `progress` throws Stopped, the seeds before.
-std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const std::function<void(const std::string&)>& progress);
+std::vector<SeedRow> sweep_seeds(const SeedOptions& options, const Progress& progress);
 
 /// How much fewer rays `predictive` got wrong than `iterative`: 1 - predictive / iterative.
 struct Reduction {
@@ -46,5 +44,13 @@ struct Reduction {
 };
 
 std::vector<Reduction> reductions(std::span<const SeedRow> rows);
+
+/// For a person.
+std::string table(std::span<const SeedRow> rows);
+Json json(const SeedRow& row);
+Json json(const Reduction& reduction);
+/// Of the CSV, before count_columns.
+inline constexpr const char* seed_columns = "seed,method,setting,cast_lost_walks,steps";
+std::string chart(std::span<const SeedRow> rows);
 
 } // namespace raycontact::bench

@@ -2,8 +2,10 @@
 #include <bench/peers/thresholds.h>
 
 #include <bench/peers/reference.h>
-#include <bench/peers/sums.h>
+#include <report/plot.h>
 #include <scenes/peers/clock.h>
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -11,6 +13,7 @@ namespace raycontact::bench {
 
 namespace {
 
+constexpr Method swept[] = {Method::iterative, Method::predictive, Method::certified};
 constexpr double least = 1e-4, most = 1e-1; // of the body's size
 
 struct Contender {
@@ -58,17 +61,27 @@ Contender contender(const Work& work, Method method, std::optional<double> fract
     return one;
 }
 
+std::string fraction_of(const ThresholdRow& row) {
+    if (row.method == Method::standard) return "none";
+    return row.fraction ? fmt::format("{:.3g}", *row.fraction) : "auto";
+}
+
+std::string say(const ThresholdRow* row) {
+    if (!row) return "none";
+    return fmt::format("{} with {:.1f} us a step and {} wrong", fraction_of(*row), row->us, row->wrong.total());
+}
+
 } // namespace
 
 std::vector<ThresholdRow> sweep_thresholds(const Work& work, const ThresholdOptions& options,
-                                           const std::function<void(const std::string&)>& progress) {
+                                           const Progress& progress) {
     if (work.steps.empty()) return {};
     progress(work.name + ": what standard finds");
     Reference reference(work);
     const double size = body_size(work);
     std::vector<Contender> all;
     all.push_back(contender(work, Method::standard, {}, size));
-    for (const Method method : {Method::iterative, Method::predictive, Method::certified}) {
+    for (const Method method : swept) {
         for (std::uint32_t i = 0; i < options.values; ++i) {
             const double part = options.values > 1 ? i / (options.values - 1.0) : 0.5;
             all.push_back(contender(work, method, least * std::pow(most / least, part), size));
@@ -120,6 +133,101 @@ std::vector<Verdict> verdicts(std::span<const ThresholdRow> rows) {
         if (verdict.fastest) all.push_back(verdict);
     }
     return all;
+}
+
+std::string table(const Json& works, std::span<const ThresholdRow> rows) {
+    std::string text;
+    for (const Json& note : works) {
+        const auto work = note["work"].get<std::string>();
+        text += heading_of(note);
+        text += fmt::format("  {:<12}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n", "", "threshold",
+                            "us/step", "full tests", "cast", "walks", "lost", "missed", "invented", "other", "wrong");
+        for (const ThresholdRow& r : rows) {
+            if (r.work != work) continue;
+            text += fmt::format("  {:<12}{:>10}{:>12.1f}{:>12}{:>12}{:>12}{:>12} | {:>9}{:>9}{:>9}{:>9}\n",
+                                to_string(r.method), fraction_of(r), r.us, r.sums.details.pairs_full,
+                                r.sums.details.rays_cast, r.sums.details.walks, r.sums.details.walks_lost,
+                                r.wrong.missed, r.wrong.invented, r.wrong.other_triangle, r.wrong.total());
+        }
+        for (const ThresholdRow& r : rows)
+            if (r.work == work && r.method == Method::standard)
+                text += fmt::format("  wrong of {} rays and {} contacts; thresholds in parts of {:.3g} m\n",
+                                    r.wrong.rays_compared, r.wrong.contacts_compared, r.size);
+        for (const Verdict& v : verdicts(rows)) {
+            if (v.work != work) continue;
+            text += fmt::format(
+                "  {}: {}\n    fastest fixed: {} (auto takes {:.2f} of its time)\n    fastest fixed with no more "
+                "wrong: {}{}\n    fewest wrong: {} (auto takes {:.2f} of its time)\n",
+                to_string(v.method), say(v.chosen), say(v.fastest), v.chosen->us / v.fastest->us, say(v.as_right),
+                v.as_right ? fmt::format(" (auto takes {:.2f} of its time)", v.chosen->us / v.as_right->us) : "",
+                say(v.rightest), v.chosen->us / v.rightest->us);
+        }
+    }
+    return text + "\nTimes are of one processor, medians of the runs; counts are over all steps.\n";
+}
+
+Json json(const ThresholdRow& r) {
+    Json row{{"work", r.work},
+             {"method", to_string(r.method)},
+             {"threshold", fraction_of(r)},
+             {"size", r.size},
+             {"size_m", r.size},
+             {"steps", r.steps},
+             {"pair_steps", r.pair_steps},
+             {"us_per_step", r.us},
+             {"wall_us_per_step", r.wall_us}};
+    put_counts(row, r.sums, r.wrong);
+    return row;
+}
+
+Json json(const Verdict& v) {
+    return {{"work", v.work},
+            {"method", to_string(v.method)},
+            {"auto_us", v.chosen->us},
+            {"auto_wrong", v.chosen->wrong.total()},
+            {"fastest", fraction_of(*v.fastest)},
+            {"fastest_us", v.fastest->us},
+            {"fastest_wrong", v.fastest->wrong.total()},
+            {"auto_over_fastest", v.chosen->us / v.fastest->us},
+            {"as_right", v.as_right ? Json(fraction_of(*v.as_right)) : Json()},
+            {"as_right_us", v.as_right ? Json(v.as_right->us) : Json()},
+            {"rightest", fraction_of(*v.rightest)},
+            {"rightest_us", v.rightest->us},
+            {"rightest_wrong", v.rightest->wrong.total()}};
+}
+
+std::string chart(const Json& works, std::span<const ThresholdRow> rows) {
+    std::vector<report::Plot> plots;
+    for (const Json& note : works) {
+        const auto work = note["work"].get<std::string>();
+        const std::string over = "displacement threshold, part of the size";
+        report::Plot time{work, "us a step", "Dashed: with thresholds that the method chose.", {}, over, true};
+        report::Plot wrong{work, "wrong rays a million", "Where none was wrong there is no point.", {}, over, true};
+        for (std::size_t m = 0; m < std::size(swept); ++m) {
+            report::Line line_time{std::string(to_string(swept[m])), {}, m}, line_wrong = line_time;
+            for (const ThresholdRow& row : rows) {
+                if (row.work != work || row.method != swept[m] || !row.fraction) continue;
+                line_time.points.emplace_back(*row.fraction, row.us);
+                line_wrong.points.emplace_back(*row.fraction, 1e4 * row.wrong.percent());
+            }
+            const auto ends = [&](double value) {
+                report::Line line{line_time.name + ", chosen", {}, m, true};
+                if (line_time.points.empty()) return line;
+                line.points = {{line_time.points.front().first, value}, {line_time.points.back().first, value}};
+                return line;
+            };
+            for (const ThresholdRow& row : rows) {
+                if (row.work != work || row.method != swept[m] || row.fraction) continue;
+                time.lines.push_back(line_time);
+                time.lines.push_back(ends(row.us));
+                wrong.lines.push_back(line_wrong);
+                wrong.lines.push_back(ends(1e4 * row.wrong.percent()));
+            }
+        }
+        plots.push_back(time);
+        plots.push_back(wrong);
+    }
+    return report::plot_svg(plots);
 }
 
 } // namespace raycontact::bench

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bench/peers/work.h>
-#include <recording/replay.h>
+#include <bench/peers/results.h>
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,8 +30,7 @@ struct ThresholdOptions {
 };
 
 /// `standard`; then iterative, predictive and certified at every value and as the library chooses.
-std::vector<ThresholdRow> sweep_thresholds(const Work& work, const ThresholdOptions& options,
-                                           const std::function<void(const std::string&)>& progress);
+std::vector<ThresholdRow> sweep_thresholds(const Work& work, const ThresholdOptions& options, const Progress& progress);
 
 /// How the library's choice compares with a threshold fixed for the whole work, known only afterwards.
 struct Verdict {
@@ -46,5 +43,14 @@ struct Verdict {
 };
 
 std::vector<Verdict> verdicts(std::span<const ThresholdRow> rows);
+
+/// For a person; `works` are notes.
+std::string table(const Json& works, std::span<const ThresholdRow> rows);
+Json json(const ThresholdRow& row);
+Json json(const Verdict& verdict);
+/// Of the CSV, before count_columns.
+inline constexpr const char* threshold_columns =
+    "work,source,pace_median,pace_most,size_m,method,threshold,steps,pair_steps,us_per_step,wall_us_per_step";
+std::string chart(const Json& works, std::span<const ThresholdRow> rows);
 
 } // namespace raycontact::bench

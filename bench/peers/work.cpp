@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bench/peers/work.h>
 
-#include <bench/peers/turns.h>
 #include <raycontact/error.h>
 #include <recording/reader.h>
 #include <scenes/avalanche.h>

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The question that everyone is asked: is it the same each time, and does it hold what it promises?
-#include <bench/peers/approaching.h>
 #include <bench/peers/contest.h>
 #include <bench/peers/growth.h>
+#include <bench/peers/motion.h>
 #include <bench/peers/reference.h>
-#include <bench/peers/rolling.h>
 #include <bench/peers/seeds.h>
-#include <bench/peers/swarm.h>
 #include <bench/peers/thresholds.h>
 #include <scenes/models/model.h>
 

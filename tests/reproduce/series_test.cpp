@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <reproduce/pair_lengths.h>
 #include <reproduce/phases.h>
-#include <reproduce/rank_correlation.h>
 #include <reproduce/series.h>
 
 #include <gtest/gtest.h>

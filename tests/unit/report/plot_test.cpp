@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <report/bars.h>
 #include <report/plot.h>
 #include <report/svg.h>
 
