@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified method (docs/internals/certified.md): each pair has candidates, the vertex blocks near its target. A
 // block is tested only once the pair has moved as far as the block's nearest vertex was from touching. The target's
-// clearance grid then tells which of its vertices could be in contact, and until when the others are valid. hold.h
+// clearance grid then tells which of its vertices could be in contact, and until when the others cannot be. hold.h
 // tests the bounds.
 
 #define DUE_NOW (-1.0f)            // CandidateBlock.valid_until of a block to be tested in the next step

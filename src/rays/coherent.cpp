@@ -234,7 +234,7 @@ void CoherentRays::follow(const Update& update, RayBatch& batch) {
         run.operator()<KernelId::follow_rays_bvh>();
 }
 
-// The cached of the next step, and what each pair's rays came to.
+// The cached rays of the next step, and what each pair's rays came to.
 void CoherentRays::list_cached_rays(const Update& update, RayBatch& batch) {
     Device& device = update.device;
     host_ranges_.assign(2 * directed_.size(), 0);

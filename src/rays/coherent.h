@@ -68,7 +68,7 @@ private:
         double slack = -1; ///< metres that the pair may move, by a cheap bound, before the exact one is asked
         Kept kept[2];
     };
-    struct Moving { ///< a pair between two devices; its cached follow
+    struct Moving { ///< a pair between two devices; its cached rays follow
         BodySlot first, second;
         PairState state;
         Hot hot;

@@ -42,8 +42,8 @@ struct Shape::Data : TriangleTree {
     /// Per triangle and edge of which it is the lowest triangle: how deep an overlap can be that the edge alone
     /// crosses, metres (docs/internals/edges.md).
     std::vector<std::array<float, 3>> hides;
-    std::vector<Vec3>
-        perturbations; ///< per vertex, how the edges' rule moves it, in perturbations (docs/internals/edges.md)
+    std::vector<Vec3> perturbations; ///< per vertex, how the edges' rule moves it, in units of 1e-7 of the size
+                                     ///< (docs/internals/edges.md)
     std::vector<std::uint32_t> vertex_triangle;    ///< the lowest triangle of each vertex
     std::vector<std::uint32_t> component_vertices; ///< the lowest vertex of each connected component
     Vec3 box_min, box_max; ///< body frame; header.low and high are the same box about centre, exactly that of points
