@@ -154,6 +154,7 @@ void measure(Replayer& replayer, Timings& timings, const Way& way, const DeviceO
         }));
     for (std::size_t i = 0; i < std::size(device_figures); ++i) {
         std::vector<double> values;
+        values.reserve(figures.size());
         for (const StepFigures& one : figures) values.push_back(one[i]);
         result.*device_figures[i].second = median(values);
     }
