@@ -15,7 +15,7 @@ std::string field(const Json& value) {
     if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
     if (value.is_number_float()) return fmt::format("{:.9g}", value.get<double>());
     if (!value.is_string()) return value.dump();
-    const auto text = value.get<std::string>();
+    auto text = value.get<std::string>();
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
