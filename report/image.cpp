@@ -19,7 +19,7 @@ void append(void* text, void* data, int size) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
 
-constexpr float quality = 62;
+constexpr float film_quality = 62;
 constexpr int effort = 2; // of 0 to 6: a frame takes some milliseconds
 
 struct Picture : WebPPicture {
@@ -72,7 +72,7 @@ std::string encode_webp(const std::vector<Image>& frames, int milliseconds_a_fra
         WebPAnimEncoderNew(width, height, &options), WebPAnimEncoderDelete);
     WebPConfig config;
     if (!encoder || WebPConfigInit(&config) == 0) throw std::runtime_error("film: libwebp does not start");
-    config.quality = quality;
+    config.quality = film_quality;
     config.method = effort;
     int time = 0;
     const auto add = [&](WebPPicture* picture) {
