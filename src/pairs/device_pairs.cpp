@@ -2,7 +2,6 @@
 #include "pairs/device_pairs.h"
 
 #include "device/launch.h"
-#include "free_all.h"
 
 #include <algorithm>
 #include <array>

@@ -11,6 +11,11 @@
 
 namespace raycontact {
 
+/// Whether so many of `slots` are in use that those who number by them should begin anew.
+inline bool is_mostly_empty(std::size_t slots, std::size_t used) {
+    return slots > 4 * used + 1024;
+}
+
 /// The open pairs. Each keeps its slot while it is open. Slots are reused, so memory follows the most pairs ever open
 /// at once.
 class PairSlots {
