@@ -14,8 +14,10 @@
 #include <raycontact/error.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <new>
 #include <unordered_map>
 
@@ -182,11 +184,13 @@ struct Scene::State {
     /// A step that throws, but for bad input, has no contacts.
     template <typename Work>
     void all_or_nothing(Work&& work) {
+        if (contacts.use_count() > 1) contacts = std::make_shared<std::vector<Contact>>(); // somebody holds the last ones
+        std::atomic_thread_fence(std::memory_order_acquire); // after what another thread read before it let go
         try {
             work();
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
-            contacts.clear();
+            contacts->clear();
             throw;
         }
     }
@@ -198,7 +202,7 @@ struct Scene::State {
 
     void find_contacts(double broad_ms) {
         place_bodies();
-        narrow.step(bodies, slot_pairs, contacts, stats);
+        narrow.step(bodies, slot_pairs, *contacts, stats);
         stats.broad_ms = broad_ms;
         if (!next.empty()) next_poses.step_done(bodies);
         slots.step_done();
@@ -232,7 +236,7 @@ struct Scene::State {
     std::vector<WorldBox> boxes;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
-    std::vector<Contact> contacts;
+    std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
@@ -382,7 +386,7 @@ std::span<const Contact> Scene::find_contacts() {
         state_->call_threads(state_->pairs.size());
         state_->find_contacts(broad.count());
     });
-    return state_->contacts;
+    return *state_->contacts;
 }
 
 std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
@@ -393,18 +397,21 @@ std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
         state_->look_ahead();
         state_->find_contacts(0);
     });
-    return state_->contacts;
+    return *state_->contacts;
 }
 
 std::span<const Contact> Scene::contacts() const {
+    return *state_->contacts;
+}
+std::shared_ptr<const std::vector<Contact>> Scene::shared_contacts() const {
     return state_->contacts;
 }
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
     const SlotPair wanted = std::minmax({a.slot, b.slot});
-    const auto first = std::ranges::lower_bound(state_->contacts, wanted, {}, pair_of);
-    return {first, std::ranges::upper_bound(state_->contacts, wanted, {}, pair_of)};
+    const auto first = std::ranges::lower_bound(*state_->contacts, wanted, {}, pair_of);
+    return {first, std::ranges::upper_bound(*state_->contacts, wanted, {}, pair_of)};
 }
 std::span<const LostContact> Scene::lost_contacts() const {
     return state_->narrow.lost_contacts();
@@ -423,7 +430,7 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
 }
 std::vector<Prediction> Scene::predictions() const {
     return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies,
-                            {{state_->contacts, state_->narrow.left_out()}});
+                            {{*state_->contacts, state_->narrow.left_out()}});
 }
 
 } // namespace raycontact

@@ -101,6 +101,8 @@ public:
 
     /// Of the last step; sorted by the slots of both bodies, then by key(). Valid until the next step.
     std::span<const Contact> contacts() const;
+    /// The same list for as long as it is held, by any thread: later steps write into another one.
+    std::shared_ptr<const std::vector<Contact>> shared_contacts() const;
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Collision detection between moving, concave triangle meshes, by casting rays.
+
+    import raycontact as rc
+    part = rc.Shape("part.stl")
+    print(rc.collide(part, part, pose_b=pose))
+
+`Mesh` and `Shape` hold meshes; `collide`, `intersects`, `distance`, `closest_point`, `raycast` and `contains` answer
+questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4 matrices, normals from a
+to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueError.
+"""
+
+from . import _core
+from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
+from .collision import CollisionManager
+from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
+from .mesh import AssemblyPart, Mesh, load_assembly
+from .poses import nearest_rigid, pose, pose_from_quaternion
+from .queries import (
+    ClosestPoint, Distance, RayHit, closest_point, collide, common_point, contains, distance, intersects, raycast,
+    raycast_any,
+)  # fmt: skip
+from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Recorder, Scene
+from .shape import Mass, Shape
+
+__version__: str = _core.version
+
+__all__ = [
+    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "ClosestPoint", "CollisionManager", "Contacts",
+    "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "PairContacts",
+    "RayHit", "Recorder", "Scene", "Shape", "StepStats", "closest_point", "collide", "common_point", "contains",
+    "distance", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
+    "raycast", "raycast_any",
+]  # fmt: skip

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What users give, as the arrays that the C++ half takes; what is wrong with it, in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._core import InputError
+
+
+def as_numbers(value: Any, what: str, kinds: str = "fiu") -> np.ndarray:
+    """A NumPy array of anything that is one: lists, arrays, tensors of other libraries in the host's memory."""
+    try:
+        if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
+            array = np.from_dlpack(value)
+        else:
+            array = np.asarray(value)
+    except (TypeError, ValueError, RuntimeError, BufferError) as error:
+        raise InputError(f"{what}: is no array in the host's memory: {error}") from None
+    if array.size == 0 and array.dtype.kind == "f":
+        return array  # of an empty list NumPy makes floats
+    if array.dtype.kind not in kinds:
+        wanted = "whole numbers" if "f" not in kinds else "numbers"
+        raise InputError(f"{what}: holds {array.dtype.name}, not {wanted}")
+    return array
+
+
+def as_points(value: Any, what: str) -> tuple[np.ndarray, bool]:
+    """(n, 3) float64, and whether a single (3,) was given."""
+    array = as_numbers(value, what)
+    if array.ndim in (1, 2) and array.shape[-1] == 3:
+        return np.ascontiguousarray(array.reshape(-1, 3), np.float64), array.ndim == 1
+    if array.size == 0 and array.ndim == 1:
+        return np.empty((0, 3)), False
+    raise InputError(f"{what}: has shape {array.shape}; give (3,) or (n, 3)")
+
+
+def as_poses(value: Any, what: str) -> tuple[np.ndarray, bool]:
+    """(n, 4, 4) float64, and whether a single (4, 4) was given. None is the identity."""
+    if value is None:
+        return np.eye(4)[None], True
+    array = as_numbers(value, what)
+    if array.ndim not in (2, 3) or array.shape[-2:] != (4, 4):
+        if array.size == 0 and array.ndim == 1:
+            return np.empty((0, 4, 4)), False
+        raise InputError(f"{what}: has shape {array.shape}; give (4, 4) or (n, 4, 4)")
+    poses = np.ascontiguousarray(array.reshape(-1, 4, 4), np.float64)
+    wrong = ~(np.abs(poses[:, 3] - (0, 0, 0, 1)) <= 1e-4).all(axis=1)
+    if wrong.any():
+        where = "" if array.ndim == 2 else f"[{int(np.argmax(wrong))}]"
+        raise InputError(f"{what}{where}: the last row is not 0 0 0 1; matrices have the translation in the last column")
+    return poses, array.ndim == 2
+
+
+def as_ids(value: Any, what: str) -> tuple[np.ndarray, bool]:
+    """(n,) int64, and whether a single id was given."""
+    array = as_numbers(value, what, "iu")
+    if array.ndim > 1:
+        raise InputError(f"{what}: has shape {array.shape}; give one id or (n,)")
+    return np.ascontiguousarray(array.reshape(-1), np.int64), array.ndim == 0
+
+
+def as_pairs(value: Any, what: str) -> np.ndarray:
+    """(n, 2) int64."""
+    array = as_numbers(value, what, "iu")
+    if array.size == 0:
+        return np.empty((0, 2), np.int64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise InputError(f"{what}: has shape {array.shape}; give (n, 2)")
+    return np.ascontiguousarray(array, np.int64)
+
+
+def as_length(value: Any, what: str) -> float:
+    """A number of metres."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{what}: {value!r} is no number") from None
+
+
+def as_count(value: Any, what: str) -> int:
+    """A whole number that 32 bits hold."""
+    try:
+        count = value.__index__()
+    except AttributeError:
+        raise InputError(f"{what}: {value!r} is no whole number") from None
+    if not 0 <= count < 2**32:
+        raise InputError(f"{what}: {count} is not in 0 to {2**32 - 1}")
+    return count
+
+
+def one_of(columns: tuple, is_one: bool) -> tuple:
+    """Of a single item what it holds, not arrays over one item."""
+    if not is_one:
+        return columns
+    return tuple(column[0] if column.ndim > 1 else column[0].item() for column in columns)

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Triangle meshes, from files, arrays or other libraries."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import as_length, as_numbers
+from ._core import InputError, MeshReport
+
+MeshLike = Any
+"""A Mesh, the path of a file, or an object with `vertices` and `faces`, as those of trimesh have."""
+
+
+class Mesh:
+    """Triangles as a file or arrays give them: nothing is welded, nothing repaired (that is `Shape`).
+
+    `Mesh("part.stl")` reads OBJ, STL, PLY, OFF, glTF or GLB, told by the ending. `Mesh(vertices, triangles)` takes
+    arrays: (n, 3) numbers, metres, body frame; (m, 3) whole numbers from 0, counter-clockwise seen from outside.
+    `Mesh(mesh)` takes an object with `vertices` and `faces`, such as a `trimesh.Trimesh`. What is given is copied.
+
+    scale: what coordinates are multiplied by; 0.001 for a file in millimetres.
+    name: for messages; that of the file where one is read.
+
+    Raises InputError (a ValueError) naming the file or the element to blame: a file that is missing, unreadable or
+    damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes.
+    """
+
+    def __init__(
+        self,
+        source: Union[str, os.PathLike[str], MeshLike, np.ndarray],
+        triangles: Optional[np.ndarray] = None,
+        *,
+        scale: float = 1.0,
+        name: Optional[str] = None,
+    ) -> None:
+        if isinstance(source, (str, os.PathLike)):
+            if triangles is not None:
+                raise InputError("Mesh: give a file, or vertices and triangles")
+            self._core = _core.load_mesh(os.fspath(source))
+            if scale != 1.0 or name is not None:
+                self._core = _scaled(self._core, scale, name)
+            return
+        if isinstance(source, Mesh) and triangles is None:
+            self._core = _scaled(source._core, scale, name)
+            return
+        if triangles is None:
+            if not (hasattr(source, "vertices") and hasattr(source, "faces")):
+                raise InputError(
+                    f"Mesh: {type(source).__name__} is no file name and has no vertices and faces; "
+                    "give a file, vertices and triangles, or such an object"
+                )
+            source, triangles = source.vertices, source.faces
+        self._core = _make(source, triangles, scale, name or "")
+
+    @classmethod
+    def from_bytes(cls, data: bytes, format: str, name: str = "") -> "Mesh":
+        """A mesh from the bytes of a whole file. format: "obj", "stl", "ply", "off", "gltf" or "glb".
+
+        Raises InputError as for a file, and for a glTF whose buffers are files of their own.
+        """
+        return cls._wrap(_core.parse_mesh(bytes(data), format, name))
+
+    @classmethod
+    def _wrap(cls, core: Any) -> "Mesh":
+        mesh = cls.__new__(cls)
+        mesh._core = core
+        return mesh
+
+    @property
+    def name(self) -> str:
+        """For messages."""
+        return self._core.name
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3) float64, metres, body frame. Shows the mesh's own memory; not writable."""
+        return self._core.vertices
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(m, 3) uint32: rows of `vertices`, counter-clockwise seen from outside. Not writable."""
+        return self._core.triangles
+
+    faces = triangles
+    """The same, by the name that other libraries use."""
+
+    def __repr__(self) -> str:
+        return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
+
+
+def _make(vertices: Any, triangles: Any, scale: float, name: str) -> Any:
+    points = as_numbers(vertices, "vertices")
+    corners = as_numbers(triangles, "triangles", "iu")
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InputError(f"vertices: has shape {points.shape}; give (n, 3)")
+    if corners.ndim != 2 or corners.shape[1] != 3:
+        raise InputError(f"triangles: has shape {corners.shape}; give (m, 3); polygons must be split")
+    if corners.size and (corners.min() < 0 or corners.max() > 0xFFFFFFFF):
+        row = int(np.argmax(((corners < 0) | (corners > 0xFFFFFFFF)).any(axis=1)))
+        raise InputError(f"triangle {row}: has the vertex {corners[row].tolist()}; indices begin at 0")
+    if scale != 1.0:
+        points = points * as_length(scale, "scale")
+    return _core.make_mesh(np.ascontiguousarray(points, np.float64), np.ascontiguousarray(corners, np.uint32), name)
+
+
+def _scaled(core: Any, scale: float, name: Optional[str]) -> Any:
+    return _make(core.vertices, core.triangles, scale, core.name if name is None else name)
+
+
+class AssemblyPart(NamedTuple):
+    """A part of an assembly."""
+
+    name: str
+    """Of its node, "nodes[3]" where it has none; or of its file."""
+    mesh: Mesh
+    """Metres, in the part's own frame, scaled as the file scales it. Parts that are one mesh in several places share it."""
+    pose: np.ndarray
+    """(4, 4), from the part's frame to that of the assembly."""
+
+
+def load_assembly(file: Union[str, os.PathLike[str]]) -> list[AssemblyPart]:
+    """Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh.
+
+    Raises InputError as `Mesh` does for a file.
+    """
+    shared: dict[int, Mesh] = {}
+    parts = []
+    for name, core, pose in _core.load_assembly(os.fspath(file)):
+        mesh = shared.setdefault(id(core), Mesh._wrap(core))  # the list keeps each core, so ids stay theirs
+        parts.append(AssemblyPart(name, mesh, pose[0]))
+    return parts
+
+
+__all__ = ["AssemblyPart", "Mesh", "MeshLike", "MeshReport", "load_assembly"]

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rigid poses as 4 x 4 matrices: the translation, metres, in the last column."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from . import _core
+from ._arrays import as_numbers, as_poses
+from ._core import InputError
+
+
+def pose(translation: np.ndarray = (0, 0, 0), rotation: Optional[np.ndarray] = None) -> np.ndarray:
+    """(..., 4, 4) float64 from translations (..., 3) and rotations (..., 3, 3), which broadcast; no rotation is none."""
+    t = as_numbers(translation, "translation")
+    r = np.eye(3) if rotation is None else as_numbers(rotation, "rotation")
+    if t.shape[-1:] != (3,):
+        raise InputError(f"translation: has shape {t.shape}; give (3,) or (n, 3)")
+    if r.shape[-2:] != (3, 3):
+        raise InputError(f"rotation: has shape {r.shape}; give (3, 3) or (n, 3, 3)")
+    try:
+        matrices = np.zeros((*np.broadcast_shapes(t.shape[:-1], r.shape[:-2]), 4, 4))
+    except ValueError:
+        raise InputError(f"translations {t.shape} and rotations {r.shape} do not fit; give as many, or one") from None
+    matrices[..., :3, :3] = r
+    matrices[..., :3, 3] = t
+    matrices[..., 3, 3] = 1
+    return matrices
+
+
+def pose_from_quaternion(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
+    """(..., 4, 4) float64 from translations (..., 3) and quaternions (..., 4), w x y z, of any length but 0."""
+    q = np.asarray(as_numbers(quaternion, "quaternion"), np.float64)
+    if q.shape[-1:] != (4,):
+        raise InputError(f"quaternion: has shape {q.shape}; give (4,) or (n, 4), w x y z")
+    size = np.linalg.norm(q, axis=-1, keepdims=True)
+    if not (np.isfinite(size).all() and (size > 0).all()):
+        raise InputError("quaternion: one is zero or not finite")
+    w, x, y, z = np.moveaxis(q / size, -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return pose(translation, np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
+
+
+def nearest_rigid(poses: np.ndarray) -> np.ndarray:
+    """The rigid poses nearest to (4, 4) or (n, 4, 4) that are not: drifted, scaled or sheared (polar decomposition).
+
+    Raises InputError for one that is not finite, mirrored or flat.
+    """
+    matrices, one = as_poses(poses, "poses")
+    rigid = _core.nearest_rigid(matrices)
+    return rigid[0] if one else rigid
+
+
+__all__ = ["nearest_rigid", "pose", "pose_from_quaternion"]

@@ -1,0 +1,336 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies with shapes and poses, stepped in time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import as_count, as_ids, as_length, as_pairs, as_points, as_poses, one_of
+from ._core import InputError, StepStats
+from .contacts import Contacts
+from .shape import Shape, ShapeLike, as_shape, as_shapes
+
+_LENGTHS = ("speculative_margin", "displacement_threshold", "confidence", "culling_distance", "distance_extension")
+_COUNTS = ("max_contacts_per_pair", "max_contacts", "threads", "max_iterations")
+_SWITCHES = ("inexact", "cast_lost_walks", "skip_outside")
+_MAY_BE_NONE = ("speculative_margin", "displacement_threshold", "culling_distance", "distance_extension")
+
+
+def as_settings(words: dict[str, Any]) -> dict[str, Any]:
+    """Settings with the types that the C++ half takes; words of choices it checks itself."""
+    made: dict[str, Any] = {}
+    for key, value in words.items():
+        if value is None and key in _MAY_BE_NONE:
+            made[key] = None
+        elif key in _LENGTHS:
+            made[key] = as_length(value, key)
+        elif key in _COUNTS:
+            made[key] = as_count(value, key)
+        elif key in _SWITCHES or key == "speculative":
+            if not isinstance(value, (bool, np.bool_)):
+                raise InputError(f"{key}: {value!r} is neither True nor False")
+            made[key] = bool(value)
+        elif not isinstance(value, str):
+            raise InputError(f"{key}: {value!r} is no word")
+        else:
+            made[key] = value
+    return made
+
+
+class LostContacts(NamedTuple):
+    """Contacts that touched in the last step but one and do not in the last."""
+
+    bodies: np.ndarray
+    """(n, 2) int64: ids; these bodies may have been removed since."""
+    key: np.ndarray
+    """(n,) uint64: Contacts.key of each."""
+
+
+class BodyRayHits(NamedTuple):
+    """Where rays meet the bodies of a scene first. A ray without a hit has distance inf, NaN and -1."""
+
+    distance: np.ndarray
+    """(n,) float64, metres, whatever the direction's length."""
+    point: np.ndarray
+    """(n, 3) float64, metres, world frame."""
+    normal: np.ndarray
+    """(n, 3) float64, unit, world frame: of the face as its shape winds it."""
+    triangle: np.ndarray
+    """(n,) int64: index in the mesh."""
+    body: np.ndarray
+    """(n,) int64: id."""
+
+
+class BodyClosestPoints(NamedTuple):
+    """Points of all surfaces that are nearest to others. Where none is near enough: inf, NaN and -1."""
+
+    distance: np.ndarray
+    """(n,) float64, metres."""
+    point: np.ndarray
+    """(n, 3) float64, metres, world frame."""
+    triangle: np.ndarray
+    """(n,) int64: index in the mesh."""
+    body: np.ndarray
+    """(n,) int64: id."""
+
+
+class Scene:
+    """Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing.
+
+    A step is one call of `find_contacts`. Poses are rigid 4 x 4 matrices from the body's frame to the world, metres,
+    the translation in the last column; ids are whole numbers that count from 0 as long as nothing is removed. One scene
+    is used by one thread at a time; a second one gets a RuntimeError. Computing does not hold the GIL.
+
+    What is found:
+        method: "certified" (skips what cannot touch yet; contacts as "standard"), "standard" (every ray, every step),
+            "iterative", "predictive" (Lehericey et al. 2013).
+        direction: what normals and depths are made of: "reprojected" (the face that was hit), "refined" (the nearest
+            way out), "ray" or "weighted" (along the ray, Hermann et al. 2008).
+        features: "edges" (vertices and sharp edges: no two closed meshes intersect unnoticed) or "vertices" (the
+            paper's rule).
+        speculative: also contacts before anything touches, with depth <= 0, within `speculative_margin` metres (None:
+            a four-hundredth of the smaller body's diagonal) or on the way to the next step.
+        max_contacts_per_pair, max_contacts: keep those that stand for all; 0 keeps all.
+    How: devices ("auto", "all", or ids of `list_devices` with commas), threads (0: one per core), schedule
+        ("balanced", "sticky", "counted"), inexact (accept devices that round differently).
+    The paper's own constants, for "iterative" and "predictive": caster, displacement_threshold, confidence,
+        culling_distance, distance_extension, max_iterations, cast_lost_walks, skip_outside.
+
+    Raises InputError (a ValueError) for settings that make no sense and devices that cannot be used.
+    """
+
+    def __init__(
+        self,
+        *,
+        method: str = "certified",
+        direction: str = "reprojected",
+        features: str = "edges",
+        speculative: bool = False,
+        speculative_margin: Optional[float] = None,
+        max_contacts_per_pair: int = 0,
+        max_contacts: int = 0,
+        devices: str = "auto",
+        threads: int = 0,
+        schedule: str = "balanced",
+        inexact: bool = False,
+        caster: str = "bvh",
+        displacement_threshold: Optional[float] = None,
+        confidence: float = 2.0,
+        culling_distance: Optional[float] = None,
+        distance_extension: Optional[float] = None,
+        max_iterations: int = 16,
+        cast_lost_walks: bool = True,
+        skip_outside: bool = True,
+    ) -> None:
+        words = {key: value for key, value in locals().items() if key != "self"}
+        self._core = _core.Scene(as_settings(words))
+
+    def add(
+        self, shapes: Union[ShapeLike, Sequence[ShapeLike]], poses: Optional[np.ndarray] = None
+    ) -> Union[int, np.ndarray]:
+        """Adds bodies: all or none.
+
+        shapes: one for all poses, or a list of one for each.
+        poses: (4, 4) or (n, 4, 4); None is the identity.
+        Returns an id for one shape and one pose, else (n,) int64. No id is ever given twice.
+        Raises InputError for poses that are not finite and rigid to 1e-4, and for numbers that do not fit.
+        """
+        cores, one_shape = as_shapes(shapes, "shapes")
+        matrices, one_pose = as_poses(poses, "poses")
+        if not one_shape and one_pose:
+            matrices = np.ascontiguousarray(np.broadcast_to(matrices, (len(cores), 4, 4)))
+        if not cores or not len(matrices):
+            return np.empty(0, np.int64)
+        ids = self._core.add(cores, matrices)
+        return int(ids[0]) if one_shape and one_pose else ids
+
+    def remove(self, ids: Union[int, np.ndarray]) -> None:
+        """Removes bodies. Raises InputError at the first that is not in the scene; those before it are gone."""
+        self._core.remove(as_ids(ids, "ids")[0])
+
+    def set_poses(self, ids: Union[int, np.ndarray], poses: np.ndarray) -> None:
+        """Moves bodies: all or none.
+
+        ids: one or (n,). poses: (4, 4) or (n, 4, 4), taken as they are (`nearest_rigid` mends those that drifted).
+        Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
+        rigid to 1e-4.
+        """
+        self._core.set_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
+
+    def poses(self, ids: Union[int, np.ndarray, None] = None) -> np.ndarray:
+        """(n, 4, 4) float64, or (4, 4) for one id; None: of all bodies, as `ids`."""
+        numbers, one = (self.ids, False) if ids is None else as_ids(ids, "ids")
+        matrices = self._core.poses(numbers)
+        return matrices[0] if one else matrices
+
+    def set_next_poses(self, ids: Union[int, np.ndarray], poses: np.ndarray) -> None:
+        """Where bodies are expected after the next step, for its speculative contacts; without it they are expected to go
+        on as they did. Does nothing unless the scene is speculative."""
+        self._core.set_next_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
+
+    def set_speculative_margin(self, id: int, margin: Optional[float]) -> None:
+        """Metres, for contacts of this body with any other; None: as the scene's settings say."""
+        number = int(as_ids(id, "id")[0][0])
+        self._core.set_speculative_margin(number, None if margin is None else as_length(margin, "margin"))
+
+    def set_filter(self, ids: Union[int, np.ndarray], groups: int, mask: int) -> None:
+        """`find_contacts()` pairs two bodies only if the groups of each have a bit in common with the mask of the other.
+        At first a body is in group 1 and its mask has all 32 bits."""
+        self._core.set_filter(as_ids(ids, "ids")[0], as_count(groups, "groups"), as_count(mask, "mask"))
+
+    def shape(self, id: int) -> Shape:
+        """The one that the body was added with."""
+        return Shape._wrap(self._core.shape(int(as_ids(id, "id")[0][0])))
+
+    @property
+    def ids(self) -> np.ndarray:
+        """(n,) int64: of all bodies, by slot."""
+        return self._core.ids
+
+    def __contains__(self, id: int) -> bool:
+        return self._core.has(int(as_ids(id, "id")[0][0]))
+
+    def __len__(self) -> int:
+        return len(self._core.ids)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """As they were given, or changed by `set_settings`; `Scene(**scene.settings)` is another one like this."""
+        return self._core.settings
+
+    def set_settings(self, **settings: Any) -> None:
+        """Changes settings between two steps; forgets what the last method kept. Devices, threads, schedule and inexact
+        are fixed."""
+        unknown = set(settings) - set(self._core.settings)
+        if unknown:
+            raise TypeError(f"set_settings() got an unexpected keyword argument {sorted(unknown)[0]!r}")
+        self._core.set_settings(as_settings(settings))
+
+    def prepare(self) -> None:
+        """`Shape.prepare` for the shapes of all bodies, so that the next step is as fast as later ones."""
+        self._core.prepare()
+
+    def find_contacts(self, pairs: Optional[np.ndarray] = None) -> Contacts:
+        """One step: all contacts where the bodies are now, sorted by the slots of both bodies, then by key.
+
+        pairs: (n, 2) ids from a broad phase of your own, in any order; None: those whose boxes overlap.
+        Raises InputError for a pair of a body with itself or with one that is not in the scene. Ctrl-C counts when the
+        step is done.
+        """
+        found = self._core.find_contacts(None if pairs is None else as_pairs(pairs, "pairs"))
+        return Contacts._from_bytes(found)
+
+    @property
+    def contacts(self) -> Contacts:
+        """Of the last step."""
+        return Contacts._from_bytes(self._core.contacts)
+
+    @property
+    def lost_contacts(self) -> LostContacts:
+        """What the last step lost; `Contacts.is_new` marks what it gained."""
+        return LostContacts(*self._core.lost_contacts())
+
+    @property
+    def pairs(self) -> np.ndarray:
+        """(n, 2) int64: ids of the pairs of the last step, sorted by slots."""
+        return self._core.pairs
+
+    @property
+    def stats(self) -> StepStats:
+        """What the last step did."""
+        return self._core.stats
+
+    def raycast(self, origins: np.ndarray, directions: np.ndarray, max: float = np.inf) -> BodyRayHits:
+        """The body that each ray meets first, poses set since the last step included.
+
+        origins, directions: (3,) or (n, 3), metres, world frame; directions of any length. max: metres.
+        Raises InputError for a direction that is zero or not finite.
+        """
+        starts, one = as_points(origins, "origins")
+        along, one_direction = as_points(directions, "directions")
+        n = len(along) if len(starts) == 1 else len(starts)
+        starts, along = (np.ascontiguousarray(np.broadcast_to(x, (n, 3))) if len(x) == 1 else x for x in (starts, along))
+        hits = self._core.raycast(starts, along, as_length(max, "max"))
+        return BodyRayHits(*one_of(hits, one and one_direction))
+
+    def closest_point(self, points: np.ndarray, max: float = np.inf) -> BodyClosestPoints:
+        """The point of all surfaces that is nearest to each point, within `max` metres.
+
+        points: (3,) or (n, 3), metres, world frame. Poses set since the last step count.
+        """
+        places, one = as_points(points, "points")
+        found = self._core.closest_points(places, as_length(max, "max"))
+        return BodyClosestPoints(*one_of(found, one))
+
+    def overlaps(self, shape: ShapeLike, pose: Optional[np.ndarray] = None) -> np.ndarray:
+        """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact."""
+        matrices, one = as_poses(pose, "pose")
+        if not one:
+            raise InputError("pose: give one, (4, 4)")
+        return self._core.overlaps(as_shape(shape)._core, matrices)
+
+    def __repr__(self) -> str:
+        settings = self._core.settings
+        return f"<Scene: {len(self)} bodies, method {settings['method']}, devices {settings['devices']}>"
+
+
+class Recorder:
+    """Records what a scene does, from its next step on: `raycontact replay` finds its contacts again, `raycontact view`
+    and `raycontact.show` show it, and any glTF viewer plays it.
+
+    Call `record` after each `find_contacts`; use it in a `with` statement, which ends with `finish`.
+
+    file: its name should end in .glb; what was there is lost. name, mesh_source: what the recording says of itself.
+    dt: seconds between two steps.
+    Raises InputError when the file cannot be made and for dt <= 0; `record` raises RuntimeError when it cannot be
+    written.
+    """
+
+    def __init__(
+        self,
+        file: Union[str, os.PathLike[str]],
+        scene: Scene,
+        *,
+        dt: float = 1.0 / 60,
+        name: str = "recording",
+        mesh_source: str = "",
+    ) -> None:
+        self._core = _core.Recorder(os.fspath(file), scene._core, name, as_length(dt, "dt"), mesh_source)
+
+    def record(self) -> None:
+        """Adds the scene's last step."""
+        self._core.record()
+
+    def finish(self) -> None:
+        """Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards."""
+        self._core.finish()
+
+    @property
+    def steps(self) -> int:
+        """Recorded so far."""
+        return self._core.steps
+
+    @property
+    def bytes(self) -> int:
+        """Of the file."""
+        return self._core.bytes
+
+    @property
+    def hash(self) -> str:
+        """Of the contacts so far: the same for every device and number of threads."""
+        return self._core.hash
+
+    def __enter__(self) -> "Recorder":
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        if kind is None:
+            self.finish()
+
+
+__all__ = ["BodyClosestPoints", "BodyRayHits", "LostContacts", "Recorder", "Scene", "StepStats"]

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes made ready for queries and scenes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import as_count
+from ._core import InputError, MeshReport
+from .mesh import Mesh, MeshLike
+
+
+class Mass(NamedTuple):
+    """Of a body filled with matter of unit density."""
+
+    volume: float
+    """m^3; times the density it is the mass."""
+    centre: np.ndarray
+    """(3,), of mass, body frame, metres."""
+    inertia: np.ndarray
+    """(3, 3), about the centre, body axes, m^5; times the density it is kg m^2."""
+
+
+class Shape:
+    """An immutable mesh made ready for rays: welded, checked, with its tree. Share one among any number of bodies.
+
+    `Shape(mesh)` takes whatever `Mesh` takes alone: a Mesh, a file, an object with `vertices` and `faces`. To make one
+    costs some microseconds a triangle, so make it once.
+
+    repair: drop degenerate and duplicate triangles, make windings agree, turn components as `nesting` says; `report`
+        names what was done. False: change nothing.
+    nesting: which way closed components wind: "as_wound" (outermost ones outward, those inside others as they are),
+        "cavities" (by turns outward and inward), "solids" (all outward).
+    threads: 0 is one for each core; no bit depends on it.
+
+    Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
+    """
+
+    def __init__(
+        self, mesh: MeshLike, *, repair: bool = True, nesting: str = "as_wound", threads: int = 0
+    ) -> None:
+        if not isinstance(mesh, Mesh):
+            mesh = Mesh(mesh)
+        self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), as_count(threads, "threads"))
+
+    @classmethod
+    def _wrap(cls, core: Any) -> "Shape":
+        shape = cls.__new__(cls)
+        shape._core = core
+        return shape
+
+    def prepare(self, threads: int = 0) -> None:
+        """Makes what only speeds up later steps: 10 to 45 times the work of making the shape. A scene has it made beside
+        its steps; call it where the first steps must be as fast as later ones. No contact of the methods "standard" and
+        "certified" depends on it. Does nothing the second time."""
+        self._core.prepare(as_count(threads, "threads"))
+
+    @property
+    def is_prepared(self) -> bool:
+        """`prepare` was done, by whomever."""
+        return self._core.is_prepared
+
+    @property
+    def name(self) -> str:
+        """The mesh's."""
+        return self._core.name
+
+    @property
+    def report(self) -> MeshReport:
+        """What the mesh is, and what was repaired; `print` it. `report.verdict` is one line."""
+        return self._core.report
+
+    @property
+    def has_inside(self) -> bool:
+        """It is closed and wound alike everywhere, so that a point can be inside it."""
+        return self._core.has_inside
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3) float64, metres, body frame: distinct positions, as the mesh had them. Not writable."""
+        return self._core.vertices
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """(m, 3) uint32: rows of `vertices`. Not writable."""
+        return self._core.triangles
+
+    faces = triangles
+    """The same, by the name that other libraries use."""
+
+    @property
+    def vertex_index(self) -> np.ndarray:
+        """(n,) uint32: which vertex of the mesh each is (the lowest where several were welded)."""
+        return self._core.vertex_index
+
+    @property
+    def triangle_index(self) -> np.ndarray:
+        """(m,) uint32: which triangle of the mesh each is. Contacts and queries give those of the mesh."""
+        return self._core.triangle_index
+
+    @property
+    def vertex_normals(self) -> np.ndarray:
+        """(n, 3) float64, unit, body frame, outward: angle-weighted (Baerentzen and Aanaes 2005); 0 where the triangles
+        around a vertex cancel out."""
+        return self._core.vertex_normals
+
+    @property
+    def vertex_areas(self) -> np.ndarray:
+        """(n,) float32, m^2: a third of the area of the triangles around each vertex."""
+        return self._core.vertex_areas
+
+    @property
+    def exit_distances(self) -> np.ndarray:
+        """(n,) float32, metres: how far the ray from a vertex along its inward normal travels inside the mesh: the
+        thickness there. inf where it never leaves."""
+        return self._core.exit_distances
+
+    @property
+    def box(self) -> np.ndarray:
+        """(2, 3) float64, metres, body frame: least and greatest coordinates."""
+        return np.array(self._core.box)
+
+    @property
+    def radius(self) -> float:
+        """Largest distance of a vertex from the body's origin, metres."""
+        return self._core.radius
+
+    @property
+    def longest_edge(self) -> float:
+        """Metres."""
+        return self._core.longest_edge
+
+    @property
+    def mass(self) -> Mass:
+        """By volume integrals over the closed mesh, for unit density; all 0 where it encloses nothing."""
+        volume, centre, inertia = self._core.mass
+        return Mass(volume, np.array(centre), inertia)
+
+    @property
+    def memory_bytes(self) -> int:
+        """What the shape takes on the host."""
+        return self._core.memory_bytes
+
+    def __repr__(self) -> str:
+        return f"<Shape {self.name!r}: {self.report.triangles} triangles, {self.report.verdict}>"
+
+
+ShapeLike = Union[Shape, MeshLike]
+"""A Shape, or what it is made of: a Mesh, the path of a file, an object with `vertices` and `faces`."""
+
+
+def as_shape(value: ShapeLike) -> Shape:
+    """The shape itself, or one made of what is given."""
+    return value if isinstance(value, Shape) else Shape(value)
+
+
+def as_shapes(value: Union[ShapeLike, Sequence[ShapeLike]], what: str) -> tuple[list[Any], bool]:
+    """The C++ half's shapes, and whether a single one was given. What is there several times is made once."""
+    if isinstance(value, Shape):
+        return [value._core], True
+    if not isinstance(value, (list, tuple)) and not (isinstance(value, np.ndarray) and value.dtype == object):
+        return [as_shape(value)._core], True
+    made: dict[int, Any] = {}
+    cores = []
+    for i, item in enumerate(value):
+        if id(item) not in made:
+            try:
+                made[id(item)] = as_shape(item)._core
+            except InputError as error:
+                raise InputError(f"{what}[{i}]: {error}") from None
+        cores.append(made[id(item)])
+    return cores, False
+
+
+__all__ = ["Mass", "Shape", "ShapeLike"]

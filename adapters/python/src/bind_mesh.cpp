@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+#include "bind.h"
+
+#include <raycontact/assembly.h>
+#include <raycontact/error.h>
+#include <raycontact/mesh.h>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace raycontact::python {
+
+namespace {
+
+using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Corners = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+MeshFormat format_from(std::string_view word) {
+    using enum MeshFormat;
+    for (const auto& [name, format] : {std::pair<std::string_view, MeshFormat>{"obj", obj},
+                                       {"stl", stl},
+                                       {"ply", ply},
+                                       {"off", off},
+                                       {"gltf", gltf},
+                                       {"glb", glb}})
+        if (word == name) return format;
+    throw InputError("format \"" + std::string(word) + "\" is not known; give obj, stl, ply, off, gltf or glb");
+}
+
+void bind_report(nb::module_& m) {
+    nb::class_<MeshReport>(m, "MeshReport", "What a mesh is, after the repairs it names.")
+        .def_ro("vertices", &MeshReport::vertices, "distinct positions in use by a triangle")
+        .def_ro("triangles", &MeshReport::triangles, "kept")
+        .def_ro("file_vertices", &MeshReport::file_vertices, "as given")
+        .def_ro("file_triangles", &MeshReport::file_triangles, "as given, polygons split")
+        .def_ro("closed", &MeshReport::closed, "every edge has a triangle on both sides")
+        .def_ro("border_edges", &MeshReport::border_edges, "edges met an odd number of times; 0: closed")
+        .def_ro("manifold", &MeshReport::manifold, "no edge has more than two triangles, no vertex more than one fan")
+        .def_ro("oriented", &MeshReport::oriented, "across every shared edge the two triangles wind the same way")
+        .def_ro("self_intersecting", &MeshReport::self_intersecting,
+                "two triangles meet elsewhere than in their shared vertices or edge")
+        .def_ro("outward", &MeshReport::outward, "closed and oriented, its normals pointing out everywhere")
+        .def_ro("components", &MeshReport::components, "connected over shared vertices")
+        .def_ro("volume", &MeshReport::volume, "m^3, signed; 0 when not closed")
+        .def_ro("area", &MeshReport::area, "m^2")
+        .def_ro("repairs", &MeshReport::repairs, "in words with counts; empty when nothing was changed")
+        .def_prop_ro(
+            "good", [](const MeshReport& report) { return verdict_of(report).good; },
+            "contacts with the mesh are what the rule of contact says")
+        .def_prop_ro(
+            "verdict", [](const MeshReport& report) { return verdict_of(report).text; },
+            "one line: \"good for contacts\", or what is wrong and what to do")
+        .def(
+            "to_json", [](const MeshReport& report) { return to_json(report); },
+            "The JSON of `raycontact mesh --json`.")
+        .def("__str__", [](const MeshReport& report) { return to_text(report); });
+}
+
+} // namespace
+
+void bind_mesh(nb::module_& m) {
+    bind_report(m);
+    nb::class_<Mesh>(m, "Mesh")
+        .def_ro("name", &Mesh::name)
+        .def_prop_ro(
+            "vertices",
+            [](nb::handle_t<Mesh> self) {
+                const auto& list = nb::cast<const Mesh&>(self).vertices;
+                return view_of(reinterpret_cast<const double*>(list.data()), {list.size(), 3}, self);
+            },
+            nb::rv_policy::automatic)
+        .def_prop_ro(
+            "triangles",
+            [](nb::handle_t<Mesh> self) {
+                const auto& list = nb::cast<const Mesh&>(self).triangles;
+                return view_of(reinterpret_cast<const std::uint32_t*>(list.data()), {list.size(), 3}, self);
+            },
+            nb::rv_policy::automatic);
+    m.def(
+        "load_mesh", [](const std::filesystem::path& file) { return load_mesh(file); }, "file"_a,
+        nb::call_guard<nb::gil_scoped_release>());
+    m.def(
+        "parse_mesh",
+        [](const nb::bytes& bytes, const std::string& format, const std::string& name) {
+            return load_mesh(std::span(static_cast<const std::byte*>(bytes.data()), bytes.size()), format_from(format),
+                             name);
+        },
+        "data"_a, "format"_a, "name"_a);
+    m.def(
+        "make_mesh",
+        [](const Coordinates& vertices, const Corners& triangles, const std::string& name) {
+            return make_mesh(std::span(vertices.data(), vertices.size()), std::span(triangles.data(), triangles.size()),
+                             name);
+        },
+        "vertices"_a, "triangles"_a, "name"_a);
+    m.def(
+        "load_assembly",
+        [](const std::filesystem::path& file) {
+            std::vector<AssemblyPart> parts;
+            {
+                const nb::gil_scoped_release without_gil;
+                parts = load_assembly(file);
+            }
+            nb::list list;
+            for (const AssemblyPart& part : parts)
+                list.append(
+                    nb::make_tuple(part.name, std::const_pointer_cast<Mesh>(part.mesh), matrices_of({&part.pose, 1})));
+            return list;
+        },
+        "file"_a);
+}
+
+} // namespace raycontact::python

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+#include "bind.h"
+
+#include <raycontact/error.h>
+#include <raycontact/mass.h>
+#include <raycontact/shape.h>
+
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <string_view>
+
+namespace raycontact::python {
+
+namespace {
+
+Nesting nesting_from(std::string_view word) {
+    if (word == "as_wound") return Nesting::as_wound;
+    if (word == "cavities") return Nesting::cavities;
+    if (word == "solids") return Nesting::solids;
+    throw InputError("nesting \"" + std::string(word) + "\" is not known; give as_wound, cavities or solids");
+}
+
+// Arrays show the shape's own memory and keep the shape alive.
+template <typename Number, std::size_t Columns, auto Get>
+ReadOnlyArray view(nb::handle_t<Shape> self) {
+    const auto list = (nb::cast<const Shape&>(self).*Get)();
+    const auto* data = reinterpret_cast<const Number*>(list.data());
+    if constexpr (Columns == 1)
+        return view_of(data, {list.size()}, self);
+    else
+        return view_of(data, {list.size(), Columns}, self);
+}
+
+nb::tuple three(const Vec3& v) {
+    return nb::make_tuple(v.x, v.y, v.z);
+}
+
+} // namespace
+
+void bind_shape(nb::module_& m) {
+    nb::class_<Shape>(m, "Shape")
+        .def_prop_ro("name", &Shape::name)
+        .def_prop_ro("report", &Shape::report, nb::rv_policy::reference_internal)
+        .def_prop_ro("has_inside", &Shape::has_inside)
+        .def(
+            "prepare", [](const Shape& shape, std::uint32_t threads) { shape.prepare(threads); }, "threads"_a,
+            nb::call_guard<nb::gil_scoped_release>())
+        .def_prop_ro("is_prepared", &Shape::is_prepared)
+        .def_prop_ro("vertices", &view<double, 3, &Shape::file_vertices>, nb::rv_policy::automatic)
+        .def_prop_ro("triangles", &view<std::uint32_t, 3, &Shape::triangles>, nb::rv_policy::automatic)
+        .def_prop_ro("vertex_index", &view<std::uint32_t, 1, &Shape::vertex_index>, nb::rv_policy::automatic)
+        .def_prop_ro("triangle_index", &view<std::uint32_t, 1, &Shape::triangle_index>, nb::rv_policy::automatic)
+        .def_prop_ro("vertex_normals", &view<double, 3, &Shape::vertex_normals>, nb::rv_policy::automatic)
+        .def_prop_ro("vertex_areas", &view<float, 1, &Shape::vertex_areas>, nb::rv_policy::automatic)
+        .def_prop_ro("exit_distances", &view<float, 1, &Shape::exit_distances>, nb::rv_policy::automatic)
+        .def_prop_ro("box", [](const Shape& s) { return nb::make_tuple(three(s.box_min()), three(s.box_max())); })
+        .def_prop_ro("radius", &Shape::radius)
+        .def_prop_ro("longest_edge", &Shape::longest_edge)
+        .def_prop_ro("memory_bytes", &Shape::memory_bytes)
+        .def_prop_ro("mass", [](const Shape& shape) {
+            const Mass mass = mass_of(shape.file_vertices(), shape.triangles());
+            return nb::make_tuple(mass.volume, three(mass.centre),
+                                  array_of(std::vector<double>(mass.inertia.begin(), mass.inertia.end()), {3, 3}));
+        });
+    m.def(
+        "make_shape",
+        [](const Mesh& mesh, bool repair, const std::string& nesting, std::uint32_t threads) {
+            const Nesting wanted = nesting_from(nesting);
+            const nb::gil_scoped_release without_gil;
+            return std::const_pointer_cast<Shape>(Shape::make(
+                prepare_mesh(mesh, repair ? Repair::allowed : Repair::as_is, wanted, Check::full, threads), threads));
+        },
+        "mesh"_a, "repair"_a, "nesting"_a, "threads"_a);
+}
+
+} // namespace raycontact::python

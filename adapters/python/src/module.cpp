@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// raycontact._core: the public headers for Python, as they are. What makes them pleasant is raycontact/*.py.
+#include "bind.h"
+
+#include <raycontact/error.h>
+
+#include <nanobind/nanobind.h>
+
+namespace nb = nanobind;
+
+NB_MODULE(_core, m) {
+    m.doc() = "The C++ half of raycontact; use the package itself.";
+    nb::exception<raycontact::InputError>(m, "InputError", PyExc_ValueError).doc() =
+        "Bad input: the text says what is wrong, where, and what to do about it. A ValueError.";
+    m.attr("version") = RAYCONTACT_VERSION;
+    raycontact::python::bind_mesh(m);
+    raycontact::python::bind_shape(m);
+    raycontact::python::bind_queries(m);
+    raycontact::python::bind_stats(m);
+    raycontact::python::bind_scene(m);
+    raycontact::python::bind_recorder(m);
+}
