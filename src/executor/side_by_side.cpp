@@ -2,6 +2,7 @@
 #include "executor/side_by_side.h"
 
 #include "executor/float_environment.h"
+#include "platform/system.h"
 
 #include <chrono>
 
@@ -24,11 +25,20 @@ bool wait_awake(Clock::duration most, Done&& done) {
 
 } // namespace
 
-SideBySide::SideBySide(std::size_t count) {
-    for (std::size_t i = 1; i < count; ++i) threads_.emplace_back([this, i] { serve(i); });
+SideBySide::SideBySide(std::size_t count)
+    : process_(platform::process_id()), threads_(std::make_unique<std::vector<std::jthread>>()) {
+    for (std::size_t i = 1; i < count; ++i) threads_->emplace_back([this, i] { serve(i); });
+}
+
+bool SideBySide::has_threads() const {
+    return process_ == platform::process_id();
 }
 
 SideBySide::~SideBySide() {
+    if (!has_threads()) {
+        static_cast<void>(threads_.release()); // they cannot be joined
+        return;
+    }
     function_ = nullptr;
     ++runs_;
     wake();
@@ -40,8 +50,12 @@ void SideBySide::wake() {
 }
 
 void SideBySide::run(const std::function<void(std::size_t)>& function) {
+    if (!has_threads()) {
+        for (std::size_t i = 0; i <= threads_->size(); ++i) function(i);
+        return;
+    }
     function_ = &function;
-    running_ = static_cast<std::uint32_t>(threads_.size());
+    running_ = static_cast<std::uint32_t>(threads_->size());
     ++runs_;
     wake();
     function(0);

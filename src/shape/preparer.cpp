@@ -2,6 +2,7 @@
 #include "shape/preparer.h"
 
 #include "executor/executor.h"
+#include "platform/system.h"
 #include "shape/accelerators.h"
 
 #include <exception>
@@ -11,31 +12,39 @@
 
 namespace raycontact {
 
+Preparer::Work::Work(std::uint32_t threads)
+    : process(platform::process_id()), thread([this, threads](const std::stop_token& stop) { serve(stop, threads); }) {}
+
+void Preparer::forget_if_forked() {
+    if (work_ && work_->process != platform::process_id()) static_cast<void>(work_.release());
+}
+
 void Preparer::want(const std::shared_ptr<const Shape>& shape) {
-    if (!thread_.joinable()) {
+    forget_if_forked();
+    if (!work_) {
         try {
-            thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+            work_ = std::make_unique<Work>(threads_);
         } catch (const std::system_error&) {
             return shape->prepare(threads_);
         }
     }
-    const std::lock_guard lock(mutex_);
-    shapes_.push_back(shape);
-    wanted_.notify_one();
+    const std::lock_guard lock(work_->mutex);
+    work_->shapes.push_back(shape);
+    work_->wanted.notify_one();
 }
 
-void Preparer::serve(const std::stop_token& stop) {
+void Preparer::Work::serve(const std::stop_token& stop, std::uint32_t threads) {
     std::optional<Executor> executor;
     for (;;) {
         std::shared_ptr<const Shape> shape;
         {
-            std::unique_lock lock(mutex_);
-            if (!wanted_.wait(lock, stop, [&] { return !shapes_.empty(); })) return;
-            shape = std::move(shapes_.front());
-            shapes_.pop_front();
+            std::unique_lock lock(mutex);
+            if (!wanted.wait(lock, stop, [&] { return !shapes.empty(); })) return;
+            shape = std::move(shapes.front());
+            shapes.pop_front();
         }
         try {
-            if (!executor) executor.emplace(threads_, -1, Executor::Priority::low);
+            if (!executor) executor.emplace(threads, -1, Executor::Priority::low);
             prepare(*shape, *executor, stop);
         } catch (const std::exception&) {
             // No memory or threads. Steps go on without; they are slower and find the same contacts.

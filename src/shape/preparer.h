@@ -16,19 +16,32 @@ class Preparer {
 public:
     /// threads 0: one per core.
     explicit Preparer(std::uint32_t threads) : threads_(threads) {}
+    ~Preparer() { forget_if_forked(); }
+    Preparer(const Preparer&) = delete;
+    Preparer& operator=(const Preparer&) = delete;
 
     /// Returns at once; Shape::is_prepared() tells when it is done. Prepares the shape here where no thread can be
     /// made.
     void want(const std::shared_ptr<const Shape>& shape);
 
 private:
-    void serve(const std::stop_token& stop);
+    /// What the thread works on.
+    struct Work {
+        explicit Work(std::uint32_t threads);
+        void serve(const std::stop_token& stop, std::uint32_t threads);
+
+        std::uint64_t process; ///< that made the thread
+        std::mutex mutex;
+        std::condition_variable_any wanted;
+        std::deque<std::shared_ptr<const Shape>> shapes; ///< still to be prepared
+        std::jthread thread;                             ///< last, to be joined first
+    };
+
+    /// A forked child has no such thread: it can neither be joined nor what it waits on be destroyed.
+    void forget_if_forked();
 
     std::uint32_t threads_;
-    std::mutex mutex_;
-    std::condition_variable_any wanted_;
-    std::deque<std::shared_ptr<const Shape>> shapes_; ///< still to be prepared
-    std::jthread thread_;                             ///< last, to be joined first; none before the first shape
+    std::unique_ptr<Work> work_; ///< none before the first shape
 };
 
 } // namespace raycontact
