@@ -19,6 +19,7 @@ packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev l
     python3-pip # brings the CUDA compiler that the kernels are checked with
     chromium python3) # open the pages
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact-bench peers`, both optional
+packages_python=(python3-dev python3-venv)                            # the Python package; the rest comes from PyPI
 packages_reference=(doxygen)
 packages_package=(dpkg-dev file)
 packages_all=(clang clang-tidy oclgrind valgrind)

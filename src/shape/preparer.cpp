@@ -28,20 +28,35 @@ void Preparer::want(const std::shared_ptr<const Shape>& shape) {
             return shape->prepare(threads_);
         }
     }
-    const std::lock_guard lock(work_->mutex);
-    work_->shapes.push_back(shape);
-    work_->wanted.notify_one();
+    {
+        const std::lock_guard lock(work_->mutex);
+        work_->shapes.push_back(shape);
+    }
+    work_->call();
+}
+
+void Preparer::Work::call() {
+    ++calls;
+    calls.notify_one();
+}
+
+std::shared_ptr<const Shape> Preparer::Work::next() {
+    const std::lock_guard lock(mutex);
+    if (shapes.empty()) return nullptr;
+    std::shared_ptr<const Shape> shape = std::move(shapes.front());
+    shapes.pop_front();
+    return shape;
 }
 
 void Preparer::Work::serve(const std::stop_token& stop, std::uint32_t threads) {
+    const std::stop_callback call_to_end(stop, [this] { call(); });
     std::optional<Executor> executor;
-    for (;;) {
-        std::shared_ptr<const Shape> shape;
-        {
-            std::unique_lock lock(mutex);
-            if (!wanted.wait(lock, stop, [&] { return !shapes.empty(); })) return;
-            shape = std::move(shapes.front());
-            shapes.pop_front();
+    while (!stop.stop_requested()) {
+        const std::uint32_t seen = calls;
+        const std::shared_ptr<const Shape> shape = next();
+        if (!shape) {
+            if (!stop.stop_requested()) calls.wait(seen);
+            continue;
         }
         try {
             if (!executor) executor.emplace(threads, -1, Executor::Priority::low);

@@ -3,10 +3,12 @@
 
 #include <raycontact/shape.h>
 
-#include <condition_variable>
+#include <atomic>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 namespace raycontact {
@@ -29,15 +31,17 @@ private:
     struct Work {
         explicit Work(std::uint32_t threads);
         void serve(const std::stop_token& stop, std::uint32_t threads);
+        std::shared_ptr<const Shape> next();
+        void call();
 
         std::uint64_t process; ///< that made the thread
         std::mutex mutex;
-        std::condition_variable_any wanted;
         std::deque<std::shared_ptr<const Shape>> shapes; ///< still to be prepared
+        std::atomic<std::uint32_t> calls{0};             ///< the thread sleeps between them
         std::jthread thread;                             ///< last, to be joined first
     };
 
-    /// A forked child has no such thread: it can neither be joined nor what it waits on be destroyed.
+    /// A forked child has no such thread: it cannot be joined.
     void forget_if_forked();
 
     std::uint32_t threads_;
