@@ -62,6 +62,14 @@ def as_ids(value: Any, what: str) -> tuple[np.ndarray, bool]:
     return np.ascontiguousarray(array.reshape(-1), np.int64), array.ndim == 0
 
 
+def as_id(value: Any, what: str) -> int:
+    """One id."""
+    numbers, _ = as_ids(value, what)
+    if len(numbers) != 1:
+        raise InputError(f"{what}: {len(numbers)} given; give one")
+    return int(numbers[0])
+
+
 def as_pairs(value: Any, what: str) -> np.ndarray:
     """(n, 2) int64."""
     array = as_numbers(value, what, "iu")

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _core
-from ._arrays import as_count, as_ids, as_length, as_pairs, as_points, as_poses, one_of
+from ._arrays import as_count, as_id, as_ids, as_length, as_pairs, as_points, as_poses, one_of
 from ._core import InputError, StepStats
 from .contacts import Contacts
 from .shape import Shape, ShapeLike, as_shape, as_shapes
@@ -175,7 +175,7 @@ class Scene:
 
     def set_speculative_margin(self, id: int, margin: Optional[float]) -> None:
         """Metres, for contacts of this body with any other; None: as the scene's settings say."""
-        number = int(as_ids(id, "id")[0][0])
+        number = as_id(id, "id")
         self._core.set_speculative_margin(number, None if margin is None else as_length(margin, "margin"))
 
     def set_filter(self, ids: Union[int, np.ndarray], groups: int, mask: int) -> None:
@@ -185,7 +185,7 @@ class Scene:
 
     def shape(self, id: int) -> Shape:
         """The one that the body was added with."""
-        return Shape._wrap(self._core.shape(int(as_ids(id, "id")[0][0])))
+        return Shape._wrap(self._core.shape(as_id(id, "id")))
 
     @property
     def ids(self) -> np.ndarray:
@@ -193,7 +193,7 @@ class Scene:
         return self._core.ids
 
     def __contains__(self, id: int) -> bool:
-        return self._core.has(int(as_ids(id, "id")[0][0]))
+        return self._core.has(as_id(id, "id"))
 
     def __len__(self) -> int:
         return len(self._core.ids)

@@ -12,6 +12,7 @@ NB_MODULE(_core, m) {
     m.doc() = "The C++ half of raycontact; use the package itself.";
     nb::exception<raycontact::InputError>(m, "InputError", PyExc_ValueError).doc() =
         "Bad input: the text says what is wrong, where, and what to do about it. A ValueError.";
+    nb::set_leak_warnings(false); // what a user's program holds when it ends is not ours
     m.attr("version") = RAYCONTACT_VERSION;
     raycontact::python::bind_mesh(m);
     raycontact::python::bind_shape(m);
