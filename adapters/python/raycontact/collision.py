@@ -1,3 +1,583 @@
 # SPDX-License-Identifier: Apache-2.0
+"""The collision manager of trimesh, over RayContact: `from raycontact.collision import CollisionManager`.
+
+Methods, arguments and forms of answers are those of `trimesh.collision`. It needs neither trimesh nor FCL.
+docs/python.md says what differs.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Hashable, Iterator
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from ._arrays import as_poses
+from ._boxes import Boxes, Pairs, boxes_of, pairs_within, some_near_pairs
+from ._core import InputError
+from ._shared_shapes import shared_shape
+from .contacts import FeatureKind
+from .queries import closest_point, collide, distance, intersects
+from .shape import Shape, ShapeLike
+
+_EXTERNAL = "__external"
+"""The name of a mesh that is in no manager, as trimesh has it."""
+
+_MOST_ASKED = 1 << 16
+"""Pairs of one call: each takes some 500 bytes meanwhile."""
+
+
+class ContactData:
+    """Where two objects are in contact."""
+
+    __slots__ = ("names", "pair", "_normal", "_point", "_depth", "_indices")
+
+    names: set
+    """Of both objects; a mesh that was given to `in_collision_single` is "__external"."""
+    pair: tuple
+    """The two names in order; trimesh has no such thing. Of `in_collision_internal` as in its set of names, of
+    `in_collision_single` the object in the manager first, of `in_collision_other` the one in this manager first."""
+
+    def __init__(
+        self, pair: tuple, normal: np.ndarray, point: np.ndarray, depth: float, indices: tuple[int, int]
+    ) -> None:
+        self.names = set(pair)
+        self.pair = pair
+        self._normal = normal
+        self._point = point
+        self._depth = depth
+        self._indices = indices
+
+    @property
+    def normal(self) -> np.ndarray:
+        """(3,) float64, unit, world frame, from the first of `pair` to the second: moving the second along it separates
+        them. NaN where depth is 0."""
+        return self._normal
+
+    @property
+    def point(self) -> np.ndarray:
+        """(3,) float64, metres, world frame: halfway between the two witness points. `point + depth / 2 * normal` is
+        that of the first object, `point - depth / 2 * normal` that of the second. Where depth is 0, a point of both."""
+        return self._point
+
+    @property
+    def depth(self) -> float:
+        """Metres along the normal by which the two overlap here. 0 where they share a point and no contact says how
+        deep: they only touch, or one is an open mesh."""
+        return self._depth
+
+    def index(self, name: Hashable) -> int:
+        """The face of that object's mesh: it has the vertex or the edge in contact, or is the one that was hit.
+
+        Two objects of the same name, of two managers: that of the second. Raises KeyError for another name.
+        """
+        return _of_name(self.pair, self._indices, name)
+
+    def __repr__(self) -> str:
+        return f"<ContactData {self.pair[0]!r}, {self.pair[1]!r}: depth {self._depth:.6g} m>"
+
+
+class DistanceData:
+    """Where two objects are nearest to each other."""
+
+    __slots__ = ("names", "pair", "_distance", "_points", "_indices")
+
+    names: set
+    """Of both objects; a mesh that was given to `min_distance_single` is "__external"."""
+    pair: tuple
+    """The two names in order, as of ContactData."""
+
+    def __init__(
+        self, pair: tuple, least: float, points: tuple[np.ndarray, np.ndarray], indices: tuple[int, int]
+    ) -> None:
+        self.names = set(pair)
+        self.pair = pair
+        self._distance = least
+        self._points = points
+        self._indices = indices
+
+    @property
+    def distance(self) -> float:
+        """Metres; 0 exactly where the two collide."""
+        return self._distance
+
+    def index(self, name: Hashable) -> int:
+        """The face of that object's mesh on which its nearest point lies. Where the other object lies inside it: the
+        face nearest to that point. Names as of ContactData.index."""
+        return _of_name(self.pair, self._indices, name)
+
+    def point(self, name: Hashable) -> np.ndarray:
+        """(3,) float64, metres, world frame: of that object, nearest to the other. Where they collide a point of both.
+        Names as of ContactData.index."""
+        return _of_name(self.pair, self._points, name)
+
+    def __repr__(self) -> str:
+        return f"<DistanceData {self.pair[0]!r}, {self.pair[1]!r}: {self._distance:.6g} m>"
+
+
+class _Object(NamedTuple):
+    """What a name stands for."""
+
+    shape: Shape
+    box: np.ndarray
+    """(2, 3), of the shape."""
+    pose: np.ndarray
+    """(4, 4)."""
+
+
+class _Objects:
+    """Objects in lists, for questions about many."""
+
+    def __init__(self, objects: dict) -> None:
+        self.names = list(objects)
+        self.shapes = [item.shape for item in objects.values()]
+        self.poses = np.array([item.pose for item in objects.values()]).reshape(-1, 4, 4)
+        self.boxes = boxes_of(np.array([item.box for item in objects.values()]).reshape(-1, 2, 3), self.poses)
+
+    def by_name(self, i: int, j: int) -> tuple[int, int]:
+        """Two rows, i < j, sorted by their names; as they are where names do not compare."""
+        try:
+            return (j, i) if self.names[j] < self.names[i] else (i, j)
+        except TypeError:
+            return i, j
+
+    def only(self, rows: np.ndarray) -> "_Objects":
+        """Those of some rows."""
+        some = _Objects.__new__(_Objects)
+        some.names, some.shapes = ([column[row] for row in rows] for column in (self.names, self.shapes))
+        some.poses = self.poses[rows]
+        some.boxes = Boxes(*(ends[rows] for ends in self.boxes))
+        return some
+
+
 class CollisionManager:
-    pass
+    """Objects with names: which of them collide, where, and how far apart they are.
+
+    Used as `trimesh.collision.CollisionManager` is. A mesh is whatever `Shape` takes: a Shape, a Mesh, a
+    `trimesh.Trimesh`, the path of a file. What it holds when it is added counts; the object does not follow later
+    changes. Objects whose meshes hold the same share one shape. Names are anything hashable. A transform is a rigid
+    (4, 4) matrix from the mesh's frame to the world, metres, the translation in the last column.
+
+    Two objects collide where their surfaces share a point (touching counts), or where one lies inside the other and
+    that is closed and wound alike everywhere. This is exact, in double.
+
+    Raises InputError (a ValueError) for a name that is not in the manager, a transform of another shape or one that is
+    not finite and rigid to 1e-4, and a mesh that no Shape can be made of.
+    """
+
+    def __init__(self) -> None:
+        self._objects: dict[Hashable, _Object] = {}
+        self._listed: Optional[_Objects] = None
+
+    def add_object(self, name: Hashable, mesh: ShapeLike, transform: Optional[np.ndarray] = None) -> Shape:
+        """Adds an object, in place of any that has the name. transform: (4, 4); None: the identity.
+
+        Gives the object's shape; trimesh gives an object of FCL. Raises InputError as the class says; then nothing is
+        changed.
+        """
+        self._objects[name] = _place(mesh, transform, f"object {name!r}")
+        self._listed = None
+        return self._objects[name].shape
+
+    def remove_object(self, name: Hashable) -> None:
+        """Removes an object. Raises InputError where there is no such name."""
+        self._find(name)
+        del self._objects[name]
+        self._listed = None
+
+    def set_transform(self, name: Hashable, transform: np.ndarray) -> None:
+        """Moves an object: (4, 4), in place of the transform it had. Raises InputError as the class says."""
+        found = self._find(name)
+        self._objects[name] = found._replace(pose=_rigid(transform, f"object {name!r}"))
+        self._listed = None
+
+    # What these give depends on what is asked for, so to a type checker it is Any, as of trimesh.
+
+    def in_collision_single(
+        self,
+        mesh: ShapeLike,
+        transform: Optional[np.ndarray] = None,
+        return_names: bool = False,
+        return_data: bool = False,
+    ) -> Any:
+        """Whether a mesh, placed by a transform, collides with any object.
+
+        Gives a bool. With return_names a tuple of it and the set of names of all objects that collide with the mesh,
+        with return_data of it and a list of ContactData, with both of all three. The list has at least one of each pair
+        that collides. The mesh's name there is "__external".
+        """
+        one, mine = _external(mesh, transform), self._list()
+        if not (return_names or return_data):
+            return _any_collides(mine, one)
+        i, j = _colliding(mine, one)
+        names = {mine.names[k] for k in i.tolist()}
+        data = _contacts(mine, one, i, j) if return_data else []
+        return _answer(bool(len(i)), return_names, names, return_data, data)
+
+    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+        """Whether any two objects collide.
+
+        Gives a bool. With return_names a tuple of it and the set of all pairs (name, name) that collide, with
+        return_data of it and a list of ContactData, with both of all three. A pair has its names sorted; names that do
+        not compare stand in the order in which they were added.
+        """
+        mine = self._list()
+        if not (return_names or return_data):
+            return _any_collides(mine, None)
+        i, j = _colliding(mine, None)
+        i, j = _sorted_by_name(mine, i, j)  # normals lead from the first name to the second
+        names = {(mine.names[k], mine.names[m]) for k, m in zip(i.tolist(), j.tolist())}
+        data = _contacts(mine, mine, i, j) if return_data else []
+        return _answer(bool(len(i)), return_names, names, return_data, data)
+
+    def in_collision_other(
+        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """Whether any object collides with one of another manager.
+
+        Gives a bool. With return_names a tuple of it and the set of all pairs (name, name in the other manager) that
+        collide, with return_data of it and a list of ContactData, with both of all three.
+        """
+        mine, others = self._list(), _list_of(other_manager)
+        if not (return_names or return_data):
+            return _any_collides(mine, others)
+        i, j = _colliding(mine, others)
+        names = {(mine.names[k], others.names[m]) for k, m in zip(i.tolist(), j.tolist())}
+        data = _contacts(mine, others, i, j) if return_data else []
+        return _answer(bool(len(i)), return_names, names, return_data, data)
+
+    def min_distance_single(
+        self,
+        mesh: ShapeLike,
+        transform: Optional[np.ndarray] = None,
+        return_name: bool = False,
+        return_data: bool = False,
+    ) -> Any:
+        """The least distance of a mesh, placed by a transform, from any object: metres; 0 where they collide.
+
+        Gives a float. With return_name a tuple of it and the name of the nearest object, with return_data of it and a
+        DistanceData, with both of all three. The mesh's name there is "__external". Without an object: inf, None, None.
+        """
+        mine, one = self._list(), _external(mesh, transform)
+        least, i, j = _nearest(mine, one)
+        data = _distance_data(mine, one, least, i, j) if return_data else None
+        return _answer(least, return_name, None if i is None else mine.names[i], return_data, data)
+
+    def min_distance_internal(
+        self, name: Optional[Hashable] = None, return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """The least distance of any two objects, or of the one with that name from any other: metres; 0 where they
+        collide.
+
+        Gives a float. With return_names a tuple of it and the pair of names, sorted as of `in_collision_internal`, with
+        return_data of it and a DistanceData, with both of all three. With fewer than two objects: inf, None, None.
+        Raises InputError for a name that is not in the manager.
+        """
+        mine = self._list()
+        if name is None:
+            least, i, j = _nearest(mine, None)
+        else:
+            self._find(name)
+            row = list(self._objects).index(name)
+            others = np.delete(np.arange(len(mine.names)), row)
+            least, i, j = _nearest(mine.only(np.array([row])), mine.only(others))
+            if j is not None:
+                i, j = min(row, int(others[j])), max(row, int(others[j]))
+        if i is not None:
+            i, j = mine.by_name(i, j)
+        data = _distance_data(mine, mine, least, i, j) if return_data else None
+        return _answer(least, return_names, None if i is None else (mine.names[i], mine.names[j]), return_data, data)
+
+    def min_distance_other(
+        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """The least distance of any object from one of another manager: metres; 0 where they collide.
+
+        Gives a float. With return_names a tuple of it and the pair (name, name in the other manager), with return_data
+        of it and a DistanceData, with both of all three. Without two objects: inf, None, None.
+        """
+        mine, others = self._list(), _list_of(other_manager)
+        least, i, j = _nearest(mine, others)
+        data = _distance_data(mine, others, least, i, j) if return_data else None
+        return _answer(least, return_names, None if i is None else (mine.names[i], others.names[j]), return_data, data)
+
+    def _find(self, name: Hashable) -> _Object:
+        try:
+            return self._objects[name]
+        except KeyError:
+            raise InputError(f"object {name!r}: is not in the manager; add it with add_object") from None
+
+    def _list(self) -> _Objects:
+        if self._listed is None:
+            self._listed = _Objects(self._objects)
+        return self._listed
+
+    def __repr__(self) -> str:
+        return f"<CollisionManager: {len(self._objects)} objects>"
+
+
+def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Hashable, Shape]]:
+    """A manager with each mesh of a `trimesh.Scene`, named and placed as its node, and the shapes by those names.
+
+    A node that scales, shears or mirrors has that done to its mesh; its object's transform is the rotation and the
+    translation that remain. Raises InputError naming the node: no mesh, or a transform that is flat or not finite.
+    """
+    manager = CollisionManager()
+    shapes = {}
+    for node in scene.graph.nodes_geometry:
+        transform, geometry = scene.graph[node]
+        mesh, pose = _without_stretch(scene.geometry[geometry], transform, f"object {node!r}")
+        shapes[node] = manager.add_object(node, mesh, pose)
+    return manager, shapes
+
+
+class _Stretched(NamedTuple):
+    """A mesh that a scene draws in another size."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+
+
+def _without_stretch(mesh: Any, transform: np.ndarray, what: str) -> tuple[Any, np.ndarray]:
+    """A mesh and a rigid transform that place it as any transform does (polar decomposition)."""
+    pose = _one_pose(transform, what).copy()
+    if _fault(pose) is None or not (hasattr(mesh, "vertices") and hasattr(mesh, "faces")):
+        return mesh, pose
+    linear = pose[:3, :3]
+    sign = np.linalg.det(linear) if np.isfinite(pose).all() else 0.0
+    if not abs(sign) > 0:
+        raise InputError(f"{what}: its transform is flat or not finite; give one that keeps the mesh's volume")
+    left, sizes, right = np.linalg.svd(linear)
+    pose[:3, :3] = np.sign(sign) * (left @ right)
+    stretch = np.sign(sign) * ((right.T * sizes) @ right)
+    faces = np.asarray(mesh.faces)
+    # A mirror turns triangles inside out.
+    return _Stretched(np.asarray(mesh.vertices) @ stretch.T, faces if sign > 0 else faces[:, ::-1]), pose
+
+
+def _place(mesh: ShapeLike, transform: Optional[np.ndarray], what: str) -> _Object:
+    pose = _rigid(transform, what)
+    try:
+        shape = shared_shape(mesh)
+    except InputError as error:
+        raise InputError(f"{what}: {error}") from None
+    return _Object(shape, shape.box, pose)
+
+
+def _external(mesh: ShapeLike, transform: Optional[np.ndarray]) -> _Objects:
+    return _Objects({_EXTERNAL: _place(mesh, transform, "mesh")})
+
+
+def _list_of(manager: Any) -> _Objects:
+    if not isinstance(manager, CollisionManager):
+        raise InputError(
+            f"other_manager: is a {type(manager).__module__}.{type(manager).__name__}; "
+            "give a raycontact.CollisionManager"
+        )
+    return manager._list()
+
+
+def _one_pose(transform: Optional[np.ndarray], what: str) -> np.ndarray:
+    matrices, one = as_poses(transform, f"{what}: transform")
+    if not one:
+        raise InputError(f"{what}: transform: has shape {matrices.shape}; give one, (4, 4)")
+    return matrices[0]
+
+
+def _rigid(transform: Optional[np.ndarray], what: str) -> np.ndarray:
+    """A copy: what is the user's may change."""
+    pose = _one_pose(transform, what)
+    fault = _fault(pose)
+    if fault:
+        raise InputError(f"{what}: transform: {fault}")
+    return pose.copy()
+
+
+def _fault(pose: np.ndarray) -> Optional[str]:
+    """What queries would refuse, known when it is given."""
+    if not (np.abs(pose) <= 1e30).all():
+        return "has an entry that is not finite or beyond 1e30"
+    rotation = pose[:3, :3]
+    if not (np.abs(rotation.T @ rotation - np.eye(3)) <= 1e-4).all():
+        return "is not rigid to 1e-4 (sheared or scaled); scale the mesh, or see raycontact.nearest_rigid"
+    if not np.linalg.det(rotation) > 0:
+        return "is mirrored; mirror the mesh"
+    return None
+
+
+def _of_name(pair: tuple, values: tuple, name: Hashable) -> Any:
+    return dict(zip(pair, values))[name]
+
+
+def _answer(result: Any, wants_names: bool, names: Any, wants_data: bool, data: Any) -> Any:
+    """The form that the flags ask for."""
+    parts = (result, *([names] if wants_names else []), *([data] if wants_data else []))
+    return parts if len(parts) > 1 else result
+
+
+def _ask(question: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray, **words: Any) -> Any:
+    """What a query of the package says of pairs of objects."""
+    return question(
+        [a.shapes[k] for k in i.tolist()], [b.shapes[k] for k in j.tolist()], a.poses[i], b.poses[j], **words
+    )
+
+
+def _slices(count: int, first: int, most: int) -> Iterator[slice]:
+    """Of a list, ever longer ones."""
+    begin = 0
+    while begin < count:
+        yield slice(begin, min(begin + first, count))
+        begin, first = begin + first, min(2 * first, most)
+
+
+def _candidates(a: _Objects, b: Optional[_Objects], gap: float) -> Iterator[Pairs]:
+    """Pairs of a and b, or within a, whose boxes are at most `gap` metres apart."""
+    return pairs_within(gap, a.boxes, None if b is None else b.boxes)
+
+
+def _any_collides(a: _Objects, b: Optional[_Objects]) -> bool:
+    """Whether any pair does, of a and b or within a; ends soon after the first one found."""
+    for pairs in _candidates(a, b, 0.0):
+        for part in _slices(len(pairs.a), 64, _MOST_ASKED):
+            if _ask(intersects, a, a if b is None else b, pairs.a[part], pairs.b[part]).any():
+                return True
+    return False
+
+
+def _colliding(a: _Objects, b: Optional[_Objects]) -> tuple[np.ndarray, np.ndarray]:
+    """All pairs that do, in order."""
+    found_i, found_j = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+    for pairs in _candidates(a, b, 0.0):
+        for part in _slices(len(pairs.a), _MOST_ASKED, _MOST_ASKED):
+            i, j = pairs.a[part], pairs.b[part]
+            hit = _ask(intersects, a, a if b is None else b, i, j)
+            found_i.append(i[hit])
+            found_j.append(j[hit])
+    i, j = np.concatenate(found_i), np.concatenate(found_j)
+    order = np.lexsort((j, i))
+    return i[order], j[order]
+
+
+def _sorted_by_name(objects: _Objects, i: np.ndarray, j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    pairs = np.array([objects.by_name(*pair) for pair in zip(i.tolist(), j.tolist())], np.int64).reshape(-1, 2)
+    return pairs[:, 0], pairs[:, 1]
+
+
+def _contacts(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list[ContactData]:
+    """Of pairs that collide, in their order: each has at least one."""
+    made: list[ContactData] = []
+    for part in _slices(len(i), _MOST_ASKED, _MOST_ASKED):
+        made += _contacts_of(a, b, i[part], j[part])
+    return made
+
+
+def _contacts_of(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list[ContactData]:
+    found = _ask(collide, a, b, i, j)
+    pair = found.pair
+    # Exactly touching, or with an open mesh: no contact of the rule, yet they collide.
+    bare = np.setdiff1d(np.arange(len(i)), pair)
+    points, faces = _common_points(a, b, i[bare], j[bare])
+    order = np.argsort(np.concatenate([pair, bare]), kind="stable")
+    columns = (
+        (pair, bare),
+        (found.normal.astype(np.float64), np.full((len(bare), 3), np.nan)),
+        ((found.point_a + found.point_b) / 2, points),
+        (found.depth.astype(np.float64), np.zeros(len(bare))),
+        (_faces_in_contact(found, a, b, i[pair], j[pair]), faces),
+    )
+    pair, normal, point, depth, face = (np.concatenate(column)[order] for column in columns)
+    names = [(a.names[k], b.names[m]) for k, m in zip(i.tolist(), j.tolist())]
+    return [
+        ContactData(names[k], *rest[:2], rest[2], tuple(rest[3]))
+        for k, *rest in zip(pair.tolist(), normal, point, depth.tolist(), face.tolist())
+    ]
+
+
+def _faces_in_contact(found: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """(n, 2) int64: of each contact a face of either mesh."""
+    faces = found.indices.astype(np.int64)
+    is_edges = found.kind == FeatureKind.EDGES
+    faces[is_edges] //= 3  # an edge is named by its lowest triangle and a corner there
+    for side, (objects, rows) in enumerate(((a, i), (b, j))):
+        of_vertices = np.flatnonzero(~is_edges & (found.source == side))
+        of_vertices = of_vertices[np.argsort(rows[of_vertices], kind="stable")]
+        for chosen in np.split(of_vertices, np.flatnonzero(np.diff(rows[of_vertices])) + 1):
+            if len(chosen):
+                faces[chosen, side] = _face_at_vertex(objects.shapes[rows[chosen[0]]])[faces[chosen, side]]
+    return faces
+
+
+_faces_at: "weakref.WeakKeyDictionary[Shape, np.ndarray]" = weakref.WeakKeyDictionary()
+
+
+def _face_at_vertex(shape: Shape) -> np.ndarray:
+    """By vertex of the mesh, the lowest triangle that has it; of welded vertices by the lowest."""
+    faces = _faces_at.get(shape)
+    if faces is None:
+        corners = shape.vertex_index[shape.triangles]
+        faces = np.full(int(corners.max()) + 1, np.iinfo(np.int64).max)
+        np.minimum.at(faces, corners, shape.triangle_index.astype(np.int64)[:, None])
+        _faces_at[shape] = faces
+    return faces
+
+
+def _common_points(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A point that two colliding objects share, (n, 3), and the faces at it, (n, 2)."""
+    if not len(i):
+        return np.empty((0, 3)), np.empty((0, 2), np.int64)
+    found = _ask(distance, a, b, i, j, max=0.0)
+    return found.point_a, np.stack([_surface(a, i, found.triangle_a, found.point_a),
+                                    _surface(b, j, found.triangle_b, found.point_b)], axis=1)  # fmt: skip
+
+
+def _surface(objects: _Objects, rows: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Triangles of a distance; the nearest one for a mesh that has the whole other one inside."""
+    triangles = triangles.copy()
+    for k in np.flatnonzero(triangles < 0):
+        triangles[k] = closest_point(objects.shapes[rows[k]], points[k], objects.poses[rows[k]]).triangle
+    return triangles
+
+
+def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[int], Optional[int]]:
+    """The least distance of a and b, or within a, and the pair that has it; inf and None without a pair."""
+    best: tuple[float, Optional[int], Optional[int]] = np.inf, None, None
+    other = a if b is None else b
+
+    def look(pairs: Pairs) -> None:
+        # Nearest boxes first, a few at once: what is found spares most of the others.
+        nonlocal best
+        order = np.argsort(pairs.gap, kind="stable")
+        gaps = pairs.gap[order]
+        for part in _slices(len(order), 4, 1024):
+            part = slice(part.start, min(part.stop, int(np.searchsorted(gaps, best[0], "right"))))
+            if best[0] == 0 or part.stop <= part.start:
+                return
+            i, j = pairs.a[order[part]], pairs.b[order[part]]
+            found = _ask(distance, a, other, i, j, max=best[0]).distance
+            k = int(np.argmin(found))
+            if found[k] < best[0]:
+                best = float(found[k]), int(i[k]), int(j[k])
+
+    look(some_near_pairs(a.boxes, None if b is None else b.boxes))
+    for pairs in _candidates(a, b, best[0]):
+        if best[0] == 0:
+            break
+        look(pairs)
+    return best
+
+
+def _distance_data(
+    a: _Objects, b: _Objects, least: float, i: Optional[int], j: Optional[int]
+) -> Optional[DistanceData]:
+    if i is None or j is None:
+        return None
+    row_a, row_b = np.array([i]), np.array([j])
+    found = _ask(distance, a, b, row_a, row_b)
+    faces = _surface(a, row_a, found.triangle_a, found.point_a), _surface(b, row_b, found.triangle_b, found.point_b)
+    return DistanceData(
+        (a.names[i], b.names[j]), least, (found.point_a[0], found.point_b[0]), (int(faces[0][0]), int(faces[1][0]))
+    )
+
+
+__all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
