@@ -4,7 +4,6 @@
 import sys
 
 import numpy as np
-
 import raycontact as rc
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
@@ -36,7 +35,9 @@ def main() -> None:
     else:
         raise AssertionError("a vertex that does not exist was taken")
     devices = ", ".join(device.id for device in rc.list_devices() if device.usable)
-    print(f"raycontact {rc.__version__} works on Python {sys.version.split()[0]}, NumPy {np.__version__}; devices: {devices}")
+    print(
+        f"raycontact {rc.__version__} works on Python {sys.version.split()[0]}, NumPy {np.__version__}; devices: {devices}"
+    )
 
 
 main()

@@ -8,7 +8,6 @@ from collections import namedtuple
 
 import numpy as np
 import pytest
-
 import raycontact as rc
 from raycontact import _boxes, _shared_shapes, collision
 from raycontact.collision import CollisionManager, ContactData, DistanceData, scene_to_collision
@@ -725,6 +724,7 @@ class TestBroadPhase:
         monkeypatch.setattr(_boxes, "_MOST_PAIRS", most)
         rng = np.random.default_rng(most)
         for round_ in range(30):
+
             def some(n):
                 low = rng.integers(0, 12, (n, 3)).astype(float)  # many equal and touching
                 return _boxes.Boxes(low, low + rng.integers(0, 4, (n, 3)))

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes, shapes, scenes and queries from Python: what goes in arrives, what comes out is true."""
 
+import collections
+import copy
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -11,7 +14,6 @@ import threading
 import meshes
 import numpy as np
 import pytest
-
 import raycontact as rc
 
 RNG = np.random.default_rng(47)
@@ -55,7 +57,11 @@ def test_a_mesh_is_read_from_files_bytes_and_other_libraries(tmp_path):
     vertices, faces = meshes.torus()
     data = meshes.ascii_stl(vertices, faces)
     (tmp_path / "ring.stl").write_bytes(data)
-    for mesh in (rc.Mesh(tmp_path / "ring.stl"), rc.Mesh(str(tmp_path / "ring.stl")), rc.Mesh.from_bytes(data, "stl", "r")):
+    for mesh in (
+        rc.Mesh(tmp_path / "ring.stl"),
+        rc.Mesh(str(tmp_path / "ring.stl")),
+        rc.Mesh.from_bytes(data, "stl", "r"),
+    ):
         assert len(mesh.triangles) == len(faces)
         assert np.array_equal(mesh.vertices[mesh.triangles].reshape(-1, 3), vertices[faces].reshape(-1, 3))
     trimesh = pytest.importorskip("trimesh")
@@ -282,8 +288,14 @@ def test_ids_name_one_body_for_ever(torus):
     assert one not in scene
     other = scene.add(torus)
     assert other != one and other % 2**32 == 0, "the same slot, another generation"
-    for use in (lambda: scene.set_poses([one], np.eye(4)), lambda: scene.poses(one), lambda: scene.remove(one),
-                lambda: scene.find_contacts([[one, other]]), lambda: scene.shape(one), lambda: scene.set_filter(one, 1, 1)):
+    for use in (
+        lambda: scene.set_poses([one], np.eye(4)),
+        lambda: scene.poses(one),
+        lambda: scene.remove(one),
+        lambda: scene.find_contacts([[one, other]]),
+        lambda: scene.shape(one),
+        lambda: scene.set_filter(one, 1, 1),
+    ):
         with pytest.raises(rc.InputError, match="was removed"):
             use()
     for wrong in (-1, 5, 2**40, -(2**62)):
@@ -502,7 +514,14 @@ def test_threads_with_a_scene_each_run_side_by_side(torus):
 
 def run_python(code, **options):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **options)
+    return subprocess.Popen(
+        [sys.executable, "-c", code],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        **options,
+    )
 
 
 def test_ctrl_c_ends_a_batch():
@@ -575,7 +594,27 @@ def test_poses_are_made_and_mended():
     assert np.allclose(rc.nearest_rigid(bent), poses)
     assert rc.pose([1, 2, 3]).tolist() == [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
     assert rc.pose(np.zeros((5, 3)), np.eye(3)).shape == (5, 4, 4)
-    for bad in (lambda: rc.pose([1, 2]), lambda: rc.pose(rotation=np.eye(4)), lambda: rc.pose(np.zeros((2, 3)), np.zeros((3, 3, 3))),
-                lambda: rc.pose_from_quaternion([0, 0, 0], [0, 0, 0, 0]), lambda: rc.nearest_rigid(np.diag([1, 1, -1, 1]))):
+    for bad in (
+        lambda: rc.pose([1, 2]),
+        lambda: rc.pose(rotation=np.eye(4)),
+        lambda: rc.pose(np.zeros((2, 3)), np.zeros((3, 3, 3))),
+        lambda: rc.pose_from_quaternion([0, 0, 0], [0, 0, 0, 0]),
+        lambda: rc.nearest_rigid(np.diag([1, 1, -1, 1])),
+    ):
         with pytest.raises(rc.InputError):
             bad()
+
+
+def test_meshes_are_pickled_and_shapes_are_shared_by_copies(torus):
+    mesh = rc.Mesh(*meshes.bracket(), name="L")
+    again = pickle.loads(pickle.dumps(mesh))
+    assert np.array_equal(again.vertices, mesh.vertices) and np.array_equal(again.triangles, mesh.triangles)
+    assert again.name == "L" and copy.deepcopy([torus])[0] is torus and copy.copy(torus) is torus
+    with pytest.raises(TypeError, match="pickle its Mesh"):
+        pickle.dumps(torus)
+
+
+def test_an_object_with_vertices_and_faces_is_one_mesh_even_if_it_is_a_tuple(torus):
+    pair = collections.namedtuple("pair", "vertices faces")(*meshes.bracket())
+    assert rc.intersects(pair, pair) is True
+    assert rc.Scene().add(pair) == 0

@@ -6,11 +6,10 @@ import os
 import meshes
 import numpy as np
 import pytest
+import raycontact as rc
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as nps
-
-import raycontact as rc
 
 CLEAR = (ValueError, TypeError)
 SHAPE = rc.Shape(rc.Mesh(*meshes.bracket()))
@@ -146,9 +145,20 @@ def test_poses(pose, place, other):
     answer(rc.pose_from_quaternion, place, other)
 
 
-@pytest.mark.parametrize("name", sorted(name for name in dir(rc._core) if callable(getattr(rc._core, name)) and name[0] != "_"))
+@pytest.mark.parametrize(
+    "name", sorted(name for name in dir(rc._core) if callable(getattr(rc._core, name)) and name[0] != "_")
+)
 def test_the_inner_half_refuses_other_types(name):
-    for arguments in ((), (None,), (1,), ("x", "y"), (object(),) * 5, (None,) * 4, (np.zeros(3),) * 6, ([None], np.zeros((1, 4, 4))) * 2):
+    for arguments in (
+        (),
+        (None,),
+        (1,),
+        ("x", "y"),
+        (object(),) * 5,
+        (None,) * 4,
+        (np.zeros(3),) * 6,
+        ([None], np.zeros((1, 4, 4))) * 2,
+    ):
         try:
             getattr(rc._core, name)(*arguments)
         except (TypeError, ValueError):

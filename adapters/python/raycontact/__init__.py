@@ -17,7 +17,16 @@ from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
 from .mesh import AssemblyPart, Mesh, load_assembly
 from .poses import nearest_rigid, pose, pose_from_quaternion
 from .queries import (
-    ClosestPoint, Distance, RayHit, closest_point, collide, common_point, contains, distance, intersects, raycast,
+    ClosestPoint,
+    Distance,
+    RayHit,
+    closest_point,
+    collide,
+    common_point,
+    contains,
+    distance,
+    intersects,
+    raycast,
     raycast_any,
 )  # fmt: skip
 from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Recorder, Scene

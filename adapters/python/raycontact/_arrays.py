@@ -50,7 +50,9 @@ def as_poses(value: Any, what: str) -> tuple[np.ndarray, bool]:
     wrong = ~(np.abs(poses[:, 3] - (0, 0, 0, 1)) <= 1e-4).all(axis=1)
     if wrong.any():
         where = "" if array.ndim == 2 else f"[{int(np.argmax(wrong))}]"
-        raise InputError(f"{what}{where}: the last row is not 0 0 0 1; matrices have the translation in the last column")
+        raise InputError(
+            f"{what}{where}: the last row is not 0 0 0 1; matrices have the translation in the last column"
+        )
     return poses, array.ndim == 2
 
 

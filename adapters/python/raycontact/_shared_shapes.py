@@ -6,7 +6,8 @@ from __future__ import annotations
 import hashlib
 import os
 import weakref
-from typing import Any, Hashable, Optional
+from collections.abc import Hashable
+from typing import Any, Optional
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from .mesh import Mesh
 from .shape import Shape, ShapeLike
 
 # A shape lives as long as somebody uses it, or a mesh that it was made of.
-_shapes: "weakref.WeakValueDictionary[Hashable, Shape]" = weakref.WeakValueDictionary()
+_shapes: weakref.WeakValueDictionary[Hashable, Shape] = weakref.WeakValueDictionary()
 _of_mesh: dict[int, tuple[Any, Shape]] = {}
 
 

@@ -142,7 +142,7 @@ class _Objects:
         except TypeError:
             return i, j
 
-    def only(self, rows: np.ndarray) -> "_Objects":
+    def only(self, rows: np.ndarray) -> _Objects:
         """Those of some rows."""
         some = _Objects.__new__(_Objects)
         some.names, some.shapes = ([column[row] for row in rows] for column in (self.names, self.shapes))
@@ -232,7 +232,7 @@ class CollisionManager:
         return _answer(bool(len(i)), return_names, names, return_data, data)
 
     def in_collision_other(
-        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Whether any object collides with one of another manager.
 
@@ -290,7 +290,7 @@ class CollisionManager:
         return _answer(least, return_names, None if i is None else (mine.names[i], mine.names[j]), return_data, data)
 
     def min_distance_other(
-        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """The least distance of any object from one of another manager: metres; 0 where they collide.
 
@@ -508,7 +508,7 @@ def _faces_in_contact(found: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np
     return faces
 
 
-_faces_at: "weakref.WeakKeyDictionary[Shape, np.ndarray]" = weakref.WeakKeyDictionary()
+_faces_at: weakref.WeakKeyDictionary[Shape, np.ndarray] = weakref.WeakKeyDictionary()
 
 
 def _face_at_vertex(shape: Shape) -> np.ndarray:

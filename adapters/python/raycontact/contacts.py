@@ -58,7 +58,7 @@ class Contacts:
         self.data = data
 
     @classmethod
-    def _from_bytes(cls, memory: np.ndarray) -> "Contacts":
+    def _from_bytes(cls, memory: np.ndarray) -> Contacts:
         return cls(memory.view(CONTACT_DTYPE))
 
     @property
@@ -136,11 +136,11 @@ class Contacts:
         return np.choose(data["kind"], (vertex, edges, inside)) if len(data) else np.empty(0, np.uint64)
 
     @property
-    def touching(self) -> "Contacts":
+    def touching(self) -> Contacts:
         """Those that touch: without speculative contacts."""
         return self[self.depth > 0]
 
-    def deepest(self) -> "Contacts":
+    def deepest(self) -> Contacts:
         """The deepest of each pair of bodies, pairs in order."""
         if not len(self):
             return self
@@ -156,7 +156,7 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.data)
 
-    def __getitem__(self, which: Any) -> "Contacts":
+    def __getitem__(self, which: Any) -> Contacts:
         chosen = self.data[which]
         return type(self)(chosen if chosen.ndim else chosen.reshape(1))
 

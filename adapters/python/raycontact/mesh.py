@@ -58,7 +58,7 @@ class Mesh:
         self._core = _make(source, triangles, scale, name or "")
 
     @classmethod
-    def from_bytes(cls, data: bytes, format: str, name: str = "") -> "Mesh":
+    def from_bytes(cls, data: bytes, format: str, name: str = "") -> Mesh:
         """A mesh from the bytes of a whole file. format: "obj", "stl", "ply", "off", "gltf" or "glb".
 
         Raises InputError as for a file, and for a glTF whose buffers are files of their own.
@@ -66,7 +66,7 @@ class Mesh:
         return cls._wrap(_core.parse_mesh(bytes(data), format, name))
 
     @classmethod
-    def _wrap(cls, core: Any) -> "Mesh":
+    def _wrap(cls, core: Any) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._core = core
         return mesh
@@ -89,8 +89,15 @@ class Mesh:
     faces = triangles
     """The same, by the name that other libraries use."""
 
+    def __reduce__(self) -> Any:
+        return _unpickled, (self.vertices, self.triangles, self.name)
+
     def __repr__(self) -> str:
         return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
+
+
+def _unpickled(vertices: np.ndarray, triangles: np.ndarray, name: str) -> Mesh:
+    return Mesh(vertices, triangles, name=name)
 
 
 def _make(vertices: Any, triangles: Any, scale: float, name: str) -> Any:

@@ -96,7 +96,7 @@ def collide(
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     settings = as_settings(
         {
-                        "direction": direction,
+            "direction": direction,
             "features": features,
             "max_contacts_per_pair": max_contacts_per_pair,
             "devices": devices,

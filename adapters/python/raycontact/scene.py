@@ -254,7 +254,9 @@ class Scene:
         starts, one = as_points(origins, "origins")
         along, one_direction = as_points(directions, "directions")
         n = len(along) if len(starts) == 1 else len(starts)
-        starts, along = (np.ascontiguousarray(np.broadcast_to(x, (n, 3))) if len(x) == 1 else x for x in (starts, along))
+        starts, along = (
+            np.ascontiguousarray(np.broadcast_to(x, (n, 3))) if len(x) == 1 else x for x in (starts, along)
+        )
         hits = self._core.raycast(starts, along, as_length(max, "max"))
         return BodyRayHits(*one_of(hits, one and one_direction))
 
@@ -325,7 +327,7 @@ class Recorder:
         """Of the contacts so far: the same for every device and number of threads."""
         return self._core.hash
 
-    def __enter__(self) -> "Recorder":
+    def __enter__(self) -> Recorder:
         return self
 
     def __exit__(self, kind: Any, error: Any, trace: Any) -> None:

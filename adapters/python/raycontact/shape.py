@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Union
 
@@ -41,15 +40,13 @@ class Shape:
     Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
     """
 
-    def __init__(
-        self, mesh: MeshLike, *, repair: bool = True, nesting: str = "as_wound", threads: int = 0
-    ) -> None:
+    def __init__(self, mesh: MeshLike, *, repair: bool = True, nesting: str = "as_wound", threads: int = 0) -> None:
         if not isinstance(mesh, Mesh):
             mesh = Mesh(mesh)
         self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), as_count(threads, "threads"))
 
     @classmethod
-    def _wrap(cls, core: Any) -> "Shape":
+    def _wrap(cls, core: Any) -> Shape:
         shape = cls.__new__(cls)
         shape._core = core
         return shape
@@ -146,6 +143,15 @@ class Shape:
         """What the shape takes on the host."""
         return self._core.memory_bytes
 
+    def __deepcopy__(self, memo: Any) -> Shape:
+        return self  # nobody can change it
+
+    def __copy__(self) -> Shape:
+        return self
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Shape cannot be pickled; pickle its Mesh and make it anew, or let the process fork")
+
     def __repr__(self) -> str:
         return f"<Shape {self.name!r}: {self.report.triangles} triangles, {self.report.verdict}>"
 
@@ -163,7 +169,8 @@ def as_shapes(value: Union[ShapeLike, Sequence[ShapeLike]], what: str) -> tuple[
     """The C++ half's shapes, and whether a single one was given. What is there several times is made once."""
     if isinstance(value, Shape):
         return [value._core], True
-    if not isinstance(value, (list, tuple)) and not (isinstance(value, np.ndarray) and value.dtype == object):
+    is_list = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.dtype == object)
+    if not is_list or hasattr(value, "faces"):
         return [as_shape(value)._core], True
     made: dict[int, Any] = {}
     cores = []
