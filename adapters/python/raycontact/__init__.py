@@ -12,6 +12,7 @@ to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueErro
 
 from . import _core
 from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
+from .clash import Clash, Clashes, clash
 from .collision import CollisionManager
 from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
 from .mesh import AssemblyPart, Mesh, load_assembly
@@ -35,9 +36,9 @@ from .shape import Mass, Shape
 __version__: str = _core.version
 
 __all__ = [
-    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "ClosestPoint", "CollisionManager", "Contacts",
-    "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "PairContacts",
-    "RayHit", "Recorder", "Scene", "Shape", "StepStats", "closest_point", "collide", "common_point", "contains",
-    "distance", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
-    "raycast", "raycast_any",
+    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "Clash", "Clashes", "ClosestPoint",
+    "CollisionManager", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass",
+    "Mesh", "MeshReport", "PairContacts", "RayHit", "Recorder", "Scene", "Shape", "StepStats", "clash",
+    "closest_point", "collide", "common_point", "contains", "distance", "intersects", "list_devices", "load_assembly",
+    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any",
 ]  # fmt: skip

@@ -35,7 +35,7 @@ def as_settings(words: dict[str, Any]) -> dict[str, Any]:
             if not isinstance(value, (bool, np.bool_)):
                 raise InputError(f"{key}: {value!r} is neither True nor False")
             made[key] = bool(value)
-        elif not isinstance(value, str):
+        elif not isinstance(value, str) or not value.isascii():
             raise InputError(f"{key}: {value!r} is no word")
         else:
             made[key] = value

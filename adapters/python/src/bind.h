@@ -12,5 +12,6 @@ void bind_queries(nanobind::module_& m);
 void bind_stats(nanobind::module_& m);
 void bind_scene(nanobind::module_& m);
 void bind_recorder(nanobind::module_& m);
+void bind_clash(nanobind::module_& m);
 
 } // namespace raycontact::python

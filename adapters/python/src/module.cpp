@@ -20,4 +20,5 @@ NB_MODULE(_core, m) {
     raycontact::python::bind_stats(m);
     raycontact::python::bind_scene(m);
     raycontact::python::bind_recorder(m);
+    raycontact::python::bind_clash(m);
 }

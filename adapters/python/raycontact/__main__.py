@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`python -m raycontact`: the queries of the program `raycontact`, without its simulations and reports."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+import numpy as np
+
+import raycontact as rc
+
+
+def _mesh(options: argparse.Namespace) -> int:
+    good = True
+    for file in options.files:
+        report = rc.Shape(rc.Mesh(file, scale=options.scale)).report
+        print(report.to_json() if options.json else f"{file}: {report.verdict}\n{report}")
+        good &= report.good
+    return 0 if good or not options.check else 3
+
+
+def _pose_of(numbers: list[float]) -> np.ndarray:
+    return rc.pose(numbers[:3]) if len(numbers) == 3 else np.reshape(numbers, (4, 4))
+
+
+def _collide(options: argparse.Namespace) -> int:
+    if options.pose is not None and len(options.pose) not in (3, 16):
+        raise rc.InputError(f"--pose: {len(options.pose)} numbers given; give x y z, or the 16 of a matrix by rows")
+    a, b = (rc.Shape(rc.Mesh(file, scale=options.scale)) for file in (options.a, options.b))
+    pose = None if options.pose is None else _pose_of(options.pose)
+    contacts = rc.collide(a, b, pose_b=pose, direction=options.direction, features=options.features)
+    apart = rc.distance(a, b, pose_b=pose)
+    if options.json:
+        rows = zip(contacts.point_a, contacts.point_b, contacts.normal, contacts.depth, contacts.kind, strict=True)
+        for point_a, point_b, normal, depth, kind in rows:
+            line = {"point_a": point_a.tolist(), "point_b": point_b.tolist(), "normal": normal.tolist()}
+            print(json.dumps({**line, "depth": float(depth), "kind": rc.FeatureKind(kind).name.lower()}))
+    elif len(contacts):
+        deepest = contacts.deepest()
+        print(f"{len(contacts)} contacts, the deepest {deepest.depth[0]:.6g} m at {deepest.point_a[0].tolist()}")
+    elif apart.distance == 0:
+        print(f"they share the point {apart.point_a.tolist()}, without a contact")
+    else:
+        print(f"apart by {apart.distance:.6g} m, from {apart.point_a.tolist()} to {apart.point_b.tolist()}")
+    return 3 if options.check and apart.distance == 0 else 0
+
+
+def _clash(options: argparse.Namespace) -> int:
+    found = rc.clash(options.files, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty())
+    for name, why in found.faults.items():
+        print(f"not checked: {name}: {why}", file=sys.stderr)
+    if options.json:
+        for one in found:
+            normal = None if one.normal is None else one.normal.tolist()
+            line = {"a": one.a, "b": one.b, "depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
+            print(json.dumps({**line, "duplicate": one.duplicate, "normal": normal}))
+    else:
+        print(found)
+    if options.check and not found and found.faults:
+        return 1
+    return 3 if options.check and found else 0
+
+
+def _devices(options: argparse.Namespace) -> int:
+    for device in rc.list_devices():
+        print(f"{device.id:12} {device.name}" + ("" if device.usable else f"  ({device.why_not})"))
+    return 0
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Exit status: 0 fine, 1 the run failed, 2 bad usage or input, 3 found something (--check)."""
+    parser = argparse.ArgumentParser(prog="python -m raycontact", description=__doc__)
+    parser.add_argument("--version", action="version", version=rc.__version__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, run, text: str, checks: bool = True) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=text, description=text)
+        sub.set_defaults(run=run)
+        if checks:
+            sub.add_argument("--json", action="store_true", help="JSON on stdout")
+            sub.add_argument("--check", action="store_true", help="exit status 3 where there is something to report")
+        return sub
+
+    mesh = command("mesh", _mesh, "Say what a mesh is, and whether it is good for contacts")
+    mesh.add_argument("files", nargs="+", metavar="FILE")
+    collide = command("collide", _collide, "Find the contacts of two meshes, or how far they are apart")
+    collide.add_argument("a", metavar="A")
+    collide.add_argument("b", metavar="B")
+    collide.add_argument("--pose", nargs="+", type=float, metavar="X", help="of B: x y z, or a 4 x 4 matrix by rows")
+    collide.add_argument("--direction", default="reprojected", choices=["ray", "weighted", "reprojected", "refined"])
+    collide.add_argument("--features", default="edges", choices=["vertices", "edges"])
+    for sub in (mesh, collide):
+        sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
+    clash = command("clash", _clash, "Find the parts of an assembly that intersect")
+    clash.add_argument("files", nargs="+", metavar="FILE", help="of a glTF file each node with a mesh is a part")
+    clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
+    command("devices", _devices, "List the devices that contacts can be found on", checks=False)
+
+    options = parser.parse_args(arguments)
+    try:
+        return int(options.run(options))
+    except rc.InputError as error:
+        print(f"raycontact: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which parts of an assembly intersect, and how deep."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import as_count, as_length, as_poses
+from ._core import InputError
+from .mesh import Mesh
+
+
+class Clash(NamedTuple):
+    """Two parts that share a point."""
+
+    a: str
+    """Name of a part."""
+    b: str
+    """Name of a later part."""
+    depth: Optional[float]
+    """Of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a depth, as one
+    of them is open, intersects itself or winds the wrong way somewhere."""
+    point: np.ndarray
+    """(3,) float64, metres, frame of the assembly: of that contact; else one that both share."""
+    normal: Optional[np.ndarray]
+    """(3,) float64, unit, from a to b: of that contact; None without one."""
+    contacts: int
+    """How many contacts the two have."""
+    duplicate: bool
+    """They are copies in one place."""
+    index_a: int
+    """Of a in the list of parts."""
+    index_b: int
+    """Of b in the list of parts."""
+
+
+class Clashes(Sequence[Clash]):
+    """Clashes, the deepest first, then those without a depth, then those that touch."""
+
+    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: dict[str, str], open: list[str]):
+        self._clashes = clashes
+        self.parts = parts
+        """Names of all parts."""
+        self.pairs = pairs
+        """How many pairs of boxes touch; only these can clash."""
+        self.faults = faults
+        """Parts that could not be checked, and why."""
+        self.open = open
+        """Parts that are not closed, so that nothing is inside them."""
+
+    def __getitem__(self, which: Any) -> Any:
+        return self._clashes[which]
+
+    def __len__(self) -> int:
+        return len(self._clashes)
+
+    def __iter__(self) -> Iterator[Clash]:
+        return iter(self._clashes)
+
+    def __repr__(self) -> str:
+        depths = [clash.depth for clash in self if clash.depth]
+        deepest = f", deepest {depths[0]:.6g} m" if depths else ""
+        return f"<Clashes: {len(self)} among {len(self.parts)} parts{deepest}>"
+
+    def __str__(self) -> str:
+        lines = []
+        for clash in self:
+            depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m" if clash.depth > 0 else "touching"
+            same = "  (the same part in the same place)" if clash.duplicate else ""
+            lines.append(f"{depth:>12}  {clash.a}  x  {clash.b}{same}")
+        return "\n".join([*lines, repr(self)[1:-1]])
+
+
+def clash(
+    assembly: Any,
+    *,
+    ignore_touching: Optional[float] = None,
+    threads: int = 0,
+    progress: Union[bool, Callable[[float], Any]] = False,
+) -> Clashes:
+    """Every pair of parts that shares a point (exact), with the depth of its deepest contact.
+
+    assembly: a file or a list of files (of a glTF file each node with a mesh is a part); or a list of parts: each an
+        `AssemblyPart`, a tuple (name, mesh, pose) or a mesh where it lies. Parts stay where they are placed.
+    ignore_touching: leaves out clashes no deeper than this, metres; 0: those that only touch. None leaves out none.
+    progress: True draws a bar if tqdm is installed; or a function of what is done, from 0 to 1.
+
+    Raises InputError for files that cannot be read, for fewer than two parts and for poses that are not rigid.
+    """
+    parts = _parts_of(assembly)
+    if len(parts) < 2:
+        raise InputError(f"clash: {len(parts)} part given; give several, or a glTF file whose nodes are parts")
+    names = [name for name, _, _ in parts]
+    poses = np.ascontiguousarray(np.stack([pose for _, _, pose in parts]))
+    meshes = [mesh for _, mesh, _ in parts]
+    with _Bar(progress) as bar:
+        found, pairs, faults, opened = _core.find_clashes(names, meshes, poses, as_count(threads, "threads"), bar.tell)
+    clashes = [
+        Clash(names[a], names[b], depth, point, normal, contacts, duplicate, a, b)
+        for a, b, depth, point, normal, contacts, duplicate in found
+    ]
+    if ignore_touching is not None:
+        most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
+        clashes = [one for one in clashes if one.depth is None or one.depth > most]
+    return Clashes(clashes, names, pairs, {names[i]: why for i, why in faults}, [names[i] for i in opened])
+
+
+def _parts_of(assembly: Any) -> list[tuple[str, Any, np.ndarray]]:
+    if isinstance(assembly, (str, os.PathLike)):
+        assembly = [assembly]
+    if not isinstance(assembly, (list, tuple)) or hasattr(assembly, "faces"):
+        raise InputError(f"clash: {type(assembly).__name__} is no file and no list of files or parts")
+    if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
+        return [(name, mesh, pose[0]) for name, mesh, pose in _core.load_parts([os.fspath(file) for file in assembly])]
+    made: dict[int, Mesh] = {}
+    parts = []
+    for i, item in enumerate(assembly):
+        name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
+        matrices, one = as_poses(pose, f"part {i}: pose")
+        if not one:
+            raise InputError(f"part {i}: pose: give one, (4, 4)")
+        if id(mesh) not in made:
+            made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
+        parts.append((str(name if name is not None else made[id(mesh)].name or i), made[id(mesh)]._core, matrices[0]))
+    return parts
+
+
+class _Bar:
+    """What is done goes to a function, a bar of tqdm, or nowhere."""
+
+    def __init__(self, progress: Union[bool, Callable[[float], Any]]) -> None:
+        self.tell: Optional[Callable[[float], Any]] = progress if callable(progress) else None
+        self._bar: Any = None
+        if progress is True:
+            try:
+                from tqdm.auto import tqdm
+            except ImportError:
+                return
+            self._bar = tqdm(total=100, desc="clash", unit="%")
+            self.tell = lambda done: self._bar.update(100 * done - self._bar.n)
+
+    def __enter__(self) -> _Bar:
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+__all__ = ["Clash", "Clashes", "clash"]
