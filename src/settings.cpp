@@ -60,11 +60,12 @@ void need_known(const Table& table, Value value, const char* what) {
                          + ", which its enumeration does not have");
 }
 
-void need_length(const char* name, const std::optional<double>& metres, bool zero_too) {
-    if (!metres) return;
-    if (!std::isfinite(*metres) || *metres < 0 || (*metres == 0 && !zero_too))
-        throw InputError(std::string(name) + " must be a finite length "
-                         + (zero_too ? "of at least 0 metres" : "above 0 metres") + ", not " + text_of(*metres));
+// Kernels form squares of lengths, and of confidence x length, in float32, which ends at 3e38.
+constexpr double most_metres = 1e12, most_confidence = 1e6;
+
+void need_length(const char* name, const std::optional<double>& metres) {
+    if (metres && !(*metres >= 0 && *metres <= most_metres))
+        throw InputError(std::string(name) + " must be a length from 0 to 1e12 metres, not " + text_of(*metres));
 }
 
 } // namespace
@@ -75,12 +76,13 @@ void check_settings(const Settings& settings) {
     need_known(directions, settings.direction, "direction");
     need_known(features, settings.features, "features");
     need_known(schedules, settings.execution.schedule, "schedule");
-    need_length("displacement_threshold", settings.paper.displacement_threshold, true);
-    need_length("culling_distance", settings.paper.culling_distance, true);
-    need_length("distance_extension", settings.paper.distance_extension, true);
-    need_length("speculative_margin", settings.speculative_margin, true);
-    if (!(std::isfinite(settings.paper.confidence) && settings.paper.confidence >= 1))
-        throw InputError("confidence must be at least 1 (paper equation 1), not " + text_of(settings.paper.confidence));
+    need_length("displacement_threshold", settings.paper.displacement_threshold);
+    need_length("culling_distance", settings.paper.culling_distance);
+    need_length("distance_extension", settings.paper.distance_extension);
+    need_length("speculative_margin", settings.speculative_margin);
+    if (!(settings.paper.confidence >= 1 && settings.paper.confidence <= most_confidence))
+        throw InputError("confidence must be from 1 (paper equation 1) to 1e6, not "
+                         + text_of(settings.paper.confidence));
     if (settings.paper.max_iterations == 0)
         throw InputError("max_iterations must be at least 1: a ray visits its own triangle first");
     if (settings.paper.max_iterations > most_iterations)

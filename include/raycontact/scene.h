@@ -64,7 +64,7 @@ public:
     void set_next_pose(BodyId body, const Pose& pose);
     /// Metres: the margin of its speculative contacts with any body, instead of Settings::speculative_margin; of two
     /// such bodies the larger counts. Empty: as the settings say. Keeps until the body is removed. Throws InputError
-    /// unless it is finite and at least 0.
+    /// unless it is from 0 to 1e12.
     void set_speculative_margin(BodyId body, std::optional<double> margin);
     /// The one it was added with. Throws InputError for a body that is not in the scene.
     const Shape& shape(BodyId body) const;

@@ -61,7 +61,7 @@ struct Settings {
     PaperOptions paper;  ///< for methods `iterative` and `predictive`, and for who measures
 };
 
-/// Throws InputError naming the setting that makes no sense, and what would.
+/// Throws InputError naming the setting that makes no sense, and what would. Lengths are at most 1e12 m.
 RAYCONTACT_API void check_settings(const Settings& settings);
 
 /// The word of the command line; throws InputError naming what is known.

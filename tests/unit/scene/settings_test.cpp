@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace raycontact {
@@ -39,6 +40,64 @@ TEST(Settings, ValuesThatAnEnumerationDoesNotHaveAreRefused) {
     expect_refused(settings, "schedule");
     const auto box = Shape::make(reference::box_mesh({0.5, 0.5, 0.5}));
     EXPECT_THROW(collide(*box, {}, *box, {}, {.direction = static_cast<Direction>(9)}), InputError);
+}
+
+/// Each length of the settings by its name.
+struct Length {
+    const char* name;
+    void (*set)(Settings&, double);
+};
+constexpr Length lengths[] = {
+    {"displacement_threshold", [](Settings& s, double x) { s.paper.displacement_threshold = x; }},
+    {"culling_distance", [](Settings& s, double x) { s.paper.culling_distance = x; }},
+    {"distance_extension", [](Settings& s, double x) { s.paper.distance_extension = x; }},
+    {"speculative_margin", [](Settings& s, double x) { s.speculative_margin = x; }}};
+
+TEST(Settings, LengthsThatFloatsCannotSquareAreRefused) {
+    for (const auto& [name, set] : lengths)
+        for (const double bad : {-1e-300, 1.1e12, 1e30, 1e308, std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::quiet_NaN()}) {
+            Settings settings;
+            set(settings, bad);
+            expect_refused(settings, name);
+        }
+    for (const double bad : {0.99, 1.1e6, 1e300, std::numeric_limits<double>::infinity()}) {
+        Settings settings;
+        settings.paper.confidence = bad;
+        expect_refused(settings, "confidence");
+    }
+}
+
+TEST(Settings, TheLargestAndSmallestLengthsFindTheSameContacts) {
+    const auto box = Shape::make(reference::box_mesh({0.5, 0.5, 0.5}));
+    const auto touching = [&](const Settings& settings) {
+        Scene scene(settings);
+        scene.add(box);
+        const BodyId moved = scene.add(box, {.translation = {0.9, 0.03, 0.02}});
+        scene.add(box, {.translation = {40, 0, 0}});
+        std::size_t found = 0;
+        for (int step = 0; step < 4; ++step) {
+            scene.set_pose(moved, {.translation = {0.9 - 0.01 * step, 0.03, 0.02}});
+            scene.find_contacts();
+            found = scene.stats().contacts;
+        }
+        return found;
+    };
+    const std::size_t expected = touching({});
+    ASSERT_GT(expected, 0u);
+    for (const Method method : {Method::standard, Method::certified, Method::iterative, Method::predictive})
+        for (const auto& [name, set] : lengths)
+            for (const double length : {0.0, 1e-300, 1e-30, 1e6, 1e12}) {
+                Settings settings;
+                settings.method = method;
+                settings.speculative = true;
+                settings.paper.confidence = length > 1 ? 1e6 : 1;
+                set(settings, length);
+                const std::size_t found = touching(settings);
+                if (method == Method::standard || method == Method::certified) {
+                    EXPECT_EQ(found, expected) << name << " " << length;
+                }
+            }
 }
 
 } // namespace
