@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Clashes of an assembly from Python."""
+
+import meshes
+import numpy as np
+import pytest
+
+import raycontact as rc
+
+BOX = rc.Mesh(*meshes.box(), name="box")
+
+
+def row(*places):
+    return [(f"part {i}", BOX, rc.pose([x, 0, 0])) for i, x in enumerate(places)]
+
+
+def test_depths_touches_and_gaps():
+    found = rc.clash(row(0, 0.75, 1.75, 5))
+    assert [(one.a, one.b) for one in found] == [("part 0", "part 1"), ("part 1", "part 2")]
+    assert found[0].depth == pytest.approx(0.25, abs=1e-5) and found[1].depth == 0
+    assert np.allclose(found[0].normal, [1, 0, 0]) and found[1].normal is None
+    assert 0.25 - 1e-5 <= found[0].point[0] <= 0.5 + 1e-5 and found[1].point[0] == pytest.approx(1.25)
+    assert found.parts == [f"part {i}" for i in range(4)] and found.pairs == 2 and not found.faults and not found.open
+    assert len(rc.clash(row(0, 0.75, 1.75, 5), ignore_touching=0)) == 1
+    assert len(rc.clash(row(0, 0.75, 1.75, 5), ignore_touching=0.3)) == 0
+    assert "touching" in str(found) and "0.25 m" in str(found)
+
+
+def test_duplicates_and_parts_inside_others():
+    small = rc.Mesh(*meshes.box((0.2, 0.2, 0.2)), name="small")
+    found = rc.clash([*row(0, 0), ("small", small, None)])
+    assert found[0].duplicate and {(one.a, one.b) for one in found} == {
+        ("part 0", "part 1"), ("part 0", "small"), ("part 1", "small"),
+    }  # fmt: skip
+    assert all(one.depth > 0 for one in found)
+
+
+def test_clashes_are_the_pairs_that_intersect():
+    rng = np.random.default_rng(3)
+    parts = []
+    for i in range(40):
+        vertices, faces = meshes.torus() if i % 2 else meshes.bracket()
+        pose = rc.pose(rng.uniform(-4, 4, 3), meshes.random_rotations(1, rng)[0])
+        parts.append((f"{i}", rc.Mesh(vertices, faces), pose))
+    found = rc.clash(parts)
+    shapes, poses = [rc.Shape(mesh) for _, mesh, _ in parts], np.stack([pose for _, _, pose in parts])
+    a, b = np.triu_indices(len(parts), 1)
+    hits = rc.intersects([shapes[i] for i in a], [shapes[i] for i in b], poses[a], poses[b])
+    assert 5 < hits.sum() < len(hits)
+    assert {(one.index_a, one.index_b) for one in found} == set(zip(a[hits].tolist(), b[hits].tolist()))
+
+
+def test_progress_is_told_and_may_end_the_search():
+    told = []
+    rc.clash(row(0, 0.5, 1), progress=told.append)
+    assert told and told == sorted(told) and told[-1] == 1
+
+    def refuse(done):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        rc.clash(row(0, 0.5, 1), progress=refuse)
+    assert len(rc.clash(row(0, 0.5, 1), progress=True)) == 3
+
+
+def test_a_part_that_cannot_be_checked_is_named():
+    flat = rc.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
+    found = rc.clash([*row(0, 0.5), ("flat", flat, None)])
+    assert list(found.faults) == ["flat"] and "area" in found.faults["flat"] and len(found) == 1
+    sheet = rc.Mesh([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
+    opened = rc.clash([*row(0), ("sheet", sheet, None)])
+    assert opened.open == ["sheet"] and len(opened) == 1
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: rc.clash("no/such.glb"), "no/such.glb"),
+        (lambda: rc.clash([BOX]), "1 part"),
+        (lambda: rc.clash(BOX), "Mesh"),
+        (lambda: rc.clash(7), "int"),
+        (lambda: rc.clash([BOX, ("b", BOX, np.eye(3))]), "part 1"),
+        (lambda: rc.clash([BOX, ("b", BOX, np.diag([2, 2, 2, 1]))]), "rigid"),
+        (lambda: rc.clash([BOX, ("b", BOX, np.stack([np.eye(4)] * 2))]), "give one"),
+        (lambda: rc.clash([BOX, 7]), "int"),
+    ],
+)
+def test_bad_assemblies_are_value_errors(make, says):
+    with pytest.raises(ValueError, match=says):
+        make()
