@@ -35,9 +35,8 @@ def main() -> None:
     else:
         raise AssertionError("a vertex that does not exist was taken")
     devices = ", ".join(device.id for device in rc.list_devices() if device.usable)
-    print(
-        f"raycontact {rc.__version__} works on Python {sys.version.split()[0]}, NumPy {np.__version__}; devices: {devices}"
-    )
+    versions = f"Python {sys.version.split()[0]}, NumPy {np.__version__}"
+    print(f"raycontact {rc.__version__} works on {versions}; devices: {devices}")
 
 
 main()

@@ -3,8 +3,8 @@
 """raycontact beside python-fcl and coal, from Python: shallow pairs of concave meshes, one thread each.
 
 Needs `pip install raycontact python-fcl coal`; peers that are not there are left out. Every engine gets the same meshes
-and poses and is called as its documentation does it; making trees and moving data to Python's side is not counted, calls
-are. Prints one table: microseconds a pair, the median of the runs, and how many times as long as raycontact.
+and poses and is called as its documentation does it; making trees and moving data to Python's side is not counted,
+calls are. Prints one table: microseconds a pair, the median of the runs, and how many times as long as raycontact.
 """
 
 import argparse
@@ -183,9 +183,8 @@ def main():
         ("intersects, half of them", lambda: rc.intersects(a, b, pose_b=half, **how), "intersects"),
         ("distance, all apart", lambda: rc.distance(a, b, pose_b=apart, **how).distance, "distance"),
     ]
-    print(
-        f"{options.pairs} pairs of {len(meshes[0][1])} triangles, {few} of them for peers; median of {options.runs} runs"
-    )
+    triangles = len(meshes[0][1])
+    print(f"{options.pairs} pairs of {triangles} triangles, {few} of them for peers; median of {options.runs} runs")
     print(f"{'':32} {'raycontact':>14}" + "".join(f"{peer.name:>24}" for peer in peers))
     for name, ours, question in jobs:
         seconds, answer = median_time(ours, options.runs)
@@ -204,9 +203,8 @@ def main():
                 assert np.allclose(found, answer[:few], atol=1e-6), f"{peer.name} and raycontact disagree on distances"
         print(line, flush=True)
         if question == "contacts":
-            print(
-                f"{'':6}{len(answer) / options.pairs:.1f} contacts a pair; {len(np.unique(answer.pair))} pairs have some"
-            )
+            some = len(np.unique(answer.pair))
+            print(f"{'':6}{len(answer) / options.pairs:.1f} contacts a pair; {some} pairs have some")
 
 
 main()

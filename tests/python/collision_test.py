@@ -723,7 +723,7 @@ class TestBroadPhase:
     def test_pairs_are_those_of_all(self, most, monkeypatch):
         monkeypatch.setattr(_boxes, "_MOST_PAIRS", most)
         rng = np.random.default_rng(most)
-        for round_ in range(30):
+        for _ in range(30):
 
             def some(n):
                 low = rng.integers(0, 12, (n, 3)).astype(float)  # many equal and touching

@@ -476,7 +476,7 @@ def test_a_second_thread_is_told_that_the_scene_is_in_use(torus):
     def ask():
         while not stop.is_set():
             try:
-                scene.stats
+                _ = scene.stats
             except RuntimeError as error:
                 refused.append(str(error))
                 return

@@ -6,11 +6,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._core import InputError
 
 
-def as_numbers(value: Any, what: str, kinds: str = "fiu") -> np.ndarray:
+def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
     """A NumPy array of anything that is one: lists, arrays, tensors of other libraries in the host's memory."""
     try:
         if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
@@ -27,7 +28,7 @@ def as_numbers(value: Any, what: str, kinds: str = "fiu") -> np.ndarray:
     return array
 
 
-def as_points(value: Any, what: str) -> tuple[np.ndarray, bool]:
+def as_points(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
     """(n, 3) float64, and whether a single (3,) was given."""
     array = as_numbers(value, what)
     if array.ndim in (1, 2) and array.shape[-1] == 3:
@@ -37,7 +38,7 @@ def as_points(value: Any, what: str) -> tuple[np.ndarray, bool]:
     raise InputError(f"{what}: has shape {array.shape}; give (3,) or (n, 3)")
 
 
-def as_poses(value: Any, what: str) -> tuple[np.ndarray, bool]:
+def as_poses(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
     """(n, 4, 4) float64, and whether a single (4, 4) was given. None is the identity."""
     if value is None:
         return np.eye(4)[None], True
@@ -56,7 +57,7 @@ def as_poses(value: Any, what: str) -> tuple[np.ndarray, bool]:
     return poses, array.ndim == 2
 
 
-def as_ids(value: Any, what: str) -> tuple[np.ndarray, bool]:
+def as_ids(value: Any, what: str) -> tuple[NDArray[np.int64], bool]:
     """(n,) int64, and whether a single id was given."""
     array = as_numbers(value, what, "iu")
     if array.ndim > 1:
@@ -72,7 +73,7 @@ def as_id(value: Any, what: str) -> int:
     return int(numbers[0])
 
 
-def as_pairs(value: Any, what: str) -> np.ndarray:
+def as_pairs(value: Any, what: str) -> NDArray[np.int64]:
     """(n, 2) int64."""
     array = as_numbers(value, what, "iu")
     if array.size == 0:
@@ -101,7 +102,7 @@ def as_count(value: Any, what: str) -> int:
     return count
 
 
-def one_of(columns: tuple, is_one: bool) -> tuple:
+def one_of(columns: tuple[NDArray[Any], ...], is_one: bool) -> tuple[Any, ...]:
     """Of a single item what it holds, not arrays over one item."""
     if not is_one:
         return columns

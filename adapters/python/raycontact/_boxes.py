@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple, Optional
+from typing import Literal, NamedTuple, Optional
 
 import numpy as np
+from numpy.typing import NDArray
 
 _MOST_PAIRS = 1 << 20
 """Of a chunk: what is looked at takes some 200 bytes a pair."""
@@ -15,24 +16,24 @@ _MOST_PAIRS = 1 << 20
 class Boxes(NamedTuple):
     """Axis-aligned, world frame, metres. No body reaches out of its own."""
 
-    low: np.ndarray
-    """(n, 3) float64."""
-    high: np.ndarray
-    """(n, 3) float64."""
+    low: NDArray[np.float64]
+    """(n, 3)."""
+    high: NDArray[np.float64]
+    """(n, 3)."""
 
 
 class Pairs(NamedTuple):
     """Pairs of boxes: places in two lists, or in one."""
 
-    a: np.ndarray
-    """(n,) int64."""
-    b: np.ndarray
-    """(n,) int64; of one list above `a`."""
-    gap: np.ndarray
-    """(n,) float64, metres between the two boxes: no more than between the bodies."""
+    a: NDArray[np.int64]
+    """(n,)."""
+    b: NDArray[np.int64]
+    """(n,); of one list above `a`."""
+    gap: NDArray[np.float64]
+    """(n,), metres between the two boxes: no more than between the bodies."""
 
 
-def boxes_of(local: np.ndarray, poses: np.ndarray) -> Boxes:
+def boxes_of(local: NDArray[np.float64], poses: NDArray[np.float64]) -> Boxes:
     """Of bodies whose own boxes (n, 2, 3) are placed by poses (n, 4, 4)."""
     middle, half = (local[:, 0] + local[:, 1]) / 2, (local[:, 1] - local[:, 0]) / 2
     rotation, translation = poses[:, :3, :3], poses[:, :3, 3]
@@ -62,12 +63,14 @@ def pairs_within(gap: float, a: Boxes, b: Optional[Boxes] = None) -> Iterator[Pa
             yield _near(gap, a, a, np.minimum(one, other), np.maximum(one, other), axis)
         return
     # Of two boxes that are near, one begins in the other (widened), so each pair comes up in one of two sweeps.
-    for here, there, side in ((a, b, "left"), (b, a, "right")):
+    sweeps: tuple[tuple[Boxes, Boxes, Literal["left", "right"]], ...] = ((a, b, "left"), (b, a, "right"))
+    for here, there, side in sweeps:
         order = np.argsort(there.low[:, axis], kind="stable")
         begin = there.low[order, axis]
         first = np.searchsorted(begin, here.low[:, axis], side)
         for row, place in _ranges(first, np.searchsorted(begin, here.high[:, axis] + gap, "right")):
-            yield _near(gap, a, b, *((row, order[place]) if here is a else (order[place], row)), axis)
+            i, j = (row, order[place]) if here is a else (order[place], row)
+            yield _near(gap, a, b, i, j, axis)
 
 
 def some_near_pairs(a: Boxes, b: Optional[Boxes] = None, wanted: int = 16) -> Pairs:
@@ -86,7 +89,7 @@ def some_near_pairs(a: Boxes, b: Optional[Boxes] = None, wanted: int = 16) -> Pa
         one, two = one[one < two], two[one < two]
     pairs = _near(np.inf, a, other, one, two, axis)
     nearest = np.argsort(pairs.gap, kind="stable")[:wanted]
-    return Pairs(*(column[nearest] for column in pairs))
+    return Pairs(pairs.a[nearest], pairs.b[nearest], pairs.gap[nearest])
 
 
 def _longest_axis(boxes: Boxes) -> int:
@@ -96,7 +99,7 @@ def _longest_axis(boxes: Boxes) -> int:
     return int(np.argmax(span / np.maximum(size, np.finfo(float).tiny)))
 
 
-def _ranges(first: np.ndarray, last: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _ranges(first: NDArray[np.int64], last: NDArray[np.int64]) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
     """Each row with each place from its first up to its last, in chunks of whole rows."""
     counts = np.maximum(last - first, 0)
     ends = np.cumsum(counts)
@@ -111,7 +114,7 @@ def _ranges(first: np.ndarray, last: np.ndarray) -> Iterator[tuple[np.ndarray, n
         row = stop
 
 
-def _near(gap: float, a: Boxes, b: Boxes, i: np.ndarray, j: np.ndarray, swept: int) -> Pairs:
+def _near(gap: float, a: Boxes, b: Boxes, i: NDArray[np.int64], j: NDArray[np.int64], swept: int) -> Pairs:
     # One axis after the other, as most pairs drop out at the first; that of the sweep tells little more.
     for axis in ((swept + 1) % 3, (swept + 2) % 3, swept):
         near = _apart(a, b, i, j, axis) <= gap
@@ -121,5 +124,5 @@ def _near(gap: float, a: Boxes, b: Boxes, i: np.ndarray, j: np.ndarray, swept: i
     return Pairs(i[near], j[near], between[near])
 
 
-def _apart(a: Boxes, b: Boxes, i: np.ndarray, j: np.ndarray, axis: int) -> np.ndarray:
+def _apart(a: Boxes, b: Boxes, i: NDArray[np.int64], j: NDArray[np.int64], axis: int) -> NDArray[np.float64]:
     return np.maximum(b.low[:, axis][j] - a.high[:, axis][i], a.low[:, axis][i] - b.high[:, axis][j])

@@ -6,7 +6,7 @@ from __future__ import annotations
 import hashlib
 import os
 import weakref
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from typing import Any, Optional
 
 import numpy as np
@@ -33,11 +33,19 @@ def shared_shape(mesh: ShapeLike) -> Shape:
     if shape is None:
         shape = _shapes[content] = Shape(mesh)
     try:
-        of_mesh = _of_mesh  # at the end of the program the callback finds no globals
-        _of_mesh[id(mesh)] = (weakref.ref(mesh, lambda _, key=id(mesh): of_mesh.pop(key, None)), shape)
+        _of_mesh[id(mesh)] = (weakref.ref(mesh, _forget(id(mesh))), shape)
     except TypeError:
         pass  # of what has no weak references the shape lives as long as it is used
     return shape
+
+
+def _forget(key: int) -> Callable[[Any], None]:
+    of_mesh = _of_mesh  # at the end of the program the callback finds no globals
+
+    def forget(_: Any) -> None:
+        of_mesh.pop(key, None)
+
+    return forget
 
 
 def _content(mesh: Any) -> Optional[Hashable]:
@@ -58,5 +66,5 @@ def _numbers(array: Any, what: str) -> Hashable:
     if type(array).__module__.startswith("trimesh.") and type(array).__hash__ is not None:
         return array.shape, hash(array)
     numbers = np.ascontiguousarray(as_numbers(array, what))
-    content = hashlib.blake2b(numbers.reshape(-1).view(np.uint8), digest_size=16)
+    content = hashlib.blake2b(numbers.reshape(-1).view(np.uint8).data, digest_size=16)
     return numbers.shape, numbers.dtype.str, content.digest()

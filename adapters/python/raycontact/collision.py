@@ -9,17 +9,20 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Hashable, Iterator
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, TypeVar, cast
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import as_poses
 from ._boxes import Boxes, Pairs, boxes_of, pairs_within, some_near_pairs
 from ._core import InputError
 from ._shared_shapes import shared_shape
-from .contacts import FeatureKind
+from .contacts import FeatureKind, PairContacts
 from .queries import closest_point, collide, distance, intersects
 from .shape import Shape, ShapeLike
+
+_Value = TypeVar("_Value")
 
 _EXTERNAL = "__external"
 """The name of a mesh that is in no manager, as trimesh has it."""
@@ -29,18 +32,25 @@ _MOST_ASKED = 1 << 16
 
 
 class ContactData:
-    """Where two objects are in contact."""
+    """Where two objects are in contact.
+
+    names: the set of the names of both; a mesh that was given to `in_collision_single` is "__external".
+    pair: the two names in order; trimesh has no such thing. Of `in_collision_internal` as in its set of names, of
+        `in_collision_single` the object in the manager first, of `in_collision_other` the one in this manager first.
+    """
 
     __slots__ = ("names", "pair", "_normal", "_point", "_depth", "_indices")
 
-    names: set
-    """Of both objects; a mesh that was given to `in_collision_single` is "__external"."""
-    pair: tuple
-    """The two names in order; trimesh has no such thing. Of `in_collision_internal` as in its set of names, of
-    `in_collision_single` the object in the manager first, of `in_collision_other` the one in this manager first."""
+    names: set[Hashable]
+    pair: tuple[Hashable, Hashable]
 
     def __init__(
-        self, pair: tuple, normal: np.ndarray, point: np.ndarray, depth: float, indices: tuple[int, int]
+        self,
+        pair: tuple[Hashable, Hashable],
+        normal: NDArray[np.float64],
+        point: NDArray[np.float64],
+        depth: float,
+        indices: tuple[int, int],
     ) -> None:
         self.names = set(pair)
         self.pair = pair
@@ -50,13 +60,13 @@ class ContactData:
         self._indices = indices
 
     @property
-    def normal(self) -> np.ndarray:
+    def normal(self) -> NDArray[np.float64]:
         """(3,) float64, unit, world frame, from the first of `pair` to the second: moving the second along it separates
         them. NaN where depth is 0."""
         return self._normal
 
     @property
-    def point(self) -> np.ndarray:
+    def point(self) -> NDArray[np.float64]:
         """(3,) float64, metres, world frame: halfway between the two witness points. `point + depth / 2 * normal` is
         that of the first object, `point - depth / 2 * normal` that of the second. Where depth is 0, a point of both."""
         return self._point
@@ -79,17 +89,23 @@ class ContactData:
 
 
 class DistanceData:
-    """Where two objects are nearest to each other."""
+    """Where two objects are nearest to each other.
+
+    names: the set of the names of both; a mesh that was given to `min_distance_single` is "__external".
+    pair: the two names in order, as of ContactData.
+    """
 
     __slots__ = ("names", "pair", "_distance", "_points", "_indices")
 
-    names: set
-    """Of both objects; a mesh that was given to `min_distance_single` is "__external"."""
-    pair: tuple
-    """The two names in order, as of ContactData."""
+    names: set[Hashable]
+    pair: tuple[Hashable, Hashable]
 
     def __init__(
-        self, pair: tuple, least: float, points: tuple[np.ndarray, np.ndarray], indices: tuple[int, int]
+        self,
+        pair: tuple[Hashable, Hashable],
+        least: float,
+        points: tuple[NDArray[np.float64], NDArray[np.float64]],
+        indices: tuple[int, int],
     ) -> None:
         self.names = set(pair)
         self.pair = pair
@@ -107,7 +123,7 @@ class DistanceData:
         face nearest to that point. Names as of ContactData.index."""
         return _of_name(self.pair, self._indices, name)
 
-    def point(self, name: Hashable) -> np.ndarray:
+    def point(self, name: Hashable) -> NDArray[np.float64]:
         """(3,) float64, metres, world frame: of that object, nearest to the other. Where they collide a point of both.
         Names as of ContactData.index."""
         return _of_name(self.pair, self._points, name)
@@ -120,16 +136,16 @@ class _Object(NamedTuple):
     """What a name stands for."""
 
     shape: Shape
-    box: np.ndarray
+    box: NDArray[np.float64]
     """(2, 3), of the shape."""
-    pose: np.ndarray
+    pose: NDArray[np.float64]
     """(4, 4)."""
 
 
 class _Objects:
     """Objects in lists, for questions about many."""
 
-    def __init__(self, objects: dict) -> None:
+    def __init__(self, objects: dict[Hashable, _Object]) -> None:
         self.names = list(objects)
         self.shapes = [item.shape for item in objects.values()]
         self.poses = np.array([item.pose for item in objects.values()]).reshape(-1, 4, 4)
@@ -138,11 +154,12 @@ class _Objects:
     def by_name(self, i: int, j: int) -> tuple[int, int]:
         """Two rows, i < j, sorted by their names; as they are where names do not compare."""
         try:
-            return (j, i) if self.names[j] < self.names[i] else (i, j)
+            one, other = cast(Any, self.names[i]), cast(Any, self.names[j])
+            return (j, i) if other < one else (i, j)
         except TypeError:
             return i, j
 
-    def only(self, rows: np.ndarray) -> _Objects:
+    def only(self, rows: NDArray[np.int64]) -> _Objects:
         """Those of some rows."""
         some = _Objects.__new__(_Objects)
         some.names, some.shapes = ([column[row] for row in rows] for column in (self.names, self.shapes))
@@ -170,7 +187,7 @@ class CollisionManager:
         self._objects: dict[Hashable, _Object] = {}
         self._listed: Optional[_Objects] = None
 
-    def add_object(self, name: Hashable, mesh: ShapeLike, transform: Optional[np.ndarray] = None) -> Shape:
+    def add_object(self, name: Hashable, mesh: ShapeLike, transform: Optional[ArrayLike] = None) -> Shape:
         """Adds an object, in place of any that has the name. transform: (4, 4); None: the identity.
 
         Gives the object's shape; trimesh gives an object of FCL. Raises InputError as the class says; then nothing is
@@ -186,7 +203,7 @@ class CollisionManager:
         del self._objects[name]
         self._listed = None
 
-    def set_transform(self, name: Hashable, transform: np.ndarray) -> None:
+    def set_transform(self, name: Hashable, transform: ArrayLike) -> None:
         """Moves an object: (4, 4), in place of the transform it had. Raises InputError as the class says."""
         found = self._find(name)
         self._objects[name] = found._replace(pose=_rigid(transform, f"object {name!r}"))
@@ -197,7 +214,7 @@ class CollisionManager:
     def in_collision_single(
         self,
         mesh: ShapeLike,
-        transform: Optional[np.ndarray] = None,
+        transform: Optional[ArrayLike] = None,
         return_names: bool = False,
         return_data: bool = False,
     ) -> Any:
@@ -250,7 +267,7 @@ class CollisionManager:
     def min_distance_single(
         self,
         mesh: ShapeLike,
-        transform: Optional[np.ndarray] = None,
+        transform: Optional[ArrayLike] = None,
         return_name: bool = False,
         return_data: bool = False,
     ) -> Any:
@@ -260,9 +277,10 @@ class CollisionManager:
         DistanceData, with both of all three. The mesh's name there is "__external". Without an object: inf, None, None.
         """
         mine, one = self._list(), _external(mesh, transform)
-        least, i, j = _nearest(mine, one)
-        data = _distance_data(mine, one, least, i, j) if return_data else None
-        return _answer(least, return_name, None if i is None else mine.names[i], return_data, data)
+        least, pair = _nearest(mine, one)
+        name = None if pair is None else mine.names[pair[0]]
+        data = _distance_data(mine, one, least, pair) if return_data else None
+        return _answer(least, return_name, name, return_data, data)
 
     def min_distance_internal(
         self, name: Optional[Hashable] = None, return_names: bool = False, return_data: bool = False
@@ -276,18 +294,20 @@ class CollisionManager:
         """
         mine = self._list()
         if name is None:
-            least, i, j = _nearest(mine, None)
+            least, pair = _nearest(mine, None)
         else:
             self._find(name)
             row = list(self._objects).index(name)
             others = np.delete(np.arange(len(mine.names)), row)
-            least, i, j = _nearest(mine.only(np.array([row])), mine.only(others))
-            if j is not None:
-                i, j = min(row, int(others[j])), max(row, int(others[j]))
-        if i is not None:
-            i, j = mine.by_name(i, j)
-        data = _distance_data(mine, mine, least, i, j) if return_data else None
-        return _answer(least, return_names, None if i is None else (mine.names[i], mine.names[j]), return_data, data)
+            least, pair = _nearest(mine.only(np.array([row])), mine.only(others))
+            if pair is not None:
+                other = int(others[pair[1]])
+                pair = min(row, other), max(row, other)
+        if pair is not None:
+            pair = mine.by_name(*pair)
+        names = None if pair is None else (mine.names[pair[0]], mine.names[pair[1]])
+        data = _distance_data(mine, mine, least, pair) if return_data else None
+        return _answer(least, return_names, names, return_data, data)
 
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
@@ -298,9 +318,10 @@ class CollisionManager:
         of it and a DistanceData, with both of all three. Without two objects: inf, None, None.
         """
         mine, others = self._list(), _list_of(other_manager)
-        least, i, j = _nearest(mine, others)
-        data = _distance_data(mine, others, least, i, j) if return_data else None
-        return _answer(least, return_names, None if i is None else (mine.names[i], others.names[j]), return_data, data)
+        least, pair = _nearest(mine, others)
+        names = None if pair is None else (mine.names[pair[0]], others.names[pair[1]])
+        data = _distance_data(mine, others, least, pair) if return_data else None
+        return _answer(least, return_names, names, return_data, data)
 
     def _find(self, name: Hashable) -> _Object:
         try:
@@ -335,11 +356,11 @@ def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Hashable, Sha
 class _Stretched(NamedTuple):
     """A mesh that a scene draws in another size."""
 
-    vertices: np.ndarray
-    faces: np.ndarray
+    vertices: NDArray[np.float64]
+    faces: NDArray[Any]
 
 
-def _without_stretch(mesh: Any, transform: np.ndarray, what: str) -> tuple[Any, np.ndarray]:
+def _without_stretch(mesh: Any, transform: ArrayLike, what: str) -> tuple[Any, NDArray[np.float64]]:
     """A mesh and a rigid transform that place it as any transform does (polar decomposition)."""
     pose = _one_pose(transform, what).copy()
     if _fault(pose) is None or not (hasattr(mesh, "vertices") and hasattr(mesh, "faces")):
@@ -356,7 +377,7 @@ def _without_stretch(mesh: Any, transform: np.ndarray, what: str) -> tuple[Any, 
     return _Stretched(np.asarray(mesh.vertices) @ stretch.T, faces if sign > 0 else faces[:, ::-1]), pose
 
 
-def _place(mesh: ShapeLike, transform: Optional[np.ndarray], what: str) -> _Object:
+def _place(mesh: ShapeLike, transform: Optional[ArrayLike], what: str) -> _Object:
     pose = _rigid(transform, what)
     try:
         shape = shared_shape(mesh)
@@ -365,7 +386,7 @@ def _place(mesh: ShapeLike, transform: Optional[np.ndarray], what: str) -> _Obje
     return _Object(shape, shape.box, pose)
 
 
-def _external(mesh: ShapeLike, transform: Optional[np.ndarray]) -> _Objects:
+def _external(mesh: ShapeLike, transform: Optional[ArrayLike]) -> _Objects:
     return _Objects({_EXTERNAL: _place(mesh, transform, "mesh")})
 
 
@@ -378,14 +399,14 @@ def _list_of(manager: Any) -> _Objects:
     return manager._list()
 
 
-def _one_pose(transform: Optional[np.ndarray], what: str) -> np.ndarray:
+def _one_pose(transform: Optional[ArrayLike], what: str) -> NDArray[np.float64]:
     matrices, one = as_poses(transform, f"{what}: transform")
     if not one:
         raise InputError(f"{what}: transform: has shape {matrices.shape}; give one, (4, 4)")
     return matrices[0]
 
 
-def _rigid(transform: Optional[np.ndarray], what: str) -> np.ndarray:
+def _rigid(transform: Optional[ArrayLike], what: str) -> NDArray[np.float64]:
     """A copy: what is the user's may change."""
     pose = _one_pose(transform, what)
     fault = _fault(pose)
@@ -394,7 +415,7 @@ def _rigid(transform: Optional[np.ndarray], what: str) -> np.ndarray:
     return pose.copy()
 
 
-def _fault(pose: np.ndarray) -> Optional[str]:
+def _fault(pose: NDArray[np.float64]) -> Optional[str]:
     """What queries would refuse, known when it is given."""
     if not (np.abs(pose) <= 1e30).all():
         return "has an entry that is not finite or beyond 1e30"
@@ -406,7 +427,7 @@ def _fault(pose: np.ndarray) -> Optional[str]:
     return None
 
 
-def _of_name(pair: tuple, values: tuple, name: Hashable) -> Any:
+def _of_name(pair: tuple[Hashable, Hashable], values: tuple[_Value, _Value], name: Hashable) -> _Value:
     return dict(zip(pair, values))[name]
 
 
@@ -416,7 +437,7 @@ def _answer(result: Any, wants_names: bool, names: Any, wants_data: bool, data: 
     return parts if len(parts) > 1 else result
 
 
-def _ask(question: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray, **words: Any) -> Any:
+def _ask(question: Any, a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64], **words: Any) -> Any:
     """What a query of the package says of pairs of objects."""
     return question(
         [a.shapes[k] for k in i.tolist()], [b.shapes[k] for k in j.tolist()], a.poses[i], b.poses[j], **words
@@ -445,7 +466,7 @@ def _any_collides(a: _Objects, b: Optional[_Objects]) -> bool:
     return False
 
 
-def _colliding(a: _Objects, b: Optional[_Objects]) -> tuple[np.ndarray, np.ndarray]:
+def _colliding(a: _Objects, b: Optional[_Objects]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """All pairs that do, in order."""
     found_i, found_j = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     for pairs in _candidates(a, b, 0.0):
@@ -459,12 +480,14 @@ def _colliding(a: _Objects, b: Optional[_Objects]) -> tuple[np.ndarray, np.ndarr
     return i[order], j[order]
 
 
-def _sorted_by_name(objects: _Objects, i: np.ndarray, j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _sorted_by_name(
+    objects: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     pairs = np.array([objects.by_name(*pair) for pair in zip(i.tolist(), j.tolist())], np.int64).reshape(-1, 2)
     return pairs[:, 0], pairs[:, 1]
 
 
-def _contacts(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list[ContactData]:
+def _contacts(a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]) -> list[ContactData]:
     """Of pairs that collide, in their order: each has at least one."""
     made: list[ContactData] = []
     for part in _slices(len(i), _MOST_ASKED, _MOST_ASKED):
@@ -472,8 +495,8 @@ def _contacts(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list[Co
     return made
 
 
-def _contacts_of(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list[ContactData]:
-    found = _ask(collide, a, b, i, j)
+def _contacts_of(a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]) -> list[ContactData]:
+    found: PairContacts = _ask(collide, a, b, i, j)
     pair = found.pair
     # Exactly touching, or with an open mesh: no contact of the rule, yet they collide.
     bare = np.setdiff1d(np.arange(len(i)), pair)
@@ -489,13 +512,15 @@ def _contacts_of(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> list
     pair, normal, point, depth, face = (np.concatenate(column)[order] for column in columns)
     names = [(a.names[k], b.names[m]) for k, m in zip(i.tolist(), j.tolist())]
     return [
-        ContactData(names[k], *rest[:2], rest[2], tuple(rest[3]))
-        for k, *rest in zip(pair.tolist(), normal, point, depth.tolist(), face.tolist())
+        ContactData(names[k], along, at, deep, (face_a, face_b))
+        for k, along, at, deep, (face_a, face_b) in zip(pair.tolist(), normal, point, depth.tolist(), face.tolist())
     ]
 
 
-def _faces_in_contact(found: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-    """(n, 2) int64: of each contact a face of either mesh."""
+def _faces_in_contact(
+    found: PairContacts, a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """(n, 2): of each contact a face of either mesh."""
     faces = found.indices.astype(np.int64)
     is_edges = found.kind == FeatureKind.EDGES
     faces[is_edges] //= 3  # an edge is named by its lowest triangle and a corner there
@@ -508,10 +533,10 @@ def _faces_in_contact(found: Any, a: _Objects, b: _Objects, i: np.ndarray, j: np
     return faces
 
 
-_faces_at: weakref.WeakKeyDictionary[Shape, np.ndarray] = weakref.WeakKeyDictionary()
+_faces_at: weakref.WeakKeyDictionary[Shape, NDArray[np.int64]] = weakref.WeakKeyDictionary()
 
 
-def _face_at_vertex(shape: Shape) -> np.ndarray:
+def _face_at_vertex(shape: Shape) -> NDArray[np.int64]:
     """By vertex of the mesh, the lowest triangle that has it; of welded vertices by the lowest."""
     faces = _faces_at.get(shape)
     if faces is None:
@@ -522,7 +547,9 @@ def _face_at_vertex(shape: Shape) -> np.ndarray:
     return faces
 
 
-def _common_points(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _common_points(
+    a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """A point that two colliding objects share, (n, 3), and the faces at it, (n, 2)."""
     if not len(i):
         return np.empty((0, 3)), np.empty((0, 2), np.int64)
@@ -531,7 +558,9 @@ def _common_points(a: _Objects, b: _Objects, i: np.ndarray, j: np.ndarray) -> tu
                                     _surface(b, j, found.triangle_b, found.point_b)], axis=1)  # fmt: skip
 
 
-def _surface(objects: _Objects, rows: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _surface(
+    objects: _Objects, rows: NDArray[np.int64], triangles: NDArray[np.int64], points: NDArray[np.float64]
+) -> NDArray[np.int64]:
     """Triangles of a distance; the nearest one for a mesh that has the whole other one inside."""
     triangles = triangles.copy()
     for k in np.flatnonzero(triangles < 0):
@@ -539,9 +568,9 @@ def _surface(objects: _Objects, rows: np.ndarray, triangles: np.ndarray, points:
     return triangles
 
 
-def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[int], Optional[int]]:
+def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[tuple[int, int]]]:
     """The least distance of a and b, or within a, and the pair that has it; inf and None without a pair."""
-    best: tuple[float, Optional[int], Optional[int]] = np.inf, None, None
+    best: tuple[float, Optional[tuple[int, int]]] = np.inf, None
     other = a if b is None else b
 
     def look(pairs: Pairs) -> None:
@@ -557,7 +586,7 @@ def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[int], 
             found = _ask(distance, a, other, i, j, max=best[0]).distance
             k = int(np.argmin(found))
             if found[k] < best[0]:
-                best = float(found[k]), int(i[k]), int(j[k])
+                best = float(found[k]), (int(i[k]), int(j[k]))
 
     look(some_near_pairs(a.boxes, None if b is None else b.boxes))
     for pairs in _candidates(a, b, best[0]):
@@ -567,11 +596,10 @@ def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[int], 
     return best
 
 
-def _distance_data(
-    a: _Objects, b: _Objects, least: float, i: Optional[int], j: Optional[int]
-) -> Optional[DistanceData]:
-    if i is None or j is None:
+def _distance_data(a: _Objects, b: _Objects, least: float, pair: Optional[tuple[int, int]]) -> Optional[DistanceData]:
+    if pair is None:
         return None
+    i, j = pair
     row_a, row_b = np.array([i]), np.array([j])
     found = _ask(distance, a, b, row_a, row_b)
     faces = _surface(a, row_a, found.triangle_a, found.point_a), _surface(b, row_b, found.triangle_b, found.point_b)

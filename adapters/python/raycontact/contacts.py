@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import IntEnum
-from typing import Any
+from typing import Any, SupportsIndex, TypeVar, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 
+_Self = TypeVar("_Self", bound="Contacts")
+_Index = Union[SupportsIndex, slice, Sequence[int], NDArray[np.bool_], NDArray[np.integer[Any]]]
 
-def _type_of_contacts() -> np.dtype:
+
+def _type_of_contacts() -> np.dtype[np.void]:
     fields = _core.contact_layout()
     return np.dtype(
         {
@@ -25,106 +29,109 @@ def _type_of_contacts() -> np.dtype:
 
 
 CONTACT_DTYPE = _type_of_contacts()
-"""A contact as the library holds it."""
+"""A contact as the library holds it: the columns of Contacts by name, but for `key` and `slots`."""
 
 
 class FeatureKind(IntEnum):
-    """What is in contact."""
+    """What is in contact.
+
+    VERTEX: a vertex inside the other mesh; its ray met the closest face from inside (Hermann et al. 2008).
+    EDGES: an edge of either body; they pass each other where the surfaces cross.
+    INSIDE: the whole body lies inside the other mesh; its deepest vertex stands for it.
+    """
 
     VERTEX = 0
-    """A vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)."""
     EDGES = 1
-    """An edge of either body: they pass each other where the surfaces cross."""
     INSIDE = 2
-    """The whole body lies inside the other mesh; its deepest vertex stands for it."""
 
 
 class Contacts:
     """Contacts in columns, each an array over all contacts. n is their number, `len(contacts)`.
 
     Columns show the memory that the library wrote, without a copy, and keep it: they stay valid and unchanged when the
-    scene steps on or is gone. They are arrays with strides; what needs contiguous memory copies (`np.ascontiguousarray`),
-    DLPack takes them as they are (`torch.from_dlpack(contacts.depth)`).
+    scene steps on or is gone. They are arrays with strides; what needs contiguous memory copies
+    (`np.ascontiguousarray`), DLPack takes them as they are (`torch.from_dlpack(contacts.depth)`).
 
-    `contacts[mask]` and `contacts[i:j]` choose some; `contacts.data` is all of it as one structured array.
+    `contacts[mask]` and `contacts[i:j]` choose some; iterating gives a record of CONTACT_DTYPE for each contact.
+
+    data: all of it as one structured array, (n,) of CONTACT_DTYPE.
     """
 
     __slots__ = ("data",)
 
-    data: np.ndarray
-    """(n,), of CONTACT_DTYPE."""
+    data: NDArray[np.void]
 
-    def __init__(self, data: np.ndarray) -> None:
+    def __init__(self, data: NDArray[np.void]) -> None:
         self.data = data
 
     @classmethod
-    def _from_bytes(cls, memory: np.ndarray) -> Contacts:
+    def _from_bytes(cls: type[_Self], memory: NDArray[np.uint8]) -> _Self:
         return cls(memory.view(CONTACT_DTYPE))
 
     @property
-    def bodies(self) -> np.ndarray:
+    def bodies(self) -> NDArray[np.int64]:
         """(n, 2) int64: ids of bodies a and b; a has the lower slot."""
         return self.data["bodies"]
 
     @property
-    def slots(self) -> np.ndarray:
+    def slots(self) -> NDArray[np.uint32]:
         """(n, 2) uint32: the places of bodies a and b in the scene; indices into arrays of your own."""
         return self.data["bodies"].view(np.uint32)[..., ::2]
 
     @property
-    def kind(self) -> np.ndarray:
+    def kind(self) -> NDArray[np.uint8]:
         """(n,) uint8: FeatureKind."""
         return self.data["kind"]
 
     @property
-    def source(self) -> np.ndarray:
+    def source(self) -> NDArray[np.uint8]:
         """(n,) uint8: whose vertex it is, 0 is a and 1 is b; of edges 0."""
         return self.data["source"]
 
     @property
-    def indices(self) -> np.ndarray:
+    def indices(self) -> NDArray[np.uint32]:
         """(n, 2) uint32: the feature on a and on b. Of the source a vertex of the mesh, of the other body the triangle
         that was hit; of edges an edge of either: 3 x its lowest triangle + its first corner there."""
         return self.data["indices"]
 
     @property
-    def is_new(self) -> np.ndarray:
+    def is_new(self) -> NDArray[np.bool_]:
         """(n,) bool: the last step had no such contact that touched."""
         return self.data["is_new"]
 
     @property
-    def point_a(self) -> np.ndarray:
+    def point_a(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, world frame: the witness point of a."""
         return self.data["point_a"]
 
     @property
-    def point_b(self) -> np.ndarray:
+    def point_b(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, world frame: that of b. point_a - point_b = depth x normal."""
         return self.data["point_b"]
 
     @property
-    def normal(self) -> np.ndarray:
+    def normal(self) -> NDArray[np.float32]:
         """(n, 3) float32, unit, world frame, from a to b."""
         return self.data["normal"]
 
     @property
-    def depth(self) -> np.ndarray:
+    def depth(self) -> NDArray[np.float32]:
         """(n,) float32, metres along the normal (Lehericey et al. 2013, section 3.2). At most 0: a speculative contact,
         minus the gap."""
         return self.data["depth"]
 
     @property
-    def ray_length(self) -> np.ndarray:
+    def ray_length(self) -> NDArray[np.float32]:
         """(n,) float32, metres from the point to the hit."""
         return self.data["ray_length"]
 
     @property
-    def weight(self) -> np.ndarray:
+    def weight(self) -> NDArray[np.float32]:
         """(n,) float32: with direction "weighted" the share of the source's surface, m^2; else 1."""
         return self.data["weight"]
 
     @property
-    def key(self) -> np.ndarray:
+    def key(self) -> NDArray[np.uint64]:
         """(n,) uint64, a copy: names the same contact from step to step, unique in its pair."""
         data = self.data
         one, other = (data["indices"][:, i].astype(np.uint64) for i in (0, 1))
@@ -136,11 +143,11 @@ class Contacts:
         return np.choose(data["kind"], (vertex, edges, inside)) if len(data) else np.empty(0, np.uint64)
 
     @property
-    def touching(self) -> Contacts:
+    def touching(self: _Self) -> _Self:
         """Those that touch: without speculative contacts."""
         return self[self.depth > 0]
 
-    def deepest(self) -> Contacts:
+    def deepest(self: _Self) -> _Self:
         """The deepest of each pair of bodies, pairs in order."""
         if not len(self):
             return self
@@ -149,14 +156,14 @@ class Contacts:
         begins = np.r_[True, (slots[order[1:]] != slots[order[:-1]]).any(axis=1)]
         return self[order[begins]]
 
-    def columns(self) -> dict[str, np.ndarray]:
+    def columns(self) -> dict[str, NDArray[Any]]:
         """All columns by name, as views; `key` is a copy."""
-        return {**{name: self.data[name] for name in CONTACT_DTYPE.names}, "key": self.key}
+        return {**{name: self.data[name] for name in CONTACT_DTYPE.names or ()}, "key": self.key}
 
     def __len__(self) -> int:
         return len(self.data)
 
-    def __getitem__(self, which: Any) -> Contacts:
+    def __getitem__(self: _Self, which: _Index) -> _Self:
         chosen = self.data[which]
         return type(self)(chosen if chosen.ndim else chosen.reshape(1))
 
@@ -174,7 +181,7 @@ class PairContacts(Contacts):
     __slots__ = ()
 
     @property
-    def pair(self) -> np.ndarray:
+    def pair(self) -> NDArray[np.int64]:
         """(n,) int64, ascending: the pair of each contact."""
         return self.data["bodies"][:, 0] // 2
 

@@ -4,16 +4,26 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, Protocol, Union, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import as_length, as_numbers
 from ._core import InputError, MeshReport
 
-MeshLike = Any
-"""A Mesh, the path of a file, or an object with `vertices` and `faces`, as those of trimesh have."""
+
+class HasFaces(Protocol):
+    """A mesh of another library, as far as it is looked at; a `trimesh.Trimesh` is one."""
+
+    @property
+    def vertices(self) -> ArrayLike:
+        """(n, 3) numbers, metres, body frame."""
+
+    @property
+    def faces(self) -> ArrayLike:
+        """(m, 3) whole numbers: rows of `vertices`, counter-clockwise seen from outside."""
 
 
 class Mesh:
@@ -30,32 +40,43 @@ class Mesh:
     damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes.
     """
 
+    @overload
+    def __init__(
+        self, source: MeshLike, triangles: None = None, *, scale: float = 1.0, name: Optional[str] = None
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self, source: ArrayLike, triangles: ArrayLike, *, scale: float = 1.0, name: Optional[str] = None
+    ) -> None: ...
+
     def __init__(
         self,
-        source: Union[str, os.PathLike[str], MeshLike, np.ndarray],
-        triangles: Optional[np.ndarray] = None,
+        source: Union[MeshLike, ArrayLike],
+        triangles: Optional[ArrayLike] = None,
         *,
         scale: float = 1.0,
         name: Optional[str] = None,
     ) -> None:
-        if isinstance(source, (str, os.PathLike)):
+        given: Any = source
+        if isinstance(given, (str, os.PathLike)):
             if triangles is not None:
                 raise InputError("Mesh: give a file, or vertices and triangles")
-            self._core = _core.load_mesh(os.fspath(source))
+            self._core = _core.load_mesh(os.fspath(given))
             if scale != 1.0 or name is not None:
                 self._core = _scaled(self._core, scale, name)
             return
-        if isinstance(source, Mesh) and triangles is None:
-            self._core = _scaled(source._core, scale, name)
+        if isinstance(given, Mesh) and triangles is None:
+            self._core = _scaled(given._core, scale, name)
             return
         if triangles is None:
-            if not (hasattr(source, "vertices") and hasattr(source, "faces")):
+            if not (hasattr(given, "vertices") and hasattr(given, "faces")):
                 raise InputError(
-                    f"Mesh: {type(source).__name__} is no file name and has no vertices and faces; "
+                    f"Mesh: {type(given).__name__} is no file name and has no vertices and faces; "
                     "give a file, vertices and triangles, or such an object"
                 )
-            source, triangles = source.vertices, source.faces
-        self._core = _make(source, triangles, scale, name or "")
+            given, triangles = given.vertices, given.faces
+        self._core = _make(given, triangles, scale, name or "")
 
     @classmethod
     def from_bytes(cls, data: bytes, format: str, name: str = "") -> Mesh:
@@ -66,23 +87,23 @@ class Mesh:
         return cls._wrap(_core.parse_mesh(bytes(data), format, name))
 
     @classmethod
-    def _wrap(cls, core: Any) -> Mesh:
+    def _wrap(cls, core: _core.Mesh) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._core = core
         return mesh
 
     @property
     def name(self) -> str:
-        """For messages."""
+        """For messages; may be empty."""
         return self._core.name
 
     @property
-    def vertices(self) -> np.ndarray:
+    def vertices(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, body frame. Shows the mesh's own memory; not writable."""
         return self._core.vertices
 
     @property
-    def triangles(self) -> np.ndarray:
+    def triangles(self) -> NDArray[np.uint32]:
         """(m, 3) uint32: rows of `vertices`, counter-clockwise seen from outside. Not writable."""
         return self._core.triangles
 
@@ -96,11 +117,15 @@ class Mesh:
         return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
 
 
-def _unpickled(vertices: np.ndarray, triangles: np.ndarray, name: str) -> Mesh:
+MeshLike = Union[Mesh, str, os.PathLike[str], HasFaces]
+"""A Mesh, the path of a file, or an object with `vertices` and `faces`, as those of trimesh have."""
+
+
+def _unpickled(vertices: NDArray[np.float64], triangles: NDArray[np.uint32], name: str) -> Mesh:
     return Mesh(vertices, triangles, name=name)
 
 
-def _make(vertices: Any, triangles: Any, scale: float, name: str) -> Any:
+def _make(vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str) -> _core.Mesh:
     points = as_numbers(vertices, "vertices")
     corners = as_numbers(triangles, "triangles", "iu")
     if points.ndim != 2 or points.shape[1] != 3:
@@ -115,19 +140,22 @@ def _make(vertices: Any, triangles: Any, scale: float, name: str) -> Any:
     return _core.make_mesh(np.ascontiguousarray(points, np.float64), np.ascontiguousarray(corners, np.uint32), name)
 
 
-def _scaled(core: Any, scale: float, name: Optional[str]) -> Any:
+def _scaled(core: _core.Mesh, scale: float, name: Optional[str]) -> _core.Mesh:
     return _make(core.vertices, core.triangles, scale, core.name if name is None else name)
 
 
 class AssemblyPart(NamedTuple):
-    """A part of an assembly."""
+    """A part of an assembly.
+
+    name: of its node, "nodes[3]" where it has none; or of its file.
+    mesh: metres, in the part's own frame, scaled as the file scales it. Parts that are one mesh in several places share
+        it.
+    pose: (4, 4) float64, rigid, from the part's frame to that of the assembly, metres.
+    """
 
     name: str
-    """Of its node, "nodes[3]" where it has none; or of its file."""
     mesh: Mesh
-    """Metres, in the part's own frame, scaled as the file scales it. Parts that are one mesh in several places share it."""
-    pose: np.ndarray
-    """(4, 4), from the part's frame to that of the assembly."""
+    pose: NDArray[np.float64]
 
 
 def load_assembly(file: Union[str, os.PathLike[str]]) -> list[AssemblyPart]:
@@ -143,4 +171,4 @@ def load_assembly(file: Union[str, os.PathLike[str]]) -> list[AssemblyPart]:
     return parts
 
 
-__all__ = ["AssemblyPart", "Mesh", "MeshLike", "MeshReport", "load_assembly"]
+__all__ = ["AssemblyPart", "HasFaces", "Mesh", "MeshLike", "MeshReport", "load_assembly"]

@@ -6,14 +6,19 @@ from __future__ import annotations
 from typing import Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import as_numbers, as_poses
 from ._core import InputError
 
 
-def pose(translation: np.ndarray = (0, 0, 0), rotation: Optional[np.ndarray] = None) -> np.ndarray:
-    """(..., 4, 4) float64 from translations (..., 3) and rotations (..., 3, 3), which broadcast; no rotation is none."""
+def pose(translation: ArrayLike = (0, 0, 0), rotation: Optional[ArrayLike] = None) -> NDArray[np.float64]:
+    """(..., 4, 4) float64 from translations (..., 3), metres, and rotations (..., 3, 3), which broadcast.
+
+    rotation: taken as it is (`nearest_rigid` mends one that drifted); None turns nothing.
+    Raises InputError for other shapes, and where numbers of translations and rotations differ.
+    """
     t = as_numbers(translation, "translation")
     r = np.eye(3) if rotation is None else as_numbers(rotation, "rotation")
     if t.shape[-1:] != (3,):
@@ -30,8 +35,11 @@ def pose(translation: np.ndarray = (0, 0, 0), rotation: Optional[np.ndarray] = N
     return matrices
 
 
-def pose_from_quaternion(translation: np.ndarray, quaternion: np.ndarray) -> np.ndarray:
-    """(..., 4, 4) float64 from translations (..., 3) and quaternions (..., 4), w x y z, of any length but 0."""
+def pose_from_quaternion(translation: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float64]:
+    """(..., 4, 4) float64 from translations (..., 3), metres, and quaternions (..., 4), w x y z, of any length but 0.
+
+    Raises InputError as `pose` does, and for a quaternion that is zero or not finite.
+    """
     q = np.asarray(as_numbers(quaternion, "quaternion"), np.float64)
     if q.shape[-1:] != (4,):
         raise InputError(f"quaternion: has shape {q.shape}; give (4,) or (n, 4), w x y z")
@@ -47,10 +55,10 @@ def pose_from_quaternion(translation: np.ndarray, quaternion: np.ndarray) -> np.
     return pose(translation, np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
 
 
-def nearest_rigid(poses: np.ndarray) -> np.ndarray:
+def nearest_rigid(poses: ArrayLike) -> NDArray[np.float64]:
     """The rigid poses nearest to (4, 4) or (n, 4, 4) that are not: drifted, scaled or sheared (polar decomposition).
 
-    Raises InputError for one that is not finite, mirrored or flat.
+    Gives float64 of the same shape; translations stay. Raises InputError for one that is not finite, mirrored or flat.
     """
     matrices, one = as_poses(poses, "poses")
     rigid = _core.nearest_rigid(matrices)

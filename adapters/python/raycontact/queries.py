@@ -9,63 +9,71 @@ exact, it is that for the mesh's own double coordinates, rotated and moved, with
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple, Optional, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import as_count, as_length, as_points, as_poses, one_of
 from .contacts import PairContacts
 from .scene import as_settings
-from .shape import ShapeLike, as_shape, as_shapes
-
-Shapes = Union[ShapeLike, Sequence[ShapeLike]]
+from .shape import ShapeLike, Shapes, as_shape, as_shapes
 
 
 class Distance(NamedTuple):
-    """The least distance of two surfaces. Beyond `max` it is inf, with NaN and -1."""
+    """The least distance of two surfaces. Beyond `max` it is inf, with NaN and -1.
 
-    distance: Union[float, np.ndarray]
-    """() or (n,) float64, metres; 0 exactly where `intersects` is true."""
-    point_a: np.ndarray
-    """(3,) or (n, 3) float64, metres, world frame: on the surface of a; where they intersect, one that both share."""
-    point_b: np.ndarray
-    """Likewise on that of b."""
-    triangle_a: Union[int, np.ndarray]
-    """() or (n,) int64: on which point_a lies, index in the mesh; -1 for a mesh inside of which the other lies."""
-    triangle_b: Union[int, np.ndarray]
-    """Likewise for point_b."""
+    distance: a float or (n,) float64, metres; 0 exactly where `intersects` is true.
+    point_a: (3,) or (n, 3) float64, metres, world frame: on the surface of a; where they intersect, one that both
+        share.
+    point_b: likewise on that of b.
+    triangle_a: an int or (n,) int64: on which point_a lies, index in the mesh; -1 for a mesh inside of which the other
+        lies.
+    triangle_b: likewise for point_b.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point_a: NDArray[np.float64]
+    point_b: NDArray[np.float64]
+    triangle_a: Union[int, NDArray[np.int64]]
+    triangle_b: Union[int, NDArray[np.int64]]
 
 
 class ClosestPoint(NamedTuple):
-    """The point of a surface nearest to another. Beyond `max`: inf, NaN and -1."""
+    """The point of a surface nearest to another. Beyond `max`: inf, NaN and -1.
 
-    distance: Union[float, np.ndarray]
-    """() or (n,) float64, metres; `contains` tells on which side of a closed mesh."""
-    point: np.ndarray
-    """(3,) or (n, 3) float64, metres, world frame."""
-    triangle: Union[int, np.ndarray]
-    """() or (n,) int64: on which it lies, index in the mesh; of several the lowest."""
+    distance: a float or (n,) float64, metres; `contains` tells on which side of a closed mesh.
+    point: (3,) or (n, 3) float64, metres, world frame.
+    triangle: an int or (n,) int64: on which it lies, index in the mesh; of several the lowest.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point: NDArray[np.float64]
+    triangle: Union[int, NDArray[np.int64]]
 
 
 class RayHit(NamedTuple):
-    """Where a ray meets a mesh first. Without a hit: inf, NaN and -1."""
+    """Where a ray meets a mesh first. Without a hit: inf, NaN and -1.
 
-    distance: Union[float, np.ndarray]
-    """() or (n,) float64, metres, whatever the direction's length."""
-    point: np.ndarray
-    """(3,) or (n, 3) float64, metres, world frame."""
-    normal: np.ndarray
-    """(3,) or (n, 3) float64, unit, world frame: of the face as the shape winds it."""
-    triangle: Union[int, np.ndarray]
-    """() or (n,) int64: index in the mesh; of equally close ones the lowest."""
+    distance: a float or (n,) float64, metres, whatever the direction's length.
+    point: (3,) or (n, 3) float64, metres, world frame.
+    normal: (3,) or (n, 3) float64, unit, world frame: of the face as the shape winds it.
+    triangle: an int or (n,) int64: index in the mesh; of equally close ones the lowest.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    triangle: Union[int, NDArray[np.int64]]
 
 
 class _Pairs:
     """Pairs of placed shapes for the C++ half."""
 
-    def __init__(self, a: Shapes, b: Shapes, pose_a: Optional[np.ndarray], pose_b: Optional[np.ndarray], threads: int):
+    def __init__(
+        self, a: Shapes, b: Shapes, pose_a: Optional[ArrayLike], pose_b: Optional[ArrayLike], threads: int
+    ) -> None:
         self.a, one_a = as_shapes(a, "a")
         self.b, one_b = as_shapes(b, "b")
         self.pose_a, one_pose_a = as_poses(pose_a, "pose_a")
@@ -77,8 +85,8 @@ class _Pairs:
 def collide(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[np.ndarray] = None,
-    pose_b: Optional[np.ndarray] = None,
+    pose_a: Optional[ArrayLike] = None,
+    pose_b: Optional[ArrayLike] = None,
     *,
     direction: str = "reprojected",
     features: str = "edges",
@@ -90,8 +98,14 @@ def collide(
 
     Normals point from a to b. `contacts.pair` says to which pair each contact belongs. To ask about the same bodies in
     many poses one after the other, keep a Scene.
+
+    a, b: a shape, or a list; anything that `Shape` takes alone is made one.
+    pose_a, pose_b: (4, 4) or (n, 4, 4), rigid, from the body's frame to the world, metres; None is the identity. Of a,
+        b, pose_a and pose_b what is there once counts for all pairs.
     direction, features, max_contacts_per_pair, devices: as of Scene.
-    Raises InputError for poses that are not finite and rigid to 1e-4, and where numbers of shapes and poses differ.
+    threads: 0 is one for each core; no bit depends on it.
+    Raises InputError for poses that are not finite and rigid to 1e-4, where numbers of shapes and poses differ, and as
+    Scene does for settings.
     """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     settings = as_settings(
@@ -110,13 +124,16 @@ def collide(
 def intersects(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[np.ndarray] = None,
-    pose_b: Optional[np.ndarray] = None,
+    pose_a: Optional[ArrayLike] = None,
+    pose_b: Optional[ArrayLike] = None,
     *,
     threads: int = 0,
-) -> Union[bool, np.ndarray]:
+) -> Union[bool, NDArray[np.bool_]]:
     """Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
-    closed and wound alike everywhere. Exact. bool, or (n,) bool."""
+    closed and wound alike everywhere. Exact.
+
+    Arguments and errors are those of `collide`. Gives a bool, or (n,) bool for lists.
+    """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     found = _core.intersects(pairs.core).view(np.bool_)
     return bool(found[0]) if pairs.is_one else found
@@ -125,12 +142,15 @@ def intersects(
 def common_point(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[np.ndarray] = None,
-    pose_b: Optional[np.ndarray] = None,
+    pose_a: Optional[ArrayLike] = None,
+    pose_b: Optional[ArrayLike] = None,
     *,
     threads: int = 0,
-) -> np.ndarray:
-    """A point that both meshes share, to rounding: (3,) or (n, 3), metres, world frame; NaN where `intersects` is false."""
+) -> NDArray[np.float64]:
+    """A point that both meshes share, to rounding; NaN where `intersects` is false.
+
+    Arguments and errors are those of `collide`. Gives (3,) or (n, 3) float64, metres, world frame.
+    """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     found = _core.common_points(pairs.core)
     return found[0] if pairs.is_one else found
@@ -139,8 +159,8 @@ def common_point(
 def distance(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[np.ndarray] = None,
-    pose_b: Optional[np.ndarray] = None,
+    pose_a: Optional[ArrayLike] = None,
+    pose_b: Optional[ArrayLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
@@ -148,18 +168,27 @@ def distance(
     """The least distance of two surfaces, and where it is; 0 where they intersect or one lies inside the other.
 
     Whether it is 0 is decided exactly; else it is right to some 1e-15 of size and distance from the origin, between
-    edges parallel to some 1e-8 to 1e-8 of their length. A small `max` saves work.
+    edges parallel to some 1e-8 to 1e-8 of their length.
+
+    Arguments and errors are those of `collide`, and max: metres, beyond which it is not looked for; a small one saves
+    work. One that is negative or NaN raises InputError.
     """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     return Distance(*one_of(_core.distances(pairs.core, as_length(max, "max")), pairs.is_one))
 
 
 def closest_point(
-    shape: ShapeLike, points: np.ndarray, pose: Optional[np.ndarray] = None, *, max: float = np.inf, threads: int = 0
+    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, max: float = np.inf, threads: int = 0
 ) -> ClosestPoint:
     """The point of a mesh's surface that is nearest to each point, if it is within `max` metres.
 
-    points: world frame. In double: right to some 1e-15 of the mesh's size and its distance from the origins.
+    In double: right to some 1e-15 of the mesh's size and its distance from the origins.
+
+    points: (3,) or (n, 3), metres, world frame.
+    pose: (4, 4) or (n, 4, 4), rigid, from the mesh's frame to the world, metres; None is the identity.
+    threads: 0 is one for each core; no bit depends on it.
+    Raises InputError for a point that is not finite, a pose that is not finite and rigid to 1e-4, a `max` that is
+    negative or NaN, and where numbers of points and poses differ; each may be there once for all.
     """
     places, one_point = as_points(points, "points")
     matrices, one_pose = as_poses(pose, "pose")
@@ -171,17 +200,20 @@ def closest_point(
 
 def raycast(
     shape: ShapeLike,
-    origins: np.ndarray,
-    directions: np.ndarray,
-    pose: Optional[np.ndarray] = None,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    pose: Optional[ArrayLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
 ) -> RayHit:
     """The closest triangle that each ray meets within `max` metres of its origin; both sides of a face count.
 
-    Watertight: exact predicates decide which triangles a ray meets (Shewchuk 1997). directions: of any length. Raises
-    InputError for one that is zero or not finite.
+    Watertight: exact predicates decide which triangles a ray meets (Shewchuk 1997).
+
+    origins, directions: (3,) or (n, 3), metres, world frame; directions of any length.
+    pose, threads: as of `closest_point`.
+    Raises InputError for a direction that is zero or not finite, and as `closest_point` does.
     """
     starts, along, matrices, one = _rays(origins, directions, pose)
     shape_core, most = as_shape(shape)._core, as_length(max, "max")
@@ -190,14 +222,17 @@ def raycast(
 
 def raycast_any(
     shape: ShapeLike,
-    origins: np.ndarray,
-    directions: np.ndarray,
-    pose: Optional[np.ndarray] = None,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    pose: Optional[ArrayLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
-) -> Union[bool, np.ndarray]:
-    """Whether `raycast` has a hit; ends at the first one found. bool, or (n,) bool."""
+) -> Union[bool, NDArray[np.bool_]]:
+    """Whether `raycast` has a hit; ends at the first one found.
+
+    Arguments and errors are those of `raycast`. Gives a bool, or (n,) bool for lists.
+    """
     starts, along, matrices, one = _rays(origins, directions, pose)
     shape_core, most = as_shape(shape)._core, as_length(max, "max")
     found = _core.rays_meet(shape_core, matrices, starts, along, most, as_count(threads, "threads")).view(np.bool_)
@@ -205,11 +240,11 @@ def raycast_any(
 
 
 def contains(
-    shape: ShapeLike, points: np.ndarray, pose: Optional[np.ndarray] = None, *, threads: int = 0
-) -> Union[bool, np.ndarray]:
+    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, threads: int = 0
+) -> Union[bool, NDArray[np.bool_]]:
     """Whether each point lies in a mesh that is closed and wound alike everywhere, or on its surface; False for others.
 
-    Exact. points: world frame. bool, or (n,) bool.
+    Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """
     places, one_point = as_points(points, "points")
     matrices, one_pose = as_poses(pose, "pose")
@@ -217,7 +252,10 @@ def contains(
     return bool(found[0]) if one_point and one_pose else found
 
 
-def _rays(origins: np.ndarray, directions: np.ndarray, pose: Optional[np.ndarray]) -> tuple:
+def _rays(
+    origins: ArrayLike, directions: ArrayLike, pose: Optional[ArrayLike]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], bool]:
+    """Starts, directions, poses, and whether a single one of each was given."""
     starts, one_origin = as_points(origins, "origins")
     along, one_direction = as_points(directions, "directions")
     matrices, one_pose = as_poses(pose, "pose")

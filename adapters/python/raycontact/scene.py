@@ -4,16 +4,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from typing import Any, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, Union, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import as_count, as_id, as_ids, as_length, as_pairs, as_points, as_poses, one_of
 from ._core import InputError, StepStats
 from .contacts import Contacts
-from .shape import Shape, ShapeLike, as_shape, as_shapes
+from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
+
+_Id = Union[int, np.integer[Any]]
+"""Of one body."""
 
 _LENGTHS = ("speculative_margin", "displacement_threshold", "confidence", "culling_distance", "distance_extension")
 _COUNTS = ("max_contacts_per_pair", "max_contacts", "threads", "max_iterations")
@@ -43,40 +46,46 @@ def as_settings(words: dict[str, Any]) -> dict[str, Any]:
 
 
 class LostContacts(NamedTuple):
-    """Contacts that touched in the last step but one and do not in the last."""
+    """Contacts that touched in the last step but one and do not in the last.
 
-    bodies: np.ndarray
-    """(n, 2) int64: ids; these bodies may have been removed since."""
-    key: np.ndarray
-    """(n,) uint64: Contacts.key of each."""
+    bodies: (n, 2) int64: ids; these bodies may have been removed since.
+    key: (n,) uint64: Contacts.key of each.
+    """
+
+    bodies: NDArray[np.int64]
+    key: NDArray[np.uint64]
 
 
 class BodyRayHits(NamedTuple):
-    """Where rays meet the bodies of a scene first. A ray without a hit has distance inf, NaN and -1."""
+    """Where rays meet the bodies of a scene first. A ray without a hit has distance inf, NaN and -1.
 
-    distance: np.ndarray
-    """(n,) float64, metres, whatever the direction's length."""
-    point: np.ndarray
-    """(n, 3) float64, metres, world frame."""
-    normal: np.ndarray
-    """(n, 3) float64, unit, world frame: of the face as its shape winds it."""
-    triangle: np.ndarray
-    """(n,) int64: index in the mesh."""
-    body: np.ndarray
-    """(n,) int64: id."""
+    distance: a float or (n,) float64, metres, whatever the direction's length.
+    point: (3,) or (n, 3) float64, metres, world frame.
+    normal: (3,) or (n, 3) float64, unit, world frame: of the face as its shape winds it.
+    triangle: an int or (n,) int64: index in the mesh.
+    body: an int or (n,) int64: id.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    triangle: Union[int, NDArray[np.int64]]
+    body: Union[int, NDArray[np.int64]]
 
 
 class BodyClosestPoints(NamedTuple):
-    """Points of all surfaces that are nearest to others. Where none is near enough: inf, NaN and -1."""
+    """Points of all surfaces that are nearest to others. Where none is near enough: inf, NaN and -1.
 
-    distance: np.ndarray
-    """(n,) float64, metres."""
-    point: np.ndarray
-    """(n, 3) float64, metres, world frame."""
-    triangle: np.ndarray
-    """(n,) int64: index in the mesh."""
-    body: np.ndarray
-    """(n,) int64: id."""
+    distance: a float or (n,) float64, metres.
+    point: (3,) or (n, 3) float64, metres, world frame.
+    triangle: an int or (n,) int64: index in the mesh.
+    body: an int or (n,) int64: id.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point: NDArray[np.float64]
+    triangle: Union[int, NDArray[np.int64]]
+    body: Union[int, NDArray[np.int64]]
 
 
 class Scene:
@@ -130,13 +139,22 @@ class Scene:
         words = {key: value for key, value in locals().items() if key != "self"}
         self._core = _core.Scene(as_settings(words))
 
+    @overload
+    def add(self, shapes: ShapeLike, poses: None = None) -> int: ...
+
+    @overload
     def add(
-        self, shapes: Union[ShapeLike, Sequence[ShapeLike]], poses: Optional[np.ndarray] = None
-    ) -> Union[int, np.ndarray]:
+        self, shapes: Union[list[Shape], tuple[Shape, ...]], poses: Optional[ArrayLike] = None
+    ) -> NDArray[np.int64]: ...
+
+    @overload
+    def add(self, shapes: Shapes, poses: Optional[ArrayLike] = None) -> Union[int, NDArray[np.int64]]: ...
+
+    def add(self, shapes: Shapes, poses: Optional[ArrayLike] = None) -> Union[int, NDArray[np.int64]]:
         """Adds bodies: all or none.
 
         shapes: one for all poses, or a list of one for each.
-        poses: (4, 4) or (n, 4, 4); None is the identity.
+        poses: (4, 4) or (n, 4, 4), rigid, from the body's frame to the world, metres; None is the identity.
         Returns an id for one shape and one pose, else (n,) int64. No id is ever given twice.
         Raises InputError for poses that are not finite and rigid to 1e-4, and for numbers that do not fit.
         """
@@ -149,50 +167,58 @@ class Scene:
         ids = self._core.add(cores, matrices)
         return int(ids[0]) if one_shape and one_pose else ids
 
-    def remove(self, ids: Union[int, np.ndarray]) -> None:
-        """Removes bodies. Raises InputError at the first that is not in the scene; those before it are gone."""
+    def remove(self, ids: ArrayLike) -> None:
+        """Removes bodies. ids: one or (n,). Raises InputError at the first that is not in the scene; those before it
+        are gone."""
         self._core.remove(as_ids(ids, "ids")[0])
 
-    def set_poses(self, ids: Union[int, np.ndarray], poses: np.ndarray) -> None:
+    def set_poses(self, ids: ArrayLike, poses: ArrayLike) -> None:
         """Moves bodies: all or none.
 
-        ids: one or (n,). poses: (4, 4) or (n, 4, 4), taken as they are (`nearest_rigid` mends those that drifted).
+        ids: one or (n,). poses: (4, 4) or (n, 4, 4), from the body's frame to the world, metres, taken as they are
+            (`nearest_rigid` mends those that drifted).
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
-        rigid to 1e-4.
+        rigid to 1e-4; and where numbers of ids and poses differ.
         """
         self._core.set_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
 
-    def poses(self, ids: Union[int, np.ndarray, None] = None) -> np.ndarray:
-        """(n, 4, 4) float64, or (4, 4) for one id; None: of all bodies, as `ids`."""
+    def poses(self, ids: Optional[ArrayLike] = None) -> NDArray[np.float64]:
+        """(n, 4, 4) float64, or (4, 4) for one id, from the body's frame to the world, metres; None: of all bodies, as
+        `ids`. Raises InputError for an id that is not in the scene."""
         numbers, one = (self.ids, False) if ids is None else as_ids(ids, "ids")
         matrices = self._core.poses(numbers)
         return matrices[0] if one else matrices
 
-    def set_next_poses(self, ids: Union[int, np.ndarray], poses: np.ndarray) -> None:
-        """Where bodies are expected after the next step, for its speculative contacts; without it they are expected to go
-        on as they did. Does nothing unless the scene is speculative."""
+    def set_next_poses(self, ids: ArrayLike, poses: ArrayLike) -> None:
+        """Where bodies are expected after the next step, for its speculative contacts; without it they are expected to
+        go on as they did. Does nothing unless the scene is speculative. Arguments and errors are those of `set_poses`,
+        but bodies before the one to blame have theirs."""
         self._core.set_next_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
 
-    def set_speculative_margin(self, id: int, margin: Optional[float]) -> None:
-        """Metres, for contacts of this body with any other; None: as the scene's settings say."""
+    def set_speculative_margin(self, id: _Id, margin: Optional[float]) -> None:
+        """Metres, for contacts of this body with any other; None: as the scene's settings say. Raises InputError for an
+        id that is not in the scene, and a margin that is negative or not finite."""
         number = as_id(id, "id")
         self._core.set_speculative_margin(number, None if margin is None else as_length(margin, "margin"))
 
-    def set_filter(self, ids: Union[int, np.ndarray], groups: int, mask: int) -> None:
-        """`find_contacts()` pairs two bodies only if the groups of each have a bit in common with the mask of the other.
-        At first a body is in group 1 and its mask has all 32 bits."""
+    def set_filter(self, ids: ArrayLike, groups: int, mask: int) -> None:
+        """`find_contacts()` pairs two bodies only if the groups of each have a bit in common with the mask of the
+        other. At first a body is in group 1 and its mask has all 32 bits.
+
+        ids: one or (n,). Raises InputError for an id that is not in the scene, and bits beyond 32.
+        """
         self._core.set_filter(as_ids(ids, "ids")[0], as_count(groups, "groups"), as_count(mask, "mask"))
 
-    def shape(self, id: int) -> Shape:
-        """The one that the body was added with."""
+    def shape(self, id: _Id) -> Shape:
+        """The one that the body was added with. Raises InputError for an id that is not in the scene."""
         return Shape._wrap(self._core.shape(as_id(id, "id")))
 
     @property
-    def ids(self) -> np.ndarray:
+    def ids(self) -> NDArray[np.int64]:
         """(n,) int64: of all bodies, by slot."""
         return self._core.ids
 
-    def __contains__(self, id: int) -> bool:
+    def __contains__(self, id: _Id) -> bool:
         return self._core.has(as_id(id, "id"))
 
     def __len__(self) -> int:
@@ -205,7 +231,7 @@ class Scene:
 
     def set_settings(self, **settings: Any) -> None:
         """Changes settings between two steps; forgets what the last method kept. Devices, threads, schedule and inexact
-        are fixed."""
+        are fixed. Raises InputError for these and as Scene does, TypeError for a word that is none."""
         unknown = set(settings) - set(self._core.settings)
         if unknown:
             raise TypeError(f"set_settings() got an unexpected keyword argument {sorted(unknown)[0]!r}")
@@ -215,7 +241,7 @@ class Scene:
         """`Shape.prepare` for the shapes of all bodies, so that the next step is as fast as later ones."""
         self._core.prepare()
 
-    def find_contacts(self, pairs: Optional[np.ndarray] = None) -> Contacts:
+    def find_contacts(self, pairs: Optional[ArrayLike] = None) -> Contacts:
         """One step: all contacts where the bodies are now, sorted by the slots of both bodies, then by key.
 
         pairs: (n, 2) ids from a broad phase of your own, in any order; None: those whose boxes overlap.
@@ -236,7 +262,7 @@ class Scene:
         return LostContacts(*self._core.lost_contacts())
 
     @property
-    def pairs(self) -> np.ndarray:
+    def pairs(self) -> NDArray[np.int64]:
         """(n, 2) int64: ids of the pairs of the last step, sorted by slots."""
         return self._core.pairs
 
@@ -245,11 +271,12 @@ class Scene:
         """What the last step did."""
         return self._core.stats
 
-    def raycast(self, origins: np.ndarray, directions: np.ndarray, max: float = np.inf) -> BodyRayHits:
+    def raycast(self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf) -> BodyRayHits:
         """The body that each ray meets first, poses set since the last step included.
 
         origins, directions: (3,) or (n, 3), metres, world frame; directions of any length. max: metres.
-        Raises InputError for a direction that is zero or not finite.
+        Raises InputError for a direction that is zero or not finite, an origin that is not finite, a `max` that is
+        negative or NaN, and where numbers of origins and directions differ.
         """
         starts, one = as_points(origins, "origins")
         along, one_direction = as_points(directions, "directions")
@@ -260,17 +287,22 @@ class Scene:
         hits = self._core.raycast(starts, along, as_length(max, "max"))
         return BodyRayHits(*one_of(hits, one and one_direction))
 
-    def closest_point(self, points: np.ndarray, max: float = np.inf) -> BodyClosestPoints:
+    def closest_point(self, points: ArrayLike, max: float = np.inf) -> BodyClosestPoints:
         """The point of all surfaces that is nearest to each point, within `max` metres.
 
-        points: (3,) or (n, 3), metres, world frame. Poses set since the last step count.
+        points: (3,) or (n, 3), metres, world frame. Poses set since the last step count. Raises InputError for a point
+        that is not finite, and a `max` that is negative or NaN.
         """
         places, one = as_points(points, "points")
         found = self._core.closest_points(places, as_length(max, "max"))
         return BodyClosestPoints(*one_of(found, one))
 
-    def overlaps(self, shape: ShapeLike, pose: Optional[np.ndarray] = None) -> np.ndarray:
-        """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact."""
+    def overlaps(self, shape: ShapeLike, pose: Optional[ArrayLike] = None) -> NDArray[np.int64]:
+        """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact.
+
+        pose: (4, 4), from the shape's frame to the world, metres; None is the identity. Raises InputError for one that
+        is not finite and rigid to 1e-4.
+        """
         matrices, one = as_poses(pose, "pose")
         if not one:
             raise InputError("pose: give one, (4, 4)")
@@ -305,7 +337,7 @@ class Recorder:
         self._core = _core.Recorder(os.fspath(file), scene._core, name, as_length(dt, "dt"), mesh_source)
 
     def record(self) -> None:
-        """Adds the scene's last step."""
+        """Adds the scene's last step. Raises RuntimeError when the file cannot be written."""
         self._core.record()
 
     def finish(self) -> None:

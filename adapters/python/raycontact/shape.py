@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import as_count
@@ -15,14 +16,16 @@ from .mesh import Mesh, MeshLike
 
 
 class Mass(NamedTuple):
-    """Of a body filled with matter of unit density."""
+    """Of a body filled with matter of unit density.
+
+    volume: m^3; times the density it is the mass.
+    centre: (3,) float64, of mass, metres, body frame.
+    inertia: (3, 3) float64, about the centre, body axes, m^5; times the density it is kg m^2.
+    """
 
     volume: float
-    """m^3; times the density it is the mass."""
-    centre: np.ndarray
-    """(3,), of mass, body frame, metres."""
-    inertia: np.ndarray
-    """(3, 3), about the centre, body axes, m^5; times the density it is kg m^2."""
+    centre: NDArray[np.float64]
+    inertia: NDArray[np.float64]
 
 
 class Shape:
@@ -46,15 +49,15 @@ class Shape:
         self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), as_count(threads, "threads"))
 
     @classmethod
-    def _wrap(cls, core: Any) -> Shape:
+    def _wrap(cls, core: _core.Shape) -> Shape:
         shape = cls.__new__(cls)
         shape._core = core
         return shape
 
     def prepare(self, threads: int = 0) -> None:
-        """Makes what only speeds up later steps: 10 to 45 times the work of making the shape. A scene has it made beside
-        its steps; call it where the first steps must be as fast as later ones. No contact of the methods "standard" and
-        "certified" depends on it. Does nothing the second time."""
+        """Makes what only speeds up later steps: 10 to 45 times the work of making the shape. A scene has it made
+        beside its steps; call it where the first steps must be as fast as later ones. No contact of the methods
+        "standard" and "certified" depends on it. Does nothing the second time. threads: 0 is one for each core."""
         self._core.prepare(as_count(threads, "threads"))
 
     @property
@@ -78,12 +81,12 @@ class Shape:
         return self._core.has_inside
 
     @property
-    def vertices(self) -> np.ndarray:
+    def vertices(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, body frame: distinct positions, as the mesh had them. Not writable."""
         return self._core.vertices
 
     @property
-    def triangles(self) -> np.ndarray:
+    def triangles(self) -> NDArray[np.uint32]:
         """(m, 3) uint32: rows of `vertices`. Not writable."""
         return self._core.triangles
 
@@ -91,34 +94,34 @@ class Shape:
     """The same, by the name that other libraries use."""
 
     @property
-    def vertex_index(self) -> np.ndarray:
+    def vertex_index(self) -> NDArray[np.uint32]:
         """(n,) uint32: which vertex of the mesh each is (the lowest where several were welded)."""
         return self._core.vertex_index
 
     @property
-    def triangle_index(self) -> np.ndarray:
+    def triangle_index(self) -> NDArray[np.uint32]:
         """(m,) uint32: which triangle of the mesh each is. Contacts and queries give those of the mesh."""
         return self._core.triangle_index
 
     @property
-    def vertex_normals(self) -> np.ndarray:
+    def vertex_normals(self) -> NDArray[np.float64]:
         """(n, 3) float64, unit, body frame, outward: angle-weighted (Baerentzen and Aanaes 2005); 0 where the triangles
         around a vertex cancel out."""
         return self._core.vertex_normals
 
     @property
-    def vertex_areas(self) -> np.ndarray:
+    def vertex_areas(self) -> NDArray[np.float32]:
         """(n,) float32, m^2: a third of the area of the triangles around each vertex."""
         return self._core.vertex_areas
 
     @property
-    def exit_distances(self) -> np.ndarray:
+    def exit_distances(self) -> NDArray[np.float32]:
         """(n,) float32, metres: how far the ray from a vertex along its inward normal travels inside the mesh: the
         thickness there. inf where it never leaves."""
         return self._core.exit_distances
 
     @property
-    def box(self) -> np.ndarray:
+    def box(self) -> NDArray[np.float64]:
         """(2, 3) float64, metres, body frame: least and greatest coordinates."""
         return np.array(self._core.box)
 
@@ -129,7 +132,7 @@ class Shape:
 
     @property
     def longest_edge(self) -> float:
-        """Metres."""
+        """Of all edges of the mesh, metres."""
         return self._core.longest_edge
 
     @property
@@ -159,20 +162,23 @@ class Shape:
 ShapeLike = Union[Shape, MeshLike]
 """A Shape, or what it is made of: a Mesh, the path of a file, an object with `vertices` and `faces`."""
 
+Shapes = Union[ShapeLike, Sequence[ShapeLike], NDArray[np.object_]]
+"""One, or a list of them."""
+
 
 def as_shape(value: ShapeLike) -> Shape:
     """The shape itself, or one made of what is given."""
     return value if isinstance(value, Shape) else Shape(value)
 
 
-def as_shapes(value: Union[ShapeLike, Sequence[ShapeLike]], what: str) -> tuple[list[Any], bool]:
+def as_shapes(value: Any, what: str) -> tuple[list[_core.Shape], bool]:
     """The C++ half's shapes, and whether a single one was given. What is there several times is made once."""
     if isinstance(value, Shape):
         return [value._core], True
     is_list = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.dtype == object)
     if not is_list or hasattr(value, "faces"):
         return [as_shape(value)._core], True
-    made: dict[int, Any] = {}
+    made: dict[int, _core.Shape] = {}
     cores = []
     for i, item in enumerate(value):
         if id(item) not in made:
@@ -184,4 +190,4 @@ def as_shapes(value: Union[ShapeLike, Sequence[ShapeLike]], what: str) -> tuple[
     return cores, False
 
 
-__all__ = ["Mass", "Shape", "ShapeLike"]
+__all__ = ["Mass", "Shape", "ShapeLike", "Shapes"]
