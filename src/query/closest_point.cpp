@@ -19,6 +19,7 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
     const Vec3 sought = rotated(inverse_of(pose.rotation), point - pose.translation) - mesh.centre;
     // As far as rounding puts the point off; where it is far away, that is what decides which boxes are near.
     const double slack = rounding_of(mesh) + 1e-14 * (length(sought) + length(mesh.centre));
+    const double float_rounding = float_rounding_of(mesh.reach + length(sought));
     double nearest2 = max * max;
     std::uint32_t face = NONE;
     Vec3 nearest;
@@ -30,7 +31,7 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) lanes[lane] = box_of(node, lane).squared_distance(sought);
     };
     const auto look = [&](const kernels::TriangleBlock& block) {
-        const Lanes<double> squares = BlockBoxes(block, slack).squared_distances({sought, sought});
+        const Lanes<float> squares = BlockBoxes(block, slack + float_rounding).squared_distances({sought, sought});
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const std::uint32_t t = block.triangle[lane];
             if (!(squares[lane] <= nearest2) || t == NONE) continue;

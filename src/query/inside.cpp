@@ -53,12 +53,13 @@ Winding winding_along(const PlacedShape& shape, const PlacedPoint& from, const P
     const double slack = from.placing->error + rounding_of(mesh);
     const Vec3 grow{slack, slack, slack};
     const Box box{least(from.rough, to.rough) - grow, most(from.rough, to.rough) + grow};
+    const double float_rounding = float_rounding_of(mesh.reach + length(from.rough) + length(to.rough));
     Winding winding;
     shape.each_tree([&](const TriangleTree& tree) {
         visit_blocks(
             tree, [&](const Box& other) { return other.touches(box); },
             [&](const kernels::TriangleBlock& block) {
-                const Lanes<double> squares = BlockBoxes(block, 0).squared_distances(box);
+                const Lanes<float> squares = BlockBoxes(block, float_rounding).squared_distances(box);
                 for (std::size_t lane = 0; lane < TRIANGLE_LANES && winding.worst == Crossing::none; ++lane) {
                     const std::uint32_t face = block.triangle[lane];
                     if (face == NONE || squares[lane] > 0 || mesh.is_flat(face)) continue;

@@ -121,31 +121,38 @@ Box ShapePair::box_in(Side side, const Box& of_other) const {
 }
 
 BlockBoxes::BlockBoxes(const kernels::TriangleBlock& block, double grow) {
+    constexpr float nowhere = std::numeric_limits<float>::infinity();
+    const auto by = static_cast<float>(grow);
     for (std::size_t k = 0; k < 3; ++k) {
         const auto &p = block.corner[k], &q = block.corner[3 + k], &r = block.corner[6 + k];
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
             const bool empty = block.triangle[lane] == NONE;
-            low[k][lane] = empty ? infinite : double(std::min(std::min(p[lane], q[lane]), r[lane])) - grow;
-            high[k][lane] = empty ? -infinite : double(std::max(std::max(p[lane], q[lane]), r[lane])) + grow;
+            const float least = std::min(std::min(p[lane], q[lane]), r[lane]) - by;
+            const float most = std::max(std::max(p[lane], q[lane]), r[lane]) + by;
+            low[k][lane] = empty ? nowhere : least;
+            high[k][lane] = empty ? -nowhere : most;
         }
     }
 }
 
 Box BlockBoxes::whole() const {
-    const auto low_end = [&](std::size_t k) { return *std::min_element(low[k].begin(), low[k].end()); };
-    const auto high_end = [&](std::size_t k) { return *std::max_element(high[k].begin(), high[k].end()); };
+    const auto low_end = [&](std::size_t k) { return double(*std::min_element(low[k].begin(), low[k].end())); };
+    const auto high_end = [&](std::size_t k) { return double(*std::max_element(high[k].begin(), high[k].end())); };
     return {{low_end(0), low_end(1), low_end(2)}, {high_end(0), high_end(1), high_end(2)}};
 }
 
-Lanes<double> BlockBoxes::squared_distances(const Box& box) const {
-    Lanes<double> squares{};
+Lanes<float> BlockBoxes::squared_distances(const Box& box) const {
+    constexpr float far = 1e37f; // squares beyond it may overflow
+    Lanes<float> squares{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const double from = axis(box.low, k), to = axis(box.high, k);
+        const auto from = static_cast<float>(axis(box.low, k)), to = static_cast<float>(axis(box.high, k));
         for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
-            const double off = std::max(std::max(low[k][lane] - to, from - high[k][lane]), 0.0);
+            const float off = std::max(std::max(low[k][lane] - to, from - high[k][lane]), 0.0f);
             squares[lane] += off * off;
         }
     }
+    for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane)
+        squares[lane] = low[0][lane] > high[0][lane] ? squares[lane] : std::min(squares[lane], far);
     return squares;
 }
 

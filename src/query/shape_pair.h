@@ -58,6 +58,8 @@ public:
     std::array<Vec3, 3> corners_of_b(std::uint32_t triangle) const;
     /// Rough points of a in the centred frame of b.
     const Pose& a_in_b() const { return a_in_b_; }
+    /// Out of the centred frame of `side` into that of the other one.
+    const Pose& out_of(Side side) const { return side == Side::a ? a_in_b_ : b_in_a_; }
     Vec3 to_world(const Vec3& rough) const { return transform_point(b_in_world_, rough); }
 
     /// About a box of the other tree, in the frame of `side`.
@@ -79,15 +81,15 @@ private:
     bool far_apart_;
 };
 
-/// The boxes of the triangles of a block, as its tree has them; empty lanes are nowhere.
+/// The boxes of the triangles of a block, as its tree has them, in float32; empty lanes are nowhere.
 struct BlockBoxes {
-    std::array<Lanes<double>, 3> low, high;
-    /// Grown by `grow`, metres.
+    std::array<Lanes<float>, 3> low, high;
+    /// Grown by `grow`, metres, which must be more than what is rounded here (float_rounding_of).
     BlockBoxes(const kernels::TriangleBlock& block, double grow);
     /// About them all.
     Box whole() const;
-    /// The squared distance of each from a box, m^2; 0: they touch.
-    Lanes<double> squared_distances(const Box& box) const;
+    /// The squared distance of each from a box, m^2, or less; 0: they may touch. Never infinite, but in empty lanes.
+    Lanes<float> squared_distances(const Box& box) const;
 };
 
 /// How far along a direction each triangle of a block begins: the least of direction . corner; infinite in empty lanes.
@@ -96,6 +98,16 @@ Lanes<double> least_along(const kernels::TriangleBlock& block, const Vec3& direc
 /// How far a file's vertex can be from the float32 one, metres, with a margin.
 inline double rounding_of(const ShapeData& shape) {
     return double(shape.header.tolerance);
+}
+
+/// More than some ten roundings to float32 of numbers of this size.
+inline double float_rounding_of(double size) {
+    return 2e-6 * size;
+}
+/// The same of what two shapes are and lie apart, and how far their rough points are off, metres.
+inline double float_rounding_of(const ShapePair& pair) {
+    const double apart = length(pair.a_in_b().translation);
+    return pair.error() + float_rounding_of(pair.a().reach + pair.b().shape().reach + apart);
 }
 
 } // namespace raycontact

@@ -110,23 +110,75 @@ void shorten_between(Span& span, const Face& p, const Face& q) {
         if (const auto point = p.within(corner, span.squared)) span.shorten(*point, corner);
 }
 
+/// The box of a child by its middle.
+template <class Number>
+struct ChildBox {
+    Number middle[3], half[3];
+    ChildBox(const kernels::Node& node, std::size_t lane) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto low = Number(node.bounds[k][lane]), high = Number(node.bounds[3 + k][lane]);
+            middle[k] = Number(0.5) * (low + high);
+            half[k] = Number(0.5) * (high - low);
+        }
+    }
+};
+
+/// A box of the other tree, for the children of a node: along the axes of either frame they are off each other by no
+/// less than is told. Of turned boxes one frame alone often shows no gap. Loops over lanes become side by side.
+template <class Number>
+class TwoFrames {
+public:
+    /// error: of all that is told, metres, at most.
+    TwoFrames(const ShapePair& pair, Side side, const Box& other, double error) {
+        const Pose& out = pair.out_of(side);
+        const Box own = pair.box_in(side, other);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double low = axis(own.low, k), high = axis(own.high, k);
+            own_middle[k] = Number(0.5 * (low + high));
+            own_half_[k] = Number(0.5 * (high - low) + error);
+            const double from = axis(other.low, k), to = axis(other.high, k);
+            away_[k] = Number(axis(out.translation, k) - 0.5 * (from + to));
+            half_[k] = Number(0.5 * (to - from) + error);
+            for (std::size_t i = 0; i < 3; ++i) {
+                turn_[k][i] = Number(out.rotation[3 * k + i]);
+                reach_[k][i] = std::fabs(turn_[k][i]);
+            }
+        }
+    }
+
+    Number off_own(const ChildBox<Number>& child, std::size_t k) const {
+        return std::fabs(child.middle[k] - own_middle[k]) - (child.half[k] + own_half_[k]);
+    }
+    Number off_others(const ChildBox<Number>& child, std::size_t k) const {
+        const Number at = turn_[k][0] * child.middle[0] + turn_[k][1] * child.middle[1] + turn_[k][2] * child.middle[2];
+        const Number half = reach_[k][0] * child.half[0] + reach_[k][1] * child.half[1] + reach_[k][2] * child.half[2];
+        return std::fabs(at + away_[k]) - (half + half_[k]);
+    }
+
+    Number own_middle[3]; ///< of the box in the node's frame
+
+private:
+    Number own_half_[3], away_[3], half_[3], turn_[3][3], reach_[3][3];
+};
+
 /// Asks pairs of triangles whether they meet.
 class Meeting {
 public:
     explicit Meeting(const ShapePair& pair)
-        : pair_(pair), grow_a_(rounding_of(pair.a())), grow_b_(rounding_of(pair.b().shape())) {}
+        : pair_(pair), grow_a_(rounding_of(pair.a()) + float_rounding_of(pair)),
+          grow_b_(rounding_of(pair.b().shape()) + float_rounding_of(pair)) {}
 
     const std::optional<TrianglePair>& found() const { return found_; }
 
     void look(const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
         const BlockBoxes boxes_a(of_a, grow_a_), boxes_b(of_b, grow_b_);
-        const Lanes<double> squares_a = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
+        const Lanes<float> squares_a = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
         for (std::size_t i = 0; i < TRIANGLE_LANES; ++i) {
             const std::uint32_t a = of_a.triangle[i];
             if (squares_a[i] > 0 || pair_.a().is_flat(a)) continue;
             const std::array<PlacedPoint, 3> p = pair_.triangle_of_a(a);
             const Corners corners{p[0].rough, p[1].rough, p[2].rough};
-            const Lanes<double> squares_b = boxes_b.squared_distances(grown(box_of(corners), pair_.error()));
+            const Lanes<float> squares_b = boxes_b.squared_distances(grown(box_of(corners), pair_.error()));
             for (std::size_t k = 0; k < TRIANGLE_LANES; ++k) {
                 const std::uint32_t b = of_b.triangle[k];
                 if (squares_b[k] > 0 || pair_.b().shape().is_flat(b)) continue;
@@ -150,7 +202,8 @@ class Closest {
 public:
     /// limit: only what is nearer counts, m^2.
     Closest(const ShapePair& pair, double limit)
-        : pair_(pair), grow_a_(rounding_of(pair.a())), grow_b_(rounding_of(pair.b().shape())), squared_(limit) {
+        : pair_(pair), grow_a_(rounding_of(pair.a()) + float_rounding_of(pair)),
+          grow_b_(rounding_of(pair.b().shape()) + float_rounding_of(pair)), squared_(limit) {
         go({});
     }
 
@@ -159,13 +212,23 @@ public:
 
     /// How far the children of a node are from a box of the other tree, each in its own frame, m^2 at least.
     void fill_gaps(Side side, const kernels::Node& node, const Box& other, Lanes<double>& lanes) const {
-        const Box box = pair_.box_in(side, other);
+        const TwoFrames<double> frames(pair_, side, other, pair_.error());
         const Vec3 &own = side == Side::a ? forth_ : back_, &others = side == Side::a ? back_ : forth_;
         const double reach = most_along(other, others) + shift_;
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
-            const Box child = box_of(node, lane);
-            const double parted = std::max(-(most_along(child, own) + reach), 0.0);
-            lanes[lane] = std::max(gap(child, box), parted * parted);
+            const ChildBox<double> child(node, lane);
+            const double along = own.x * child.middle[0] + own.y * child.middle[1] + own.z * child.middle[2]
+                                 + std::fabs(own.x) * child.half[0] + std::fabs(own.y) * child.half[1]
+                                 + std::fabs(own.z) * child.half[2];
+            const double parted = std::max(-(along + reach), 0.0);
+            double in_own = 0, in_others = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double here = std::max(frames.off_own(child, k), 0.0);
+                const double there = std::max(frames.off_others(child, k), 0.0);
+                in_own += here * here;
+                in_others += there * there;
+            }
+            lanes[lane] = std::max(std::max(in_own, in_others), parted * parted);
         }
     }
 
@@ -173,7 +236,7 @@ public:
         Along along(*this, of_a, of_b);
         if (is_beyond(along.first_of_b - along.last_of_a)) return;
         const BlockBoxes boxes_a(of_a, grow_a_), boxes_b(of_b, grow_b_);
-        const Lanes<double> squares = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
+        const Lanes<float> squares = boxes_a.squared_distances(pair_.box_in(Side::a, boxes_b.whole()));
         for (const std::size_t lane : by_rising(squares)) {
             const std::uint32_t a = of_a.triangle[lane];
             if (!(squares[lane] < squared_)) return;
@@ -197,10 +260,6 @@ private:
         }
     };
 
-    static double gap(const Box& a, const Box& b) {
-        const Vec3 off = most(most(a.low - b.high, b.low - a.high), Vec3{});
-        return dot(off, off);
-    }
     static double most_along(const Box& box, const Vec3& way) {
         const Vec3 half = 0.5 * (box.high - box.low);
         return dot(way, box.middle()) + std::fabs(way.x) * half.x + std::fabs(way.y) * half.y
@@ -210,7 +269,7 @@ private:
     bool is_beyond(double metres) const { return metres > 0 && metres * metres >= squared_; }
 
     // Empty lanes, which are infinitely far, come last.
-    static std::array<std::size_t, NODE_LANES> by_rising(const Lanes<double>& squares) {
+    static std::array<std::size_t, NODE_LANES> by_rising(const Lanes<float>& squares) {
         std::array<std::size_t, NODE_LANES> order;
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
             std::size_t at = lane;
@@ -224,7 +283,7 @@ private:
     bool look(std::uint32_t a, double end, const kernels::TriangleBlock& of_b, const BlockBoxes& boxes,
               const Lanes<double>& begins) {
         const Corners corners = pair_.corners_of_a(a);
-        const Lanes<double> squares = boxes.squared_distances(grown(box_of(corners), pair_.error()));
+        const Lanes<float> squares = boxes.squared_distances(grown(box_of(corners), pair_.error()));
         // The nearest first: what it leaves is less.
         const auto nearest =
             static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
@@ -268,18 +327,23 @@ private:
 std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
     if (pair.far_apart()) return std::nullopt;
     constexpr float never = std::numeric_limits<float>::infinity();
+    const double rounding = float_rounding_of(pair);
     Meeting meeting(pair);
     pair.each_tree([&](const TriangleTree& a, const TriangleTree& b) {
         nearest_pairs_first<float>(
             a, b, [&] { return meeting.found() ? 0 : never; },
             [&](Side side, const kernels::Node& node, const Box& other, Lanes<float>& lanes) {
-                const Box box = pair.box_in(side, other);
-                const Vec3 middle = box.middle();
-                // The nearest middles first: deep in one another, they are likely to meet.
+                const TwoFrames<float> frames(pair, side, other, rounding);
                 for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
-                    const Box child = box_of(node, lane);
-                    const Vec3 off = child.middle() - middle;
-                    lanes[lane] = child.touches(box) ? static_cast<float>(std::min(dot(off, off), 1e30)) : never;
+                    const ChildBox<float> child(node, lane);
+                    float off = 0, squared = 0;
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        off = std::max(off, std::max(frames.off_own(child, k), frames.off_others(child, k)));
+                        const float away = child.middle[k] - frames.own_middle[k];
+                        squared += away * away;
+                    }
+                    // The nearest middles first: deep in one another, they are likely to meet.
+                    lanes[lane] = off > 0 ? never : std::min(squared, 1e30f);
                 }
             },
             [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
