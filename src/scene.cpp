@@ -179,7 +179,7 @@ struct Scene::State {
         pairs_stand = true;
     }
 
-    /// A step that throws, but for bad input, has no contacts.
+    /// A step that has begun and throws has no contacts.
     template <typename Work>
     void all_or_nothing(Work&& work) {
         try {
