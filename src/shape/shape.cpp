@@ -21,7 +21,6 @@ namespace raycontact {
 namespace {
 
 constexpr double rounding = 1.1920929e-7;       // 2^-23
-constexpr std::size_t few_triangles = 512;      // one thread has them done before others wake
 constexpr std::size_t many_triangles = 1 << 16; // a millisecond to give memory back is not noticed
 
 // Rounds the vertices to float32, the double positions, too, so that steps see one geometry. Keeps what they were.
@@ -100,7 +99,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads
 
 std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t threads) {
     const FloatEnvironment environment;
-    Executor executor(mesh.triangles.size() < few_triangles ? 1 : threads);
+    Executor executor(threads_for(mesh.triangles.size(), threads));
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
         throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");
@@ -160,7 +159,7 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
 
 void Shape::prepare(std::uint32_t threads) const {
     if (is_prepared()) return;
-    Executor executor(triangles().size() < few_triangles ? 1 : threads);
+    Executor executor(threads_for(triangles().size(), threads));
     raycontact::prepare(*this, executor, {});
 }
 bool Shape::is_prepared() const {
