@@ -25,10 +25,19 @@ bool wait_awake(Clock::duration most, Done&& done) {
 } // namespace
 
 SideBySide::SideBySide(std::size_t count) {
-    for (std::size_t i = 1; i < count; ++i) threads_.emplace_back([this, i] { serve(i); });
+    try {
+        for (std::size_t i = 1; i < count; ++i) threads_.emplace_back([this, i] { serve(i); });
+    } catch (...) {
+        end(); // or those there are would be waited for for ever
+        throw;
+    }
 }
 
 SideBySide::~SideBySide() {
+    end();
+}
+
+void SideBySide::end() {
     function_ = nullptr;
     ++runs_;
     wake();

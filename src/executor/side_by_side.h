@@ -14,6 +14,7 @@ namespace raycontact {
 /// one on a thread of its own, always the same.
 class SideBySide {
 public:
+    /// Throws std::system_error where the system gives no more threads.
     explicit SideBySide(std::size_t count);
     ~SideBySide();
     SideBySide(const SideBySide&) = delete;
@@ -25,6 +26,7 @@ public:
     void run(const std::function<void(std::size_t)>& function);
 
 private:
+    void end();
     void serve(std::size_t number);
 
     const std::function<void(std::size_t)>* function_ = nullptr; ///< null: the threads end
