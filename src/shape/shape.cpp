@@ -107,6 +107,9 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
         for (const std::uint32_t v : triangle)
             if (v >= mesh.vertices.size())
                 throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " does not exist");
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        if (!is_finite(mesh.vertices[v]))
+            throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " is not finite");
     check_size(mesh.vertices, "mesh '" + mesh.name + "'");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
