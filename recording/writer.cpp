@@ -55,6 +55,7 @@ struct Writer::State {
     void step(std::span<const Pose> by_slot, std::span<const Pair> given);
     std::uint64_t place() const { return end - data; }
     std::uint32_t frame_stride() const;
+    Bytes picture(std::span<const float> times, std::span<const ViewerTrack> tracks) const;
     Bytes animated_part() const;
     void animate();
 
@@ -83,10 +84,18 @@ struct Writer::State {
     double seconds = 0, finish_seconds = 0;
 };
 
+Bytes Writer::State::picture(std::span<const float> times, std::span<const ViewerTrack> tracks) const {
+    try {
+        return viewer_part(meshes, viewer_bodies, times, tracks);
+    } catch (const std::length_error& error) {
+        throw std::runtime_error(file.path().string() + ": " + error.what());
+    }
+}
+
 // The still picture, then the side chunk with what is known from the start. From here on the file only grows, and only
 // two lengths are ever overwritten.
 void Writer::State::begin() {
-    Bytes start = viewer_part(meshes, viewer_bodies, {}, {});
+    Bytes start = picture({}, {});
     const Bytes description =
         make_block(BlockType::info, 0, 0, encode_info(info), side_chunk_start.size(), Effort::thorough);
     data = start.size() + glb::chunk_header_bytes;
@@ -191,7 +200,7 @@ std::uint32_t Writer::State::frame_stride() const {
 }
 
 Bytes Writer::State::animated_part() const {
-    if (steps == 0) return viewer_part(meshes, viewer_bodies, {}, {});
+    if (steps == 0) return picture({}, {});
     Reader reader(file.path());
     const std::uint32_t stride = frame_stride();
     std::vector<float> times;
@@ -210,7 +219,7 @@ Bytes Writer::State::animated_part() const {
             if (body.first_step > 0 || body.end_step < steps) tracks[k].sizes.push_back(body.alive(i) ? 1.f : 0.f);
         }
     }
-    return viewer_part(meshes, viewer_bodies, times, tracks);
+    return picture(times, tracks);
 }
 
 // The same side chunk behind a new viewer's part, beside the file, then in its place: there is a whole file throughout.
@@ -253,6 +262,7 @@ Writer::Writer(const std::filesystem::path& file, const Info& info, const Writer
     if (!std::isfinite(info.dt) || info.dt <= 0)
         throw InputError("recording: the time step must be a positive number of seconds");
     check_settings(info.settings); // a reader would refuse them
+    encode_info(info);             // throws if it is too long, before any step is lost
     state_ = std::make_unique<State>(file, info, options);
 }
 

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -183,6 +184,9 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     RecorderOptions still;
     still.dt = 0;
     EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene, still); }), "");
+    RecorderOptions wordy;
+    wordy.mesh_source = std::string(std::size_t{1} << 20, 'x');
+    EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene, wordy); }).find("shorten them"), std::string::npos);
     row.step();
     EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene); }).find("before the scene's first step"),
               std::string::npos);
@@ -200,6 +204,31 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     other.scene.set_settings(ray);
     other.step();
     EXPECT_NE(message_of([&] { recorder.record(); }).find("have changed"), std::string::npos);
+}
+
+TEST(Recorder, EndsOnce) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    row.add();
+    Recorder recorder(file.path(), row.scene);
+    row.step();
+    recorder.record();
+    recorder.finish();
+    EXPECT_NE(message_of([&] { recorder.finish(); }), "");
+    row.step();
+    EXPECT_NE(message_of([&] { recorder.record(); }), "");
+    EXPECT_EQ(recording::Reader(file.path()).steps(), 1u);
+}
+
+TEST(Recorder, NamesAFileThatIsGone) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    row.add();
+    Recorder recorder(file.path(), row.scene);
+    row.step();
+    recorder.record();
+    std::filesystem::remove(file.path());
+    EXPECT_NE(message_of([&] { recorder.finish(); }).find(file.path().string()), std::string::npos);
 }
 
 } // namespace
