@@ -15,8 +15,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <limits>
-#include <new>
 #include <unordered_map>
 
 namespace raycontact {
@@ -106,8 +106,8 @@ struct Scene::State {
             if (body.shape != nullptr) body.shape->prepare(narrow.settings().execution.threads);
     }
 
-    // Once a shape meets others in a second step, more steps are likely to come. Without memory for it, they come
-    // without.
+    // Once a shape meets others in a second step, more steps are likely to come. Without memory or threads for it, they
+    // come without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
         ++steps_met;
@@ -115,7 +115,7 @@ struct Scene::State {
             for (const SlotPair& pair : slot_pairs)
                 for (const BodySlot slot : {pair.first, pair.second})
                     if (!bodies[slot].shape->is_prepared()) meet(*bodies[slot].shape);
-        } catch (const std::bad_alloc&) {
+        } catch (const std::exception&) {
         }
     }
 
