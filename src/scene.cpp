@@ -330,7 +330,7 @@ void Scene::set_settings(const Settings& settings) {
     state_->narrow.set_settings(settings);
     if (!settings.is_speculative()) state_->next_poses.forget();
 }
-const Settings& Scene::settings() const {
+const Settings& Scene::settings() const noexcept {
     return state_->narrow.settings();
 }
 const Shape& Scene::shape(BodyId body) const {
@@ -351,11 +351,11 @@ void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->notes[body.slot].mask = mask;
 }
 
-bool Scene::has(BodyId body) const {
+bool Scene::has(BodyId body) const noexcept {
     return state_->slots.is_there(body);
 }
 
-std::uint32_t Scene::body_count() const {
+std::uint32_t Scene::body_count() const noexcept {
     return state_->slots.count();
 }
 
@@ -396,7 +396,7 @@ std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     return state_->contacts;
 }
 
-std::span<const Contact> Scene::contacts() const {
+std::span<const Contact> Scene::contacts() const noexcept {
     return state_->contacts;
 }
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
@@ -406,13 +406,13 @@ std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     const auto first = std::ranges::lower_bound(state_->contacts, wanted, {}, pair_of);
     return {first, std::ranges::upper_bound(state_->contacts, wanted, {}, pair_of)};
 }
-std::span<const LostContact> Scene::lost_contacts() const {
+std::span<const LostContact> Scene::lost_contacts() const noexcept {
     return state_->narrow.lost_contacts();
 }
-const StepStats& Scene::stats() const {
+const StepStats& Scene::stats() const noexcept {
     return state_->stats;
 }
-std::span<const Pair> Scene::pairs() const {
+std::span<const Pair> Scene::pairs() const noexcept {
     return state_->pairs;
 }
 std::uint32_t Scene::device_of_pair(std::size_t i) const {

@@ -165,62 +165,62 @@ void Shape::prepare(std::uint32_t threads) const {
     Executor executor(threads_for(triangles().size(), threads));
     raycontact::prepare(*this, executor, {});
 }
-bool Shape::is_prepared() const {
+bool Shape::is_prepared() const noexcept {
     return accelerators_of(*this) != nullptr;
 }
 
-const std::string& Shape::name() const {
+const std::string& Shape::name() const noexcept {
     return data_->mesh.name;
 }
-const MeshReport& Shape::report() const {
+const MeshReport& Shape::report() const noexcept {
     return data_->mesh.report;
 }
-bool Shape::has_inside() const {
+bool Shape::has_inside() const noexcept {
     return data_->header.closed != 0;
 }
-std::span<const Vec3> Shape::vertices() const {
+std::span<const Vec3> Shape::vertices() const noexcept {
     return data_->mesh.vertices;
 }
-std::span<const Vec3> Shape::file_vertices() const {
+std::span<const Vec3> Shape::file_vertices() const noexcept {
     return data_->file_vertices.empty() ? data_->mesh.vertices : data_->file_vertices;
 }
-std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const {
+std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const noexcept {
     return data_->mesh.triangles;
 }
-std::span<const std::uint32_t> Shape::vertex_index() const {
+std::span<const std::uint32_t> Shape::vertex_index() const noexcept {
     return data_->mesh.vertex_index;
 }
-std::span<const std::uint32_t> Shape::triangle_index() const {
+std::span<const std::uint32_t> Shape::triangle_index() const noexcept {
     return data_->mesh.triangle_index;
 }
-Vec3 Shape::centre() const {
+Vec3 Shape::centre() const noexcept {
     return data_->centre;
 }
-Vec3 Shape::box_min() const {
+Vec3 Shape::box_min() const noexcept {
     return data_->box_min;
 }
-Vec3 Shape::box_max() const {
+Vec3 Shape::box_max() const noexcept {
     return data_->box_max;
 }
-double Shape::radius() const {
+double Shape::radius() const noexcept {
     return data_->radius;
 }
-double Shape::longest_edge() const {
+double Shape::longest_edge() const noexcept {
     return data_->longest_edge;
 }
-std::span<const Vec3> Shape::vertex_normals() const {
+std::span<const Vec3> Shape::vertex_normals() const noexcept {
     return data_->vertex_normals;
 }
-std::span<const float> Shape::vertex_areas() const {
+std::span<const float> Shape::vertex_areas() const noexcept {
     return data_->vertex_areas;
 }
-std::span<const float> Shape::exit_distances() const {
+std::span<const float> Shape::exit_distances() const noexcept {
     return data_->exit_distances;
 }
-std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const {
+std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const noexcept {
     return data_->neighbours;
 }
-std::span<const std::uint32_t> Shape::vertex_triangles() const {
+std::span<const std::uint32_t> Shape::vertex_triangles() const noexcept {
     return data_->vertex_triangle;
 }
 
