@@ -206,6 +206,26 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     EXPECT_NE(message_of([&] { recorder.record(); }).find("have changed"), std::string::npos);
 }
 
+TEST(Recorder, AStepThatIsRefusedIsNotInTheHash) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    for (int i = 0; i < 4; ++i) row.add();
+    Recorder recorder(file.path(), row.scene);
+    ContactHash hash;
+    row.step();
+    recorder.record();
+    hash.add(0, row.scene.contacts());
+    row.step();
+    row.remove(1);
+    EXPECT_NE(message_of([&] { recorder.record(); }).find("body 1 (generation 0) is not there"), std::string::npos);
+    row.step();
+    recorder.record();
+    hash.add(1, row.scene.contacts());
+    recorder.finish();
+    EXPECT_EQ(recorder.hash(), hash.hex());
+    expect_same_contacts(file, hash.hex(), Method::standard, 2);
+}
+
 TEST(Recorder, EndsOnce) {
     const TemporaryFile file;
     Row row(Method::standard);
