@@ -49,6 +49,7 @@ struct Writer::State {
 
     void begin();
     void commit(const Bytes& blocks);
+    void check_whole() const;
     void flush();
     std::uint32_t number_of(BodyId body) const;
     void check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given);
@@ -63,6 +64,7 @@ struct Writer::State {
     WriterOptions options;
     File file;
     bool begun = false, finished = false;
+    bool cut_off = false;   ///< steps were lost in a write that failed: none that come later can follow on those before
     std::uint64_t data = 0; ///< where the side chunk's data starts
     std::uint64_t end = 0;  ///< where the next block goes
 
@@ -121,8 +123,16 @@ void Writer::State::commit(const Bytes& blocks) {
     file.write(glb::length_at, word(end));
 }
 
+void Writer::State::check_whole() const {
+    if (cut_off)
+        throw std::runtime_error(file.path().string()
+                                 + ": ends where it could not be written; begin another (what was written stays)");
+}
+
 void Writer::State::flush() {
+    check_whole();
     if (!begun) begin();
+    cut_off = true; // until all is written
     Bytes blocks;
     for (const Bytes& shape : waiting_shapes)
         append(blocks, make_block(BlockType::shape, 0, 0, shape, place() + blocks.size(), Effort::thorough));
@@ -137,6 +147,7 @@ void Writer::State::flush() {
                                   Effort::quick));
     }
     if (!blocks.empty()) commit(blocks);
+    cut_off = false;
 }
 
 // Throws InputError where no body has the id now.
@@ -177,6 +188,7 @@ void Writer::State::check_and_keep(std::span<const Pose> by_slot, std::span<cons
 
 void Writer::State::step(std::span<const Pose> by_slot, std::span<const Pair> given) {
     if (finished) throw InputError("recording: a step after its end");
+    check_whole();
     const auto start = Clock::now();
     check_and_keep(by_slot, given);
     if (encoder.steps() == 0) oldest = start;

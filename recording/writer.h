@@ -23,8 +23,8 @@ struct WriterOptions {
 
 /// Writes a recording as the simulation goes. At each flush the file is whole: a still .glb to viewers, all steps so
 /// far to Reader. finish() adds the run's hash and the viewers' animation. Not thread-safe. A file that cannot be
-/// written later on (a full disk, more than the 4 GiB of a .glb) throws std::runtime_error naming it; what was flushed
-/// stays readable.
+/// written later on (a full disk, more than the 4 GiB of a .glb) throws std::runtime_error naming it, from then on in
+/// each call; what was flushed stays readable.
 class Writer {
 public:
     /// Throws InputError when the file cannot be made, or info makes no sense or is too long. What was there is lost.

@@ -42,8 +42,8 @@ public:
     /// After each Scene::find_contacts(), before bodies go: adds its step. Throws InputError when method, direction,
     /// features or thresholds were changed since the start, when a body of the step's pairs is gone, when a new body's
     /// slot had 100 000 bodies that were not recorded, and after finish(); std::runtime_error naming the file when it
-    /// cannot be written (a full disk, more than the 4 GiB of a .glb), or naming a mesh that cannot be recorded to the
-    /// bit.
+    /// cannot be written (a full disk, more than the 4 GiB of a .glb), after which it ends there, or naming a mesh that
+    /// cannot be recorded to the bit.
     void record();
     /// Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards. Throws InputError the
     /// second time and when the file is gone or was changed, and std::runtime_error when it cannot be written.
