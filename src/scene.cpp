@@ -421,6 +421,11 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
                          + std::to_string(state_->pairs.size()));
     return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
 }
+std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
+    const PlacedBody& first = state_->existing(a, "Scene::distance");
+    const PlacedBody& second = state_->existing(b, "Scene::distance");
+    return raycontact::distance(*first.shape, first.pose, *second.shape, second.pose, max);
+}
 std::vector<Prediction> Scene::predictions() const {
     return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies,
                             {{state_->contacts, state_->narrow.left_out()}});

@@ -91,7 +91,8 @@ TEST(body_ids, a_stale_id_is_refused_by_name) {
             {"Scene::set_filter", [&] { scene.set_filter(stale, 1, 1); }},
             {"Scene::contacts", [&] { (void)scene.contacts(other, stale); }},
             {"Scene::contacts", [&] { (void)scene.contacts(stale, other); }},
-            {"Scene::shape", [&] { (void)scene.distance(other, stale); }},
+            {"Scene::distance", [&] { (void)scene.distance(other, stale); }},
+            {"Scene::distance", [&] { (void)scene.distance(stale, other); }},
         };
         for (const auto& [name, call] : calls) {
             EXPECT_EQ(message_of(call), name + ": body 2 (generation 0) was removed"
