@@ -101,8 +101,9 @@ void Recorder::record() {
                          "recording has one "
                          "set of them, so begin another");
     s.follow_bodies();
-    s.hash.add(s.writer.steps(), s.scene.contacts());
-    s.writer.step(s.scene);
+    const std::uint32_t step = s.writer.steps();
+    s.writer.step(s.scene); // first: a step that is refused is in neither
+    s.hash.add(step, s.scene.contacts());
 }
 
 void Recorder::finish() {

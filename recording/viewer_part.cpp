@@ -222,7 +222,8 @@ Bytes viewer_part(std::span<const ViewerMesh> meshes, std::span<const ViewerBody
     // A mesh's name may be any bytes; in JSON what is not UTF-8 is replaced.
     const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (buffer.bytes().size() + text.size() > 0xffffff00u)
-        throw std::length_error("the meshes and the animation are more than a .glb file can hold (4 GiB)");
+        throw std::length_error(
+            "the meshes and the animation are more than a .glb file can hold (4 GiB); record fewer");
     Bytes file;
     put(file, glb::magic);
     put(file, glb::version);

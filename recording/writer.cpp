@@ -49,12 +49,14 @@ struct Writer::State {
 
     void begin();
     void commit(const Bytes& blocks);
+    void check_whole() const;
     void flush();
     std::uint32_t number_of(BodyId body) const;
     void check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given);
     void step(std::span<const Pose> by_slot, std::span<const Pair> given);
     std::uint64_t place() const { return end - data; }
     std::uint32_t frame_stride() const;
+    Bytes picture(std::span<const float> times, std::span<const ViewerTrack> tracks) const;
     Bytes animated_part() const;
     void animate();
 
@@ -62,6 +64,7 @@ struct Writer::State {
     WriterOptions options;
     File file;
     bool begun = false, finished = false;
+    bool cut_off = false;   ///< steps were lost in a write that failed: none that come later can follow on those before
     std::uint64_t data = 0; ///< where the side chunk's data starts
     std::uint64_t end = 0;  ///< where the next block goes
 
@@ -83,10 +86,18 @@ struct Writer::State {
     double seconds = 0, finish_seconds = 0;
 };
 
+Bytes Writer::State::picture(std::span<const float> times, std::span<const ViewerTrack> tracks) const {
+    try {
+        return viewer_part(meshes, viewer_bodies, times, tracks);
+    } catch (const std::length_error& error) {
+        throw std::runtime_error(file.path().string() + ": " + error.what());
+    }
+}
+
 // The still picture, then the side chunk with what is known from the start. From here on the file only grows, and only
 // two lengths are ever overwritten.
 void Writer::State::begin() {
-    Bytes start = viewer_part(meshes, viewer_bodies, {}, {});
+    Bytes start = picture({}, {});
     const Bytes description =
         make_block(BlockType::info, 0, 0, encode_info(info), side_chunk_start.size(), Effort::thorough);
     data = start.size() + glb::chunk_header_bytes;
@@ -112,8 +123,16 @@ void Writer::State::commit(const Bytes& blocks) {
     file.write(glb::length_at, word(end));
 }
 
+void Writer::State::check_whole() const {
+    if (cut_off)
+        throw std::runtime_error(file.path().string()
+                                 + ": ends where it could not be written; begin another (what was written stays)");
+}
+
 void Writer::State::flush() {
+    check_whole();
     if (!begun) begin();
+    cut_off = true; // until all is written
     Bytes blocks;
     for (const Bytes& shape : waiting_shapes)
         append(blocks, make_block(BlockType::shape, 0, 0, shape, place() + blocks.size(), Effort::thorough));
@@ -128,6 +147,7 @@ void Writer::State::flush() {
                                   Effort::quick));
     }
     if (!blocks.empty()) commit(blocks);
+    cut_off = false;
 }
 
 // Throws InputError where no body has the id now.
@@ -168,6 +188,7 @@ void Writer::State::check_and_keep(std::span<const Pose> by_slot, std::span<cons
 
 void Writer::State::step(std::span<const Pose> by_slot, std::span<const Pair> given) {
     if (finished) throw InputError("recording: a step after its end");
+    check_whole();
     const auto start = Clock::now();
     check_and_keep(by_slot, given);
     if (encoder.steps() == 0) oldest = start;
@@ -191,7 +212,7 @@ std::uint32_t Writer::State::frame_stride() const {
 }
 
 Bytes Writer::State::animated_part() const {
-    if (steps == 0) return viewer_part(meshes, viewer_bodies, {}, {});
+    if (steps == 0) return picture({}, {});
     Reader reader(file.path());
     const std::uint32_t stride = frame_stride();
     std::vector<float> times;
@@ -210,7 +231,7 @@ Bytes Writer::State::animated_part() const {
             if (body.first_step > 0 || body.end_step < steps) tracks[k].sizes.push_back(body.alive(i) ? 1.f : 0.f);
         }
     }
-    return viewer_part(meshes, viewer_bodies, times, tracks);
+    return picture(times, tracks);
 }
 
 // The same side chunk behind a new viewer's part, beside the file, then in its place: there is a whole file throughout.
@@ -253,6 +274,7 @@ Writer::Writer(const std::filesystem::path& file, const Info& info, const Writer
     if (!std::isfinite(info.dt) || info.dt <= 0)
         throw InputError("recording: the time step must be a positive number of seconds");
     check_settings(info.settings); // a reader would refuse them
+    encode_info(info);             // throws if it is too long, before any step is lost
     state_ = std::make_unique<State>(file, info, options);
 }
 

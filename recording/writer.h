@@ -23,18 +23,19 @@ struct WriterOptions {
 
 /// Writes a recording as the simulation goes. At each flush the file is whole: a still .glb to viewers, all steps so
 /// far to Reader. finish() adds the run's hash and the viewers' animation. Not thread-safe. A file that cannot be
-/// written later on (a full disk, more than the 4 GiB of a .glb) throws std::runtime_error naming it; what was flushed
-/// stays readable.
+/// written later on (a full disk, more than the 4 GiB of a .glb) throws std::runtime_error naming it, from then on in
+/// each call; what was flushed stays readable.
 class Writer {
 public:
-    /// Throws InputError when the file cannot be made, or info makes no sense. What was there is lost.
+    /// Throws InputError when the file cannot be made, or info makes no sense or is too long. What was there is lost.
     Writer(const std::filesystem::path& file, const Info& info, const WriterOptions& options = {});
     /// Without finish(): writes what is waiting, as far as it can, and leaves a recording without a hash.
     ~Writer();
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    /// Its index. Shapes must be added before the bodies that have them.
+    /// Its index. Throws std::runtime_error for one that cannot be recorded to the bit. Shapes must be added before the
+    /// bodies that have them.
     std::uint32_t add_shape(const Shape& shape);
     /// Takes part from the next step on. Bodies come and go here in the order in which they do in the scene; the id is
     /// then the one that Scene::add gives.
@@ -47,7 +48,8 @@ public:
     /// The step that the scene has just done. It must have the bodies that were added here.
     void step(const Scene& scene);
     void flush();
-    /// 16 hex digits, as ContactHash gives them. Nothing can be added afterwards.
+    /// 16 hex digits, as ContactHash gives them. Nothing can be added afterwards. Throws InputError the second time,
+    /// and where the file is gone or damaged.
     void finish(std::string_view hash);
 
     std::uint32_t steps() const;

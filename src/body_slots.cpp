@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "body_slots.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <stdexcept>
 
 namespace raycontact {
 
@@ -12,7 +13,7 @@ BodyId BodySlots::next() {
     if (free_.empty()) {
         // The highest slot stays unused: adapters and files have it for "none".
         if (slots_.size() >= std::numeric_limits<BodySlot>::max())
-            throw std::length_error("more than 2^32 - 1 bodies in one scene; remove some, or use several scenes");
+            throw InputError("more than 2^32 - 1 bodies in one scene; remove some, or use several scenes");
         if (slots_.size() == slots_.capacity()) slots_.reserve(std::max<std::size_t>(16, 2 * slots_.size()));
         free_.reserve(slots_.capacity());
         leaving_.reserve(slots_.capacity());

@@ -19,7 +19,8 @@ public:
     /// first_generation: of a slot's first body; a late one lets a test see the last.
     explicit BodySlots(std::uint32_t first_generation = 0) : first_generation_(first_generation) {}
 
-    /// The id that give() will give. May have to make room, after which give() cannot fail.
+    /// The id that give() will give. May have to make room, after which give() cannot fail. Throws InputError where no
+    /// slot is left.
     BodyId next();
     BodyId give() noexcept; ///< after next()
     void take_back(BodySlot slot) noexcept;

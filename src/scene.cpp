@@ -16,9 +16,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <limits>
 #include <memory>
-#include <new>
 #include <unordered_map>
 
 namespace raycontact {
@@ -108,8 +108,8 @@ struct Scene::State {
             if (body.shape != nullptr) body.shape->prepare(narrow.settings().execution.threads);
     }
 
-    // Once a shape meets others in a second step, more steps are likely to come. Without memory for it, they come
-    // without.
+    // Once a shape meets others in a second step, more steps are likely to come. Without memory or threads for it, they
+    // come without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
         ++steps_met;
@@ -117,7 +117,7 @@ struct Scene::State {
             for (const SlotPair& pair : slot_pairs)
                 for (const BodySlot slot : {pair.first, pair.second})
                     if (!bodies[slot].shape->is_prepared()) meet(*bodies[slot].shape);
-        } catch (const std::bad_alloc&) {
+        } catch (const std::exception&) {
         }
     }
 
@@ -181,11 +181,12 @@ struct Scene::State {
         pairs_stand = true;
     }
 
-    /// A step that throws, but for bad input, has no contacts.
+    /// A step that has begun and throws has no contacts.
     template <typename Work>
     void all_or_nothing(Work&& work) {
-        if (contacts.use_count() > 1) contacts = std::make_shared<std::vector<Contact>>(); // somebody holds the last ones
-        std::atomic_thread_fence(std::memory_order_acquire); // after what another thread read before it let go
+        if (contacts.use_count() > 1)
+            contacts = std::make_shared<std::vector<Contact>>(); // somebody holds the last ones
+        std::atomic_thread_fence(std::memory_order_acquire);     // after what another thread read before it let go
         try {
             work();
         } catch (...) {
@@ -334,7 +335,7 @@ void Scene::set_settings(const Settings& settings) {
     state_->narrow.set_settings(settings);
     if (!settings.is_speculative()) state_->next_poses.forget();
 }
-const Settings& Scene::settings() const {
+const Settings& Scene::settings() const noexcept {
     return state_->narrow.settings();
 }
 const Shape& Scene::shape(BodyId body) const {
@@ -355,11 +356,11 @@ void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->notes[body.slot].mask = mask;
 }
 
-bool Scene::has(BodyId body) const {
+bool Scene::has(BodyId body) const noexcept {
     return state_->slots.is_there(body);
 }
 
-std::uint32_t Scene::body_count() const {
+std::uint32_t Scene::body_count() const noexcept {
     return state_->slots.count();
 }
 
@@ -400,10 +401,10 @@ std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     return *state_->contacts;
 }
 
-std::span<const Contact> Scene::contacts() const {
+std::span<const Contact> Scene::contacts() const noexcept {
     return *state_->contacts;
 }
-std::shared_ptr<const std::vector<Contact>> Scene::shared_contacts() const {
+std::shared_ptr<const std::vector<Contact>> Scene::shared_contacts() const noexcept {
     return state_->contacts;
 }
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
@@ -413,13 +414,13 @@ std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     const auto first = std::ranges::lower_bound(*state_->contacts, wanted, {}, pair_of);
     return {first, std::ranges::upper_bound(*state_->contacts, wanted, {}, pair_of)};
 }
-std::span<const LostContact> Scene::lost_contacts() const {
+std::span<const LostContact> Scene::lost_contacts() const noexcept {
     return state_->narrow.lost_contacts();
 }
-const StepStats& Scene::stats() const {
+const StepStats& Scene::stats() const noexcept {
     return state_->stats;
 }
-std::span<const Pair> Scene::pairs() const {
+std::span<const Pair> Scene::pairs() const noexcept {
     return state_->pairs;
 }
 std::uint32_t Scene::device_of_pair(std::size_t i) const {
@@ -427,6 +428,11 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
         throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; the last step had "
                          + std::to_string(state_->pairs.size()));
     return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
+}
+std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
+    const PlacedBody& first = state_->existing(a, "Scene::distance");
+    const PlacedBody& second = state_->existing(b, "Scene::distance");
+    return raycontact::distance(*first.shape, first.pose, *second.shape, second.pose, max);
 }
 std::vector<Prediction> Scene::predictions() const {
     return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies,

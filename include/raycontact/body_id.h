@@ -19,7 +19,7 @@ struct BodyId {
     std::uint32_t generation = 0; ///< how many bodies had the slot before
 
     /// It was given by a scene, where its body may have been removed since (Scene::has()).
-    constexpr bool valid() const { return slot != no_slot; }
+    constexpr bool valid() const noexcept { return slot != no_slot; }
     /// By slot, then generation.
     // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes the 0 that the compiler compares with for a pointer
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;

@@ -36,12 +36,12 @@ struct ContactFeature {
     std::uint32_t index_b = 0; ///< likewise, of body b
 
     /// The index on the source.
-    std::uint32_t source_index() const { return source == Side::a ? index_a : index_b; }
+    std::uint32_t source_index() const noexcept { return source == Side::a ? index_a : index_b; }
     /// The index on the other body.
-    std::uint32_t other_index() const { return source == Side::a ? index_b : index_a; }
+    std::uint32_t other_index() const noexcept { return source == Side::a ? index_b : index_a; }
     /// Names the same physical contact from step to step, unique in its pair: it does not change when the ray meets
     /// another triangle. Contacts of a pair are sorted by it.
-    std::uint64_t key() const {
+    std::uint64_t key() const noexcept {
         return kind == FeatureKind::vertex  ? std::uint64_t(source) << 62 | source_index()
                : kind == FeatureKind::edges ? std::uint64_t{2} << 62 | std::uint64_t{index_a} << 31 | index_b
                                             : std::uint64_t{3} << 62 | std::uint64_t(source) << 32 | source_index();
@@ -72,11 +72,11 @@ struct Contact {
     Vec3 point_b; ///< the witness point of body_b
 
     /// Names the same contact from step to step, unique in its pair.
-    std::uint64_t key() const { return feature.key(); }
+    std::uint64_t key() const noexcept { return feature.key(); }
     /// The source's own point.
-    const Vec3& point() const { return feature.source == Side::a ? point_a : point_b; }
+    const Vec3& point() const noexcept { return feature.source == Side::a ? point_a : point_b; }
     /// Nothing touches there yet (Settings::speculative).
-    bool is_speculative() const { return !(depth > 0); }
+    bool is_speculative() const noexcept { return !(depth > 0); }
 };
 
 /// A contact that touched in the last step and does not in this one. Its bodies may have been removed since.
@@ -86,7 +86,7 @@ struct LostContact {
     ContactFeature feature; ///< but for edges without the index on the other body: ContactFeature::no_index
 
     /// That of the contact that is gone.
-    std::uint64_t key() const { return feature.key(); }
+    std::uint64_t key() const noexcept { return feature.key(); }
 };
 
 /// XXH64 over every contact that touches, of every step in order; the same for every device, caster and thread count.

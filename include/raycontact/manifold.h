@@ -47,7 +47,8 @@ RAYCONTACT_API bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b)
 /// those before (of points that were there by a factor of two farther; the first is farthest from the middle); then
 /// the deepest (one that was there counts as a tenth deeper) in place of the extreme that adds least, if it is not
 /// among them; then the deepest of the rest. None says what another says. So the forces of a solver keep what torque
-/// four points can keep, and the points stay while a body rocks. The deepest comes first, then the extremes.
+/// four points can keep, and the points stay while a body rocks. The deepest comes first, then the extremes. patch:
+/// places in `points`, each once; they are not checked.
 RAYCONTACT_API std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points,
                                                         std::span<const std::uint32_t> patch);
 

@@ -18,7 +18,7 @@ struct Mass {
 };
 
 /// By volume integrals over a closed mesh, exact but for rounding wherever it lies; all 0 where it encloses nothing.
-/// Volume and inertia are negative for one that is wound inward.
+/// Volume and inertia are negative for one that is wound inward. Every index must be one of a vertex.
 RAYCONTACT_API Mass mass_of(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 } // namespace raycontact

@@ -25,8 +25,9 @@ struct Mesh {
 };
 
 /// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
-/// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: a missing,
-/// unreadable, truncated or damaged file, a folder, no triangles, an index out of range, a coordinate not finite.
+/// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: another ending, a
+/// missing, unreadable, truncated or damaged file, a folder, what is not read of a format (as compressed glTF), no
+/// triangles or more than 715 827 881, an index out of range, a coordinate not finite.
 RAYCONTACT_API Mesh load_mesh(const std::filesystem::path& file);
 
 /// How the bytes of a mesh file are read; each format in all the kinds that the load_mesh() of a file reads.
@@ -37,8 +38,8 @@ enum class MeshFormat { obj, stl, ply, off, gltf, glb };
 RAYCONTACT_API Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name = {});
 
 /// From arrays. coordinates: x, y, z of each vertex, metres; corners: three vertices of each triangle,
-/// counter-clockwise seen from outside. Throws InputError naming it and the element to blame for: no triangles, a
-/// number that is not a multiple of three, a vertex that does not exist, a coordinate not finite.
+/// counter-clockwise seen from outside. Throws InputError naming it and the element to blame for: no triangles or too
+/// many, a number that is not a multiple of three, a vertex that does not exist, a coordinate not finite.
 RAYCONTACT_API Mesh make_mesh(std::span<const double> coordinates, std::span<const std::uint32_t> corners,
                               const std::string& name = {});
 /// The same from single precision. Throws InputError as that does.
@@ -100,8 +101,9 @@ struct PreparedMesh {
     MeshReport report;                         ///< what it is, and what was repaired
 };
 
-/// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError when no
-/// triangle with an area is left.
+/// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError naming
+/// the mesh for: no triangles or too many, an index out of range, a coordinate not finite or beyond 1e9 m, no triangle
+/// with an area, a box less than 1e-6 m long; and for more than 1024 threads.
 RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed,
                                          Nesting nesting = Nesting::as_wound, Check check = Check::full,
                                          std::uint32_t threads = 0);

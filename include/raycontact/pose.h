@@ -16,9 +16,9 @@ struct Pose {
     friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-/// From a row-major 4x4 matrix. Throws InputError when an entry is not finite or the matrix is not rigid to 1e-4
-/// (sheared, scaled or mirrored). Within that, the nearest rotation is taken (polar decomposition), so the rest of
-/// the library may rely on rotation^T being its inverse.
+/// From a row-major 4x4 matrix. Throws InputError when an entry is not finite, the last row is not 0 0 0 1 or the
+/// matrix is not rigid to 1e-4 (sheared, scaled or mirrored). Within that, the nearest rotation is taken (polar
+/// decomposition), so the rest of the library may rely on rotation^T being its inverse.
 RAYCONTACT_API Pose pose_from_matrix(std::span<const double, 16> row_major);
 
 /// The rigid pose nearest to one that is not: its rotation drifted, as a product of many float matrices does, or is
@@ -28,8 +28,8 @@ RAYCONTACT_API Pose pose_from_matrix(std::span<const double, 16> row_major);
 /// and when the rotation is mirrored or flat (determinant at most 1e-9 of its largest entry's cube).
 RAYCONTACT_API Pose nearest_rigid_pose(const Pose& pose);
 
-/// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero or not
-/// finite.
+/// From a translation and a unit quaternion (w, x, y, z); it is normalised. Throws InputError when it is zero, when its
+/// squared length is beyond double (of lengths from 1e-150 to 1e150 it is not), and when a number is not finite.
 RAYCONTACT_API Pose pose_from_quaternion(const Vec3& translation, double w, double x, double y, double z);
 
 /// Throws InputError naming `who` unless every entry is finite and the rotation is orthonormal to 1e-4, unmirrored.

@@ -16,9 +16,6 @@
 // metres. A mesh's vertices are Shape::file_vertices(): not rounded. Where an answer is called exact, it is that for
 // the real numbers rotation * vertex + translation, with the doubles of the mesh and the pose, and no tolerance;
 // coordinates and entries of rotations below 1e-36 count as 0.
-//
-// All that take a pose throw InputError for one that is not finite and rigid to 1e-4, for a point that is not finite or
-// beyond 1e30 m, and for a greatest distance that is negative or not a number.
 
 namespace raycontact {
 
@@ -37,11 +34,13 @@ struct RayHit {
 /// sides of a face count, and so do its edges and a face on which the origin lies; one that is seen exactly edge-on
 /// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on exact predicates
 /// decide which triangles it meets (Shewchuk 1997), so none slips between two that share an edge. The distance is
-/// rounded. direction: of any length. Throws InputError where it is zero or not finite.
+/// rounded. direction: of any length. Throws InputError for a pose that is not finite and rigid to 1e-4, for a pose or
+/// an origin beyond 1e30 m or not finite, for a direction that is zero or not finite, and for a `max` that is negative
+/// or not a number.
 RAYCONTACT_API std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin,
                                              const Vec3& direction, double max = any_distance);
 
-/// Whether raycast() has a hit; ends at the first one found.
+/// Whether raycast() has a hit; ends at the first one found. Throws InputError as it does.
 RAYCONTACT_API bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
                                 double max = any_distance);
 
@@ -54,7 +53,7 @@ struct ClosestPoint {
 
 /// The closest point of a mesh's surface, if it is within `max` metres. In double: right to some 1e-15 of the size of
 /// the mesh and its distance from the origins. Of a triangle that is a million times longer than wide only the edges
-/// are looked at.
+/// are looked at. Throws InputError for pose, point and `max` as raycast().
 RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
                                                          double max = any_distance);
 
@@ -71,28 +70,27 @@ struct Distance {
 /// The least distance of two surfaces, if it is within `max` metres; 0 where they intersect, or one lies inside the
 /// other. Whether it is 0 is decided exactly, as by intersects(); else it is as right as that of closest_point(), but
 /// between edges parallel to some 1e-8: to 1e-8 of their length. Branch and bound over both trees. A small `max` saves
-/// work.
+/// work. Throws InputError for poses and `max` as raycast().
 RAYCONTACT_API std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                                 double max = any_distance);
 
 /// Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
 /// closed and wound alike everywhere. Exact: parts of one assembly that share faces touch. Where both poses are equal
-/// they do not matter at all. Ends at the first triangles that meet.
+/// they do not matter at all. Ends at the first triangles that meet. Throws InputError for poses as raycast().
 RAYCONTACT_API bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// A point that both share, to rounding: where two triangles meet, or a vertex of the one inside the other. Nothing if
-/// intersects() is false.
+/// intersects() is false. Throws InputError as it does.
 RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 /// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
 /// Exact. The point is in the body frame. Throws InputError for a point that is not finite or beyond 1e30 m.
 RAYCONTACT_API bool contains(const Shape& shape, const Vec3& point);
-/// The same of a placed mesh, the point in the world frame. Throws InputError also for a pose that is not finite and
-/// rigid.
+/// The same of a placed mesh, the point in the world frame. Throws InputError for pose and point as raycast().
 RAYCONTACT_API bool contains(const Shape& shape, const Pose& pose, const Vec3& point);
 
 // Regions of one mesh, in the body frame, by Shape::vertices(). What was in `found` is replaced: by indices, ascending,
-// each once. What is not a number is nowhere; none of these throws InputError.
+// each once. What is not a number is nowhere.
 
 /// A box along the axes of the body.
 struct AxisBox {

@@ -35,28 +35,31 @@ struct BodyClosestPoint : ClosestPoint {
 };
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
-/// call of find_contacts(). Not thread-safe; use one scene per thread.
+/// call of find_contacts(). Not thread-safe; use one scene per thread. All functions that take the id of a body throw
+/// InputError naming it where it is not in the scene; has() alone does not. Where the last device fails, those that say
+/// so throw std::runtime_error; the scene stays usable, and the next step tries again.
 class RAYCONTACT_API Scene {
 public:
-    /// Throws InputError when settings name a device this machine or this version cannot use.
+    /// Throws InputError for settings that make no sense or name a device this machine or this version cannot use, and
+    /// std::runtime_error for one that does not open.
     explicit Scene(const Settings& settings = {});
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
     /// Gives the lowest free slot; no id is ever given twice. After remove() the slot of a body that was in a step is
-    /// free after the next step, any other slot at once. Throws InputError for a pose that is not finite and rigid to
-    /// 1e-4, as every function here that takes one; nearest_rigid_pose() mends those that drifted.
+    /// free after the next step, any other slot at once. Throws InputError for no shape, for a pose that is not finite
+    /// and rigid to 1e-4 (nearest_rigid_pose() mends those that drifted), and where 2^32 - 1 bodies are there; and
+    /// std::runtime_error where the last device fails.
     BodyId add(std::shared_ptr<const Shape> shape, const Pose& pose = {});
-    /// From now on every function that takes this id throws InputError naming it, as for any body that is not in the
-    /// scene. No other body gets its slot before the next step is done.
+    /// No other body gets its slot before the next step is done, and none its id.
     void remove(BodyId body);
-    /// Throws InputError naming the body when the pose is not finite and rigid; the old pose then stays.
+    /// Throws InputError naming the body when the pose is not finite and rigid to 1e-4; the old pose then stays.
     void set_pose(BodyId body, const Pose& pose);
     /// The same in bulk: poses[i] of bodies[i]. Throws InputError if there are not as many poses as bodies, and as
     /// set_pose(), naming the place in the list; then no pose changes.
     void set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses);
-    /// As it was set last. Throws InputError for a body that is not in the scene.
+    /// As it was set last.
     const Pose& pose(BodyId body) const;
     /// Where the body is expected after the next step, for the speculative contacts of that step. Without it, the body
     /// is expected to go on as it did since the last step. Nothing without Settings::speculative. Throws InputError as
@@ -66,55 +69,57 @@ public:
     /// such bodies the larger counts. Empty: as the settings say. Keeps until the body is removed. Throws InputError
     /// unless it is from 0 to 1e12.
     void set_speculative_margin(BodyId body, std::optional<double> margin);
-    /// The one it was added with. Throws InputError for a body that is not in the scene.
+    /// The one it was added with.
     const Shape& shape(BodyId body) const;
-    /// A number of your own for each body, such as the address of your object; 0 at first. Throws InputError for a body
-    /// that is not in the scene.
+    /// A number of your own for each body, such as the address of your object; 0 at first.
     void set_user_data(BodyId body, std::uint64_t data);
-    /// The number that set_user_data() gave it. Throws InputError for a body that is not in the scene.
+    /// The number that set_user_data() gave it.
     std::uint64_t user_data(BodyId body) const;
     /// find_contacts() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At
     /// first a body is in group 1, and its mask has all bits. find_contacts(pairs) tests every pair that it is given.
-    /// Throws InputError for a body that is not in the scene.
     void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
     /// It was added here and not removed.
-    bool has(BodyId body) const;
+    bool has(BodyId body) const noexcept;
     /// How many bodies are in the scene.
-    std::uint32_t body_count() const;
+    std::uint32_t body_count() const noexcept;
     /// Of all bodies, by slot.
     std::vector<BodyId> bodies() const;
     /// Changes method, caster, direction or thresholds between two steps; forgets what the last method kept. Throws
     /// InputError for settings that make no sense, and for another Execution than the scene was made with.
     void set_settings(const Settings& settings);
     /// As they were given, or changed by set_settings().
-    const Settings& settings() const;
+    const Settings& settings() const noexcept;
 
     /// Shape::prepare() for the shapes of all bodies, so that the next step is as fast as later ones and counts repeat.
-    /// Methods `iterative` and `predictive` do so before their steps: their contacts depend on it.
+    /// Methods `iterative` and `predictive` do so before their steps: their contacts depend on it. Throws
+    /// std::runtime_error where the last device fails.
     void prepare();
 
-    /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts.
+    /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts. Throws std::runtime_error
+    /// where the last device fails, and InputError for a step too large for 32 bits (2^31 pairs, 2^32 rays). It then
+    /// has no contacts, and the next step begins anew.
     std::span<const Contact> find_contacts();
-    /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws
-    /// InputError for a pair of a body with itself or a body that does not exist.
+    /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws as the
+    /// other one; and InputError for a pair of a body with itself or one that is not in the scene, before it begins.
     std::span<const Contact> find_contacts(std::span<const Pair> pairs);
 
     /// Of the last step; sorted by the slots of both bodies, then by key(). Valid until the next step.
-    std::span<const Contact> contacts() const;
+    std::span<const Contact> contacts() const noexcept;
     /// The same list for as long as it is held, by any thread: later steps write into another one.
-    std::shared_ptr<const std::vector<Contact>> shared_contacts() const;
+    std::shared_ptr<const std::vector<Contact>> shared_contacts() const noexcept;
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
-    std::span<const LostContact> lost_contacts() const;
+    std::span<const LostContact> lost_contacts() const noexcept;
     /// What the last step did.
-    const StepStats& stats() const;
+    const StepStats& stats() const noexcept;
     /// The pairs of the last step, sorted by their slots.
-    std::span<const Pair> pairs() const;
+    std::span<const Pair> pairs() const noexcept;
     /// Which entry of StepDetails::work found the contacts of pairs()[i]. Throws InputError for another i.
     std::uint32_t device_of_pair(std::size_t i) const;
     /// What the last step of method `predictive` expects to touch next; sorted as contacts; none of other methods. Read
-    /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go.
+    /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go. Throws
+    /// std::runtime_error where a device fails.
     std::vector<Prediction> predictions() const;
 
     // Queries of the bodies where they are now, poses set since the last step included, by the functions of query.h,
@@ -124,18 +129,19 @@ public:
 
     /// Says whether a query counts a body.
     using Wanted = std::function<bool(BodyId)>;
-    /// The body that a ray meets first, within `max` metres. Throws InputError as the function of query.h.
+    /// The body that a ray meets first, within `max` metres. Throws InputError as raycontact::raycast().
     std::optional<BodyRayHit> raycast(const Vec3& origin, const Vec3& direction, double max = any_distance,
                                       const Wanted& wanted = {}) const;
     /// Whether raycast() has a hit; ends at the first one found. Throws InputError as it does.
     bool raycast_any(const Vec3& origin, const Vec3& direction, double max = any_distance,
                      const Wanted& wanted = {}) const;
-    /// The closest point of all surfaces, within `max` metres. Throws InputError as the function of query.h.
+    /// The closest point of all surfaces, within `max` metres. Throws InputError as raycontact::closest_point().
     std::optional<BodyClosestPoint> closest_point(const Vec3& point, double max = any_distance,
                                                   const Wanted& wanted = {}) const;
-    /// The bodies whose meshes intersect another one, placed here; by slot. Throws InputError as intersects().
+    /// The bodies whose meshes intersect another one, placed here; by slot. Throws InputError as
+    /// raycontact::intersects().
     std::vector<BodyId> overlaps(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
-    /// Of two bodies. Throws InputError for one that is not in the scene.
+    /// Of two bodies. Throws InputError as raycontact::distance().
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
 private:

@@ -50,7 +50,7 @@ struct Settings {
     /// Metres: the margin. Empty: speculative_share of the smaller body's box diagonal.
     std::optional<double> speculative_margin;
     /// `speculative`, and no where it is empty.
-    bool is_speculative() const { return speculative.value_or(false); }
+    bool is_speculative() const noexcept { return speculative.value_or(false); }
     /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md, Fewer contacts);
     /// at least the deepest. 0: all contacts. The rest is counted in StepStats.
     std::uint32_t max_contacts_per_pair = 0;

@@ -15,9 +15,12 @@ namespace raycontact {
 class RAYCONTACT_API Shape : public std::enable_shared_from_this<Shape> {
 public:
     /// From a prepared mesh. threads 0: one per core. Deterministic: equal input gives equal bits, whatever the
-    /// threads. Throws InputError for a mesh without area.
+    /// threads. Throws InputError for what prepare_mesh() does not make: no triangle with an area, indices that do not
+    /// fit, a coordinate not finite or beyond 1e9 m, a box less than 1e-6 m long; for more than some 16 million
+    /// triangles, and for more than 1024 threads.
     static std::shared_ptr<const Shape> make(PreparedMesh mesh, std::uint32_t threads = 0);
-    /// From a mesh, prepared with all repairs allowed; report() says which were made.
+    /// From a mesh, prepared with all repairs allowed; report() says which were made. Throws InputError as
+    /// prepare_mesh() and the other one.
     static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 
     ~Shape();
@@ -27,47 +30,48 @@ public:
     /// Makes what only speeds up later steps (docs/performance.md): 10 to 45 times the work of make(). A Scene has it
     /// made beside its steps for shapes that meet others in more than one step, so nobody needs to call this; call it
     /// where the first steps must be as fast as the later ones, or where counts of work must repeat exactly. No contact
-    /// of `standard` or `certified` depends on it. threads 0: one per core. Does nothing the second time.
+    /// of `standard` or `certified` depends on it. threads 0: one per core. Does nothing the second time. Throws
+    /// InputError for more than 1024 threads.
     void prepare(std::uint32_t threads = 0) const;
     /// prepare() was done, by whomever.
-    bool is_prepared() const;
+    bool is_prepared() const noexcept;
 
-    const std::string& name() const;  ///< the mesh's
-    const MeshReport& report() const; ///< what the mesh is, and what was repaired
+    const std::string& name() const noexcept;  ///< the mesh's
+    const MeshReport& report() const noexcept; ///< what the mesh is, and what was repaired
     /// It is closed and wound alike everywhere, so that a point can be inside it.
-    bool has_inside() const;
+    bool has_inside() const noexcept;
 
     /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far
     /// from their origin lose nothing; these positions are centre + float32 offset, in double.
-    std::span<const Vec3> vertices() const;
+    std::span<const Vec3> vertices() const noexcept;
     /// Body frame, not rounded: those that the mesh had, of which queries decide (query.h). They are kept, 24 bytes a
     /// vertex, only where they differ from vertices().
-    std::span<const Vec3> file_vertices() const;
+    std::span<const Vec3> file_vertices() const noexcept;
     /// Indices into vertices().
-    std::span<const std::array<std::uint32_t, 3>> triangles() const;
-    std::span<const std::uint32_t> vertex_index() const;   ///< file index of each vertex
-    std::span<const std::uint32_t> triangle_index() const; ///< file index of each triangle
-    Vec3 centre() const;                                   ///< middle of the box, body frame
-    Vec3 box_min() const;                                  ///< body frame
-    Vec3 box_max() const;                                  ///< body frame
-    double radius() const; ///< largest distance of a vertex from the body origin, metres
+    std::span<const std::array<std::uint32_t, 3>> triangles() const noexcept;
+    std::span<const std::uint32_t> vertex_index() const noexcept;   ///< file index of each vertex
+    std::span<const std::uint32_t> triangle_index() const noexcept; ///< file index of each triangle
+    Vec3 centre() const noexcept;                                   ///< middle of the box, body frame
+    Vec3 box_min() const noexcept;                                  ///< body frame
+    Vec3 box_max() const noexcept;                                  ///< body frame
+    double radius() const noexcept; ///< largest distance of a vertex from the body origin, metres
     /// Metres. With Features::vertices it is what can pass through another mesh unseen, between two vertices.
-    double longest_edge() const;
+    double longest_edge() const noexcept;
 
     /// Angle-weighted unit vertex normals (Thuermer and Wuethrich 1998; Baerentzen and Aanaes 2005), body frame; zero
     /// where the triangles around a vertex cancel out: such a vertex casts no ray.
-    std::span<const Vec3> vertex_normals() const;
+    std::span<const Vec3> vertex_normals() const noexcept;
     /// Each vertex's share of the surface, m^2: a third of the area of its triangles, rounded once from double.
     /// Contact::weight of direction `weighted`.
-    std::span<const float> vertex_areas() const;
+    std::span<const float> vertex_areas() const noexcept;
     /// How far the ray from a vertex along its inward normal travels inside its own mesh, metres: t_max of its rays.
     /// +inf where it never leaves, 0 where it points out of the mesh at once.
-    std::span<const float> exit_distances() const;
+    std::span<const float> exit_distances() const noexcept;
     /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several
     /// meet.
-    std::span<const std::array<std::uint32_t, 3>> neighbours() const;
+    std::span<const std::array<std::uint32_t, 3>> neighbours() const noexcept;
     /// The lowest triangle at each vertex, or no_triangle where none is.
-    std::span<const std::uint32_t> vertex_triangles() const;
+    std::span<const std::uint32_t> vertex_triangles() const noexcept;
     /// The index of none.
     static constexpr std::uint32_t no_triangle = 0xffffffffu;
 
@@ -76,7 +80,7 @@ public:
 
     /// What a shape is made of: a type that only the library knows.
     struct Data;
-    const Data& data() const { return *data_; } ///< for the library alone
+    const Data& data() const noexcept { return *data_; } ///< for the library alone
 
 private:
     explicit Shape(std::unique_ptr<Data> data);

@@ -19,7 +19,7 @@ struct Vec3f {
     float y = 0; ///< second coordinate
     float z = 0; ///< third coordinate
     /// Exact.
-    constexpr operator Vec3() const { return {double(x), double(y), double(z)}; }
+    constexpr operator Vec3() const noexcept { return {double(x), double(y), double(z)}; }
     friend bool operator==(const Vec3f&, const Vec3f&) = default;
 };
 

@@ -42,7 +42,7 @@ struct Argument {
 /// The number of items of a launch: a value, or a place in a buffer of 32-bit numbers that a kernel has written. The
 /// host need not know the latter.
 struct Count {
-    Count(std::size_t number); ///< throws std::length_error beyond 32 bits
+    Count(std::size_t number); ///< throws InputError beyond 32 bits
     Count(const Buffer* in, std::size_t at, std::size_t at_most)
         : buffer(in), value(static_cast<kernels::uint>(at)), most(static_cast<kernels::uint>(at_most)) {}
 

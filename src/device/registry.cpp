@@ -92,7 +92,6 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
     // For tests and measurements; every instruction set gives the same bits.
     const char* wanted = std::getenv("RAYCONTACT_INSTRUCTION_SET");
     const std::string_view instruction_set = wanted ? wanted : "";
-    if (threads > 1024) throw InputError("threads: " + std::to_string(threads) + " is too many; give at most 1024");
     const auto on_cpu = [&](int core) {
         auto executor = std::make_unique<Executor>(threads, core);
         auto device = cpu::open(*executor, instruction_set, name);
@@ -105,8 +104,8 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
         throw InputError("device '" + id.text() + "': this machine has " + std::to_string(usable_cores()) + " cores; "
                          + use_one_of("cpu/", usable_cores()));
     }
-    auto device = id.kind == "cuda" ? open_cuda(name, inexact) : open_opencl(name, inexact);
-    return {std::make_unique<Executor>(threads), std::move(device)};
+    auto executor = std::make_unique<Executor>(threads);
+    return {std::move(executor), id.kind == "cuda" ? open_cuda(name, inexact) : open_opencl(name, inexact)};
 }
 
 std::vector<std::string> chosen_devices(const Settings& settings) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/scan.h"
 
+#include <raycontact/error.h>
+
 #include <limits>
-#include <stdexcept>
 
 namespace raycontact {
 
@@ -14,7 +15,7 @@ constexpr std::size_t words = sizeof(kernels::Totals) / sizeof(kernels::uint);
 
 Count::Count(std::size_t number) {
     if (number >= std::numeric_limits<kernels::uint>::max())
-        throw std::length_error("more than 2^32 items in one step; give it fewer pairs");
+        throw InputError("more than 2^32 items in one step; give it fewer pairs");
     value = most = static_cast<kernels::uint>(number);
 }
 
@@ -42,7 +43,7 @@ Count results_of(const Array<kernels::Totals>& totals, std::size_t at, std::size
 void check_sums(std::span<const kernels::Totals> totals) {
     for (const kernels::Totals& own : totals)
         for (const kernels::uint sum : own.sums)
-            if (sum == NONE) throw std::length_error("more than 2^32 items in one step; give it fewer pairs");
+            if (sum == NONE) throw InputError("more than 2^32 items in one step; give it fewer pairs");
 }
 
 } // namespace raycontact

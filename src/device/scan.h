@@ -30,7 +30,7 @@ private:
 Count results_of(const Array<kernels::Totals>& totals, std::size_t at, std::size_t most);
 Count items_of(const Array<kernels::Totals>& totals, std::size_t at, std::size_t most);
 
-/// Throws std::length_error if 32 bits could not hold a sum.
+/// Throws InputError if 32 bits could not hold a sum.
 void check_sums(std::span<const kernels::Totals> totals);
 
 } // namespace raycontact

@@ -2,7 +2,10 @@
 #include "executor/executor.h"
 #include "executor/float_environment.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -10,6 +13,20 @@ namespace raycontact {
 
 namespace {
 thread_local int pinned_to = -1;
+constexpr std::uint32_t most_threads = 1024;
+constexpr std::size_t few_triangles = 512;
+
+void check(std::uint32_t threads) {
+    if (threads > most_threads)
+        throw InputError("threads: " + std::to_string(threads) + " is too many; give at most "
+                         + std::to_string(most_threads));
+}
+
+std::uint32_t number_of(std::uint32_t threads, int core) {
+    check(threads);
+    if (core >= 0) return 1;
+    return threads > 0 ? threads : usable_cores();
+}
 } // namespace
 
 Pin::Pin(int core) {
@@ -33,7 +50,7 @@ void SliceReference::operator()(std::uint32_t begin, std::uint32_t end) const {
 }
 
 Executor::Executor(std::uint32_t threads, int core, Priority priority)
-    : threads_(core >= 0 ? 1 : (threads > 0 ? threads : usable_cores())), core_(core),
+    : threads_(number_of(threads, core)), core_(core),
       pool_(threads_ > 1 ? make_thread_pool(threads_, priority == Priority::low) : nullptr) {}
 
 void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
@@ -41,6 +58,11 @@ void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReferen
     if (pool_ && count > grain) return pool_->run(count, grain, slice);
     const Pin pin(core_);
     slice(0, count);
+}
+
+std::uint32_t threads_for(std::size_t triangles, std::uint32_t threads) {
+    check(threads);
+    return triangles < few_triangles ? 1 : threads;
 }
 
 std::uint32_t usable_cores() {

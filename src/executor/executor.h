@@ -3,6 +3,7 @@
 
 #include "platform/system.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -42,12 +43,16 @@ private:
     bool pinned_ = false;
 };
 
+/// That work on so many triangles is given: one for few, which are done before others wake, else as many as told.
+/// Throws InputError as Executor does.
+std::uint32_t threads_for(std::size_t triangles, std::uint32_t threads);
+
 /// Runs slices of an index range on a fixed number of threads. Which thread takes a slice never decides a result.
 class Executor {
 public:
     enum class Priority { normal, low };
-    /// threads 0: one per core this process may use. core >= 0: one thread, pinned to that core (the
-    /// system's number, see usable_core). low: others' work comes first.
+    /// threads 0: one per core this process may use. Throws InputError for more than 1024. core >= 0: one thread,
+    /// pinned to that core (the system's number, see usable_core). low: others' work comes first.
     explicit Executor(std::uint32_t threads, int core = -1, Priority priority = Priority::normal);
 
     std::uint32_t threads() const { return threads_; }

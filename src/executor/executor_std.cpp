@@ -19,15 +19,14 @@ namespace {
 class StdPool : public ThreadPool {
 public:
     explicit StdPool(std::uint32_t threads) {
-        for (std::uint32_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { serve(); });
-    }
-    ~StdPool() override {
-        {
-            const std::lock_guard lock(mutex_);
-            stop_ = true;
+        try {
+            for (std::uint32_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { serve(); });
+        } catch (...) {
+            end(); // or those there are would be waited for for ever
+            throw;
         }
-        begin_.notify_all();
     }
+    ~StdPool() override { end(); }
 
     void wake() override {} // these threads wait for work itself
 
@@ -49,6 +48,14 @@ public:
     }
 
 private:
+    void end() {
+        {
+            const std::lock_guard lock(mutex_);
+            stop_ = true;
+        }
+        begin_.notify_all();
+    }
+
     void serve() {
         for (std::uint64_t done = 0;; ++done) {
             {

@@ -27,18 +27,26 @@ bool wait_awake(Clock::duration most, Done&& done) {
 
 SideBySide::SideBySide(std::size_t count)
     : process_(platform::process_id()), threads_(std::make_unique<std::vector<std::jthread>>()) {
-    for (std::size_t i = 1; i < count; ++i) threads_->emplace_back([this, i] { serve(i); });
+    try {
+        for (std::size_t i = 1; i < count; ++i) threads_->emplace_back([this, i] { serve(i); });
+    } catch (...) {
+        end(); // or those there are would be waited for for ever
+        throw;
+    }
+}
+
+SideBySide::~SideBySide() {
+    if (has_threads())
+        end();
+    else
+        static_cast<void>(threads_.release()); // they cannot be joined
 }
 
 bool SideBySide::has_threads() const {
     return process_ == platform::process_id();
 }
 
-SideBySide::~SideBySide() {
-    if (!has_threads()) {
-        static_cast<void>(threads_.release()); // they cannot be joined
-        return;
-    }
+void SideBySide::end() {
     function_ = nullptr;
     ++runs_;
     wake();

@@ -15,6 +15,7 @@ namespace raycontact {
 /// one on a thread of its own, always the same. In a forked child, which has no such threads, one after another.
 class SideBySide {
 public:
+    /// Throws std::system_error where the system gives no more threads.
     explicit SideBySide(std::size_t count);
     ~SideBySide();
     SideBySide(const SideBySide&) = delete;
@@ -26,6 +27,7 @@ public:
     void run(const std::function<void(std::size_t)>& function);
 
 private:
+    void end();
     void serve(std::size_t number);
     bool has_threads() const; ///< not in a forked child
 

@@ -156,7 +156,7 @@ std::string to_json(const MeshReport& report) {
     json["box"] = {{report.box_min.x, report.box_min.y, report.box_min.z},
                    {report.box_max.x, report.box_max.y, report.box_max.z}};
     json["repairs"] = report.repairs;
-    return json.dump();
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); // repairs may be any bytes
 }
 
 Verdict verdict_of(const MeshReport& report) {

@@ -134,7 +134,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
 
-    Executor executor(prepared.triangles.size() < 512 ? 1 : threads); // few are done before other threads wake
+    Executor executor(threads_for(prepared.triangles.size(), threads));
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");

@@ -3,10 +3,11 @@
 
 #include "device/launch.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <stdexcept>
 
 namespace raycontact {
 
@@ -64,7 +65,7 @@ void DevicePairs::list_changes(const Update& update) {
 }
 
 void DevicePairs::place(const Update& update, bool next) {
-    if (update.pairs.size() >= NONE / 2) throw std::length_error("more than 2^31 pairs in one step; give fewer");
+    if (update.pairs.size() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
     if (is_mostly_empty(slots_.end(), update.pairs.size())) clear();
     list_changes(update);
     device_pairs_.extend(update.device, pairs_.size());

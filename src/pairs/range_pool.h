@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <stdexcept>
 #include <vector>
 
 namespace raycontact {
@@ -17,11 +18,11 @@ public:
     struct Range {
         std::uint32_t first = 0, capacity = 0;
     };
-    /// Throws std::length_error beyond 2^31 elements.
+    /// Throws InputError beyond 2^31 elements.
     Range allocate(std::uint32_t count) {
         if (count == 0) return {};
         if (count > 1u << 30)
-            throw std::length_error("a pair has more than 2^30 vertex blocks as candidates; split its meshes");
+            throw InputError("a pair has more than 2^30 vertex blocks as candidates; split its meshes");
         const std::uint32_t capacity = std::bit_ceil(std::max(count, 4u));
         std::vector<std::uint32_t>& free = free_of(capacity);
         Range range{end_, capacity};
@@ -30,7 +31,7 @@ public:
             free.pop_back();
         } else {
             if (end_ > (1u << 31) - capacity)
-                throw std::length_error(
+                throw InputError(
                     "the pairs of this scene have more than 2^31 vertex blocks as candidates; give a step fewer");
             end_ += capacity;
         }

@@ -122,8 +122,4 @@ std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const
     return found;
 }
 
-std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
-    return raycontact::distance(shape(a), pose(a), shape(b), pose(b), max);
-}
-
 } // namespace raycontact

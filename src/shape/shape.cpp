@@ -21,7 +21,6 @@ namespace raycontact {
 namespace {
 
 constexpr double rounding = 1.1920929e-7;       // 2^-23
-constexpr std::size_t few_triangles = 512;      // one thread has them done before others wake
 constexpr std::size_t many_triangles = 1 << 16; // a millisecond to give memory back is not noticed
 
 // Rounds the vertices to float32, the double positions, too, so that steps see one geometry. Keeps what they were.
@@ -100,7 +99,7 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads
 
 std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t threads) {
     const FloatEnvironment environment;
-    Executor executor(mesh.triangles.size() < few_triangles ? 1 : threads);
+    Executor executor(threads_for(mesh.triangles.size(), threads));
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
         throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");
@@ -108,6 +107,9 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
         for (const std::uint32_t v : triangle)
             if (v >= mesh.vertices.size())
                 throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " does not exist");
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        if (!is_finite(mesh.vertices[v]))
+            throw InputError("mesh '" + mesh.name + "': vertex " + std::to_string(v) + " is not finite");
     check_size(mesh.vertices, "mesh '" + mesh.name + "'");
     auto data = std::make_unique<ShapeData>();
     ShapeData& shape = *data;
@@ -160,65 +162,65 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
 
 void Shape::prepare(std::uint32_t threads) const {
     if (is_prepared()) return;
-    Executor executor(triangles().size() < few_triangles ? 1 : threads);
+    Executor executor(threads_for(triangles().size(), threads));
     raycontact::prepare(*this, executor, {});
 }
-bool Shape::is_prepared() const {
+bool Shape::is_prepared() const noexcept {
     return accelerators_of(*this) != nullptr;
 }
 
-const std::string& Shape::name() const {
+const std::string& Shape::name() const noexcept {
     return data_->mesh.name;
 }
-const MeshReport& Shape::report() const {
+const MeshReport& Shape::report() const noexcept {
     return data_->mesh.report;
 }
-bool Shape::has_inside() const {
+bool Shape::has_inside() const noexcept {
     return data_->header.closed != 0;
 }
-std::span<const Vec3> Shape::vertices() const {
+std::span<const Vec3> Shape::vertices() const noexcept {
     return data_->mesh.vertices;
 }
-std::span<const Vec3> Shape::file_vertices() const {
+std::span<const Vec3> Shape::file_vertices() const noexcept {
     return data_->file_vertices.empty() ? data_->mesh.vertices : data_->file_vertices;
 }
-std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const {
+std::span<const std::array<std::uint32_t, 3>> Shape::triangles() const noexcept {
     return data_->mesh.triangles;
 }
-std::span<const std::uint32_t> Shape::vertex_index() const {
+std::span<const std::uint32_t> Shape::vertex_index() const noexcept {
     return data_->mesh.vertex_index;
 }
-std::span<const std::uint32_t> Shape::triangle_index() const {
+std::span<const std::uint32_t> Shape::triangle_index() const noexcept {
     return data_->mesh.triangle_index;
 }
-Vec3 Shape::centre() const {
+Vec3 Shape::centre() const noexcept {
     return data_->centre;
 }
-Vec3 Shape::box_min() const {
+Vec3 Shape::box_min() const noexcept {
     return data_->box_min;
 }
-Vec3 Shape::box_max() const {
+Vec3 Shape::box_max() const noexcept {
     return data_->box_max;
 }
-double Shape::radius() const {
+double Shape::radius() const noexcept {
     return data_->radius;
 }
-double Shape::longest_edge() const {
+double Shape::longest_edge() const noexcept {
     return data_->longest_edge;
 }
-std::span<const Vec3> Shape::vertex_normals() const {
+std::span<const Vec3> Shape::vertex_normals() const noexcept {
     return data_->vertex_normals;
 }
-std::span<const float> Shape::vertex_areas() const {
+std::span<const float> Shape::vertex_areas() const noexcept {
     return data_->vertex_areas;
 }
-std::span<const float> Shape::exit_distances() const {
+std::span<const float> Shape::exit_distances() const noexcept {
     return data_->exit_distances;
 }
-std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const {
+std::span<const std::array<std::uint32_t, 3>> Shape::neighbours() const noexcept {
     return data_->neighbours;
 }
-std::span<const std::uint32_t> Shape::vertex_triangles() const {
+std::span<const std::uint32_t> Shape::vertex_triangles() const noexcept {
     return data_->vertex_triangle;
 }
 

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -141,7 +142,10 @@ TEST(Convert, ScaledMeshShapeKeepsItsFilesIndices) {
     shape.setLocalScaling(btVector3(-2, 1, 1));
     EXPECT_NEAR(shape.shape()->report().volume, 2 * table()->report().volume, 1e-4);
     EXPECT_EQ(shape.shape()->vertex_index().size(), table()->vertex_index().size());
-    EXPECT_THROW(shape.setLocalScaling(btVector3(0, 1, 1)), InputError);
+    for (const btScalar bad : {btScalar(0), btScalar(NAN), btScalar(1e-9), btScalar(1e12)})
+        EXPECT_THROW(shape.setLocalScaling(btVector3(bad, bad, bad)), InputError) << bad;
+    EXPECT_EQ(shape.getLocalScaling(), btVector3(-2, 1, 1)) << "what is refused changes nothing";
+    EXPECT_THROW(bullet::MeshShape(nullptr), InputError);
     shape.setLocalScaling(btVector3(1, 1, 1));
     EXPECT_EQ(shape.shape(), table());
 }

@@ -76,6 +76,17 @@ TEST(Record, AWorldOfFewerContactsIsRecorded) {
     std::filesystem::remove(file);
 }
 
+TEST(Record, AFileThatIsGoneIsAnErrorOnce) {
+    const auto file = file_of("gone");
+    TestWorld world;
+    world.dispatcher.record(file);
+    world.steps(1);
+    std::filesystem::remove(file);
+    EXPECT_THROW(world.dispatcher.finish_recording(), InputError);
+    EXPECT_NO_THROW(world.steps(1)) << "the recording has ended";
+    EXPECT_NO_THROW(world.dispatcher.finish_recording());
+}
+
 TEST(Record, AFileThatCannotBeMadeIsAnError) {
     TestWorld world;
     EXPECT_THROW(world.dispatcher.record("/nowhere/at/all.glb"), InputError);

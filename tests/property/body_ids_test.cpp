@@ -80,6 +80,19 @@ TEST(body_ids, a_stale_id_is_refused_by_name) {
             {"Scene::pose", [&] { scene.pose(stale); }},
             {"Scene::shape", [&] { scene.shape(stale); }},
             {"Scene::find_contacts, pair 1", [&] { scene.find_contacts(bad); }},
+            {"Scene::set_poses, place 1",
+             [&] {
+                 scene.set_poses(std::vector{other, stale}, std::vector<Pose>(2));
+             }},
+            {"Scene::set_next_pose", [&] { scene.set_next_pose(stale, {}); }},
+            {"Scene::set_speculative_margin", [&] { scene.set_speculative_margin(stale, 1); }},
+            {"Scene::set_user_data", [&] { scene.set_user_data(stale, 1); }},
+            {"Scene::user_data", [&] { (void)scene.user_data(stale); }},
+            {"Scene::set_filter", [&] { scene.set_filter(stale, 1, 1); }},
+            {"Scene::contacts", [&] { (void)scene.contacts(other, stale); }},
+            {"Scene::contacts", [&] { (void)scene.contacts(stale, other); }},
+            {"Scene::distance", [&] { (void)scene.distance(other, stale); }},
+            {"Scene::distance", [&] { (void)scene.distance(stale, other); }},
         };
         for (const auto& [name, call] : calls) {
             EXPECT_EQ(message_of(call), name + ": body 2 (generation 0) was removed"
@@ -95,6 +108,8 @@ TEST(body_ids, a_stale_id_is_refused_by_name) {
               "Scene::pose: body 2 (generation 7) is not in the scene; add() gives the ids that are");
     EXPECT_EQ(message_of([&] { scene.pose({}); }), "Scene::pose: this id is empty; add() gives those of bodies");
     EXPECT_EQ(scene.pose(BodyId{2, 1}), Pose{});
+    EXPECT_EQ(scene.pose(other), at(1, 0, 0));
+    EXPECT_EQ(message_of([&] { scene.add(nullptr); }), "body 3: the shape is null");
     EXPECT_EQ(scene.body_count(), 3u);
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <csignal>
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -101,6 +102,32 @@ TEST(Crash, KeepsEveryFlushedStep) {
         std::string error, warning;
         EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, file.path().string())) << error;
     }
+}
+
+TEST(Crash, AFullDiskEndsTheRecordingAndLeavesWhatWasWritten) {
+    const Sample sample = make_sample(30);
+    const TemporaryFile file;
+    {
+        Writer writer(file.path(), sample.info, {5, 1e9, 1u << 20});
+        Feeder feeder(sample, writer);
+        while (feeder.steps() < 21) feeder.step();
+        std::signal(SIGXFSZ, SIG_IGN);
+        rlimit before{};
+        ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+        rlimit full = before;
+        full.rlim_cur = writer.bytes();
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+        EXPECT_THROW(while (feeder.steps() < 30) feeder.step(), std::runtime_error);
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+        EXPECT_EQ(feeder.steps(), 25u);
+        // There is room again; but steps that come now would not follow on those before.
+        EXPECT_THROW(feeder.step(), std::runtime_error);
+        EXPECT_THROW(writer.flush(), std::runtime_error);
+        EXPECT_THROW(writer.finish(sample.hash), std::runtime_error);
+    }
+    Reader reader(file.path());
+    EXPECT_EQ(difference(sample, reader, 21), "");
+    EXPECT_FALSE(reader.hash().has_value());
 }
 
 TEST(Crash, WholeBlocksBehindTheCommittedOnesCount) {

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -183,6 +184,9 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     RecorderOptions still;
     still.dt = 0;
     EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene, still); }), "");
+    RecorderOptions wordy;
+    wordy.mesh_source = std::string(std::size_t{1} << 20, 'x');
+    EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene, wordy); }).find("shorten them"), std::string::npos);
     row.step();
     EXPECT_NE(message_of([&] { Recorder(file.path(), row.scene); }).find("before the scene's first step"),
               std::string::npos);
@@ -200,6 +204,51 @@ TEST(Recorder, SaysWhatItCannotRecord) {
     other.scene.set_settings(ray);
     other.step();
     EXPECT_NE(message_of([&] { recorder.record(); }).find("have changed"), std::string::npos);
+}
+
+TEST(Recorder, AStepThatIsRefusedIsNotInTheHash) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    for (int i = 0; i < 4; ++i) row.add();
+    Recorder recorder(file.path(), row.scene);
+    ContactHash hash;
+    row.step();
+    recorder.record();
+    hash.add(0, row.scene.contacts());
+    row.step();
+    row.remove(1);
+    EXPECT_NE(message_of([&] { recorder.record(); }).find("body 1 (generation 0) is not there"), std::string::npos);
+    row.step();
+    recorder.record();
+    hash.add(1, row.scene.contacts());
+    recorder.finish();
+    EXPECT_EQ(recorder.hash(), hash.hex());
+    expect_same_contacts(file, hash.hex(), Method::standard, 2);
+}
+
+TEST(Recorder, EndsOnce) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    row.add();
+    Recorder recorder(file.path(), row.scene);
+    row.step();
+    recorder.record();
+    recorder.finish();
+    EXPECT_NE(message_of([&] { recorder.finish(); }), "");
+    row.step();
+    EXPECT_NE(message_of([&] { recorder.record(); }), "");
+    EXPECT_EQ(recording::Reader(file.path()).steps(), 1u);
+}
+
+TEST(Recorder, NamesAFileThatIsGone) {
+    const TemporaryFile file;
+    Row row(Method::standard);
+    row.add();
+    Recorder recorder(file.path(), row.scene);
+    row.step();
+    recorder.record();
+    std::filesystem::remove(file.path());
+    EXPECT_NE(message_of([&] { recorder.finish(); }).find(file.path().string()), std::string::npos);
 }
 
 } // namespace

@@ -666,9 +666,7 @@ void CollisionDispatcher::record(const std::filesystem::path& file, const Record
     state_->recorder = std::make_unique<WorldRecorder>(file, state_->scene, &options);
 }
 void CollisionDispatcher::finish_recording() {
-    if (!state_->recorder) return;
-    state_->recorder->finish();
-    state_->recorder.reset();
+    if (const auto recorder = std::move(state_->recorder)) recorder->finish(); // ends it even if it throws
 }
 void CollisionDispatcher::remove_body(const btCollisionObject& object) {
     state_->objects.pin(object, false);

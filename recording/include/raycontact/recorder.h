@@ -29,21 +29,24 @@ struct RecorderOptions {
 class RAYCONTACT_API Recorder {
 public:
     /// Records from the scene's next step on; the scene must outlive it. The file's name should end in .glb; what was
-    /// there is lost. Throws InputError when the file cannot be made, for dt <= 0, and for a scene of `iterative` or
-    /// `predictive` whose last step had pairs: a replay would not know what they kept.
+    /// there is lost. Throws InputError when the file cannot be made, for dt <= 0, for more than 1 MiB of text, and for
+    /// a scene of `iterative` or `predictive` whose last step had pairs: a replay would not know what they kept.
     Recorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options = {});
     /// Without finish(): leaves a recording without a hash, which can be replayed and viewed.
     ~Recorder();
-    /// The one that is moved from records no more.
+    /// Of the one that is moved from, only its destructor and operator= may be called.
     Recorder(Recorder&&) noexcept;
     /// Ends what was recorded here as ~Recorder() does.
     Recorder& operator=(Recorder&&) noexcept;
 
-    /// After each Scene::find_contacts(): adds its step. Throws InputError when method, direction, features or
-    /// thresholds were changed since the start, and std::runtime_error naming the file when it cannot be written (a
-    /// full disk, more than the 4 GiB of a .glb).
+    /// After each Scene::find_contacts(), before bodies go: adds its step. Throws InputError when method, direction,
+    /// features or thresholds were changed since the start, when a body of the step's pairs is gone, when a new body's
+    /// slot had 100 000 bodies that were not recorded, and after finish(); std::runtime_error naming the file when it
+    /// cannot be written (a full disk, more than the 4 GiB of a .glb), after which it ends there, or naming a mesh that
+    /// cannot be recorded to the bit.
     void record();
-    /// Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards.
+    /// Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards. Throws InputError the
+    /// second time and when the file is gone or was changed, and std::runtime_error when it cannot be written.
     void finish();
 
     std::uint32_t steps() const;   ///< recorded so far

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor/executor.h"
 
+#include <raycontact/error.h>
+
 #include <atomic>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -30,6 +32,15 @@ TEST(Executor, ThrowsWhatASliceThrows) {
     std::atomic<std::uint32_t> done{0};
     executor.run(1000, 10, [&](std::uint32_t begin, std::uint32_t end) { done += end - begin; });
     EXPECT_EQ(done, 1000u) << "the pool works on after a failure";
+}
+
+TEST(Executor, RefusesMoreThreadsThanAnyoneNeeds) {
+    EXPECT_EQ(Executor(1024, 0).threads(), 1u);
+    EXPECT_THROW(Executor(1025), InputError);
+    EXPECT_THROW(Executor(1025, 0), InputError);
+    EXPECT_EQ(threads_for(511, 3), 1u) << "few are done before others wake";
+    EXPECT_EQ(threads_for(512, 3), 3u);
+    EXPECT_THROW(threads_for(1, 1025), InputError);
 }
 
 TEST(Executor, OneCoreRunsEverything) {

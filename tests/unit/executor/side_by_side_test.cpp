@@ -4,7 +4,15 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <gtest/gtest.h>
+
+#ifdef __linux__
+#include <cstdlib>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 namespace raycontact {
 namespace {
@@ -32,6 +40,30 @@ TEST(SideBySide, RunsAllAtOnceEachOnItsOwnThread) {
 TEST(SideBySide, EndsUnused) {
     const SideBySide one(1), three(3);
 }
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // which need room themselves
+/// Ends this process with 0 if the threads that there was room for have ended, too.
+void make_more_than_there_is_room_for() {
+    ::alarm(20);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit{};
+    ::getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{64} << 20); // some 8 stacks
+    ::setrlimit(RLIMIT_AS, &limit);
+    try {
+        const SideBySide many(1000);
+    } catch (const std::exception&) { // of the system, or of memory
+        std::_Exit(0);
+    }
+    std::_Exit(1);
+}
+
+TEST(SideBySideDeathTest, EndsThoseThereAreWhereTheSystemGivesNoMore) {
+    ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+    EXPECT_EXIT(make_more_than_there_is_room_for(), ::testing::ExitedWithCode(0), "");
+}
+#endif
 
 } // namespace
 } // namespace raycontact

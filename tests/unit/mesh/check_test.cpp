@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Check::topology leaves out what grids need; preparing the shape finds it out.
+// Check::topology leaves out what grids need; preparing the shape finds it out. A report as JSON.
 #include <raycontact/mesh.h>
 #include <raycontact/shape.h>
 
@@ -49,6 +49,13 @@ TEST(Check, WindingsAreMendedAllTheSame) {
     EXPECT_EQ(full.triangles, quick.triangles);
     EXPECT_EQ(full.report.repairs, quick.report.repairs);
     EXPECT_GT(quick.report.volume, 0);
+}
+
+// Those of a recording come from its file.
+TEST(Check, AReportIsJsonWhateverItsRepairsSay) {
+    MeshReport report;
+    report.repairs = {"dropped \xff"};
+    EXPECT_NE(to_json(report).find("dropped"), std::string::npos);
 }
 
 } // namespace

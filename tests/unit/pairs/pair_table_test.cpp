@@ -4,11 +4,12 @@
 
 #include "reference/random.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
 #include <set>
-#include <stdexcept>
 
 namespace raycontact {
 namespace {
@@ -145,10 +146,10 @@ TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
     EXPECT_EQ(pool.allocate(0).capacity, 0u);
     pool.release({});
     EXPECT_EQ(pool.end(), 0u);
-    EXPECT_THROW(pool.allocate((1u << 30) + 1), std::length_error);
+    EXPECT_THROW(pool.allocate((1u << 30) + 1), InputError);
     EXPECT_EQ(pool.allocate(1u << 30).capacity, 1u << 30);
     EXPECT_EQ(pool.allocate(1u << 30).capacity, 1u << 30);
-    EXPECT_THROW(pool.allocate(1), std::length_error);
+    EXPECT_THROW(pool.allocate(1), InputError);
     EXPECT_EQ(pool.in_use(), 1ull << 31) << "a refusal changes nothing";
 }
 

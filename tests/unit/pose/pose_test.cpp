@@ -36,6 +36,11 @@ TEST(Pose, RefusesWhatIsNotRigid) {
     for (const Matrix& m : bad) EXPECT_THROW(pose_from_matrix(m), InputError);
     EXPECT_THROW(pose_from_quaternion({}, 0, 0, 0, 0), InputError);
     EXPECT_THROW(pose_from_quaternion({nan, 0, 0}, 1, 0, 0, 0), InputError);
+    EXPECT_THROW(pose_from_quaternion({}, nan, 0, 0, 0), InputError);
+    EXPECT_THROW(pose_from_quaternion({}, 1e-200, 0, 0, 0), InputError) << "its square is 0";
+    EXPECT_THROW(pose_from_quaternion({}, 1e200, 0, 0, 0), InputError) << "its square is infinite";
+    for (const double length : {1e-150, 1e150})
+        EXPECT_NEAR(pose_from_quaternion({}, length, 0, 0, length).rotation[3], 1, 1e-12) << length;
 }
 
 TEST(Pose, TheNearestRigidPoseDropsDriftAndScale) {

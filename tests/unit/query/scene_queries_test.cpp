@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace raycontact {
@@ -148,6 +149,14 @@ TEST_F(SceneQueries, RefuseBadInput) {
     EXPECT_THROW((void)scene_.distance(gone, placed_[0].body), InputError);
     EXPECT_THROW((void)Scene().raycast({}, {}), InputError);
     EXPECT_FALSE(Scene().raycast({}, {1, 0, 0}));
+}
+
+TEST_F(SceneQueries, WhatWantedThrowsPassesThrough) {
+    const Scene::Wanted stop = [](BodyId) -> bool { throw std::out_of_range("stop"); };
+    EXPECT_THROW((void)scene_.raycast({}, {1, 0, 0}, any_distance, stop), std::out_of_range);
+    EXPECT_THROW((void)scene_.raycast_any({}, {1, 0, 0}, any_distance, stop), std::out_of_range);
+    EXPECT_THROW((void)scene_.closest_point({}, any_distance, stop), std::out_of_range);
+    EXPECT_THROW((void)scene_.overlaps(*placed_[0].shape, {}, stop), std::out_of_range);
 }
 
 } // namespace

@@ -115,9 +115,9 @@ struct PointKey {
 /// back what restitution says. The point's positions stay true.
 class RAYCONTACT_API CollisionDispatcher : public btCollisionDispatcher {
 public:
-    /// Throws InputError when settings name a device this machine cannot use, or keep_steps is out of range. Direction
-    /// `weighted` gives Bullet the points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1).
-    /// scene() has the weights. Settings::speculative that is empty means true here.
+    /// Throws as Scene::Scene(), and InputError when keep_steps is out of range. Direction `weighted` gives Bullet the
+    /// points of `ray`: a constraint has no weight (Lehericey et al. 2013, section 2.1). scene() has the weights.
+    /// Settings::speculative that is empty means true here.
     explicit CollisionDispatcher(btCollisionConfiguration* configuration, const Settings& settings = {},
                                  const ManifoldSettings& manifolds = {}, ConvexShapes convex = ConvexShapes::by_mesh);
     ~CollisionDispatcher() override;
@@ -127,12 +127,14 @@ public:
     /// for a transform that is not finite. Call it again for another world, before that one steps.
     void attach(btCollisionWorld& world);
 
-    /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out.
+    /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out. Throws as
+    /// Scene::find_contacts(), and as Recorder::record() while it records.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                    btDispatcher* dispatcher) override;
 
     /// Bullet's near callbacks and queries ask here. For a pair that is ours: in a dispatch an algorithm that puts it
-    /// into the batch, otherwise (contactTest and contactPairTest) one that finds its contacts at once.
+    /// into the batch, otherwise (contactTest and contactPairTest) one that finds its contacts at once, and throws as a
+    /// dispatch.
     btCollisionAlgorithm* findAlgorithm(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                         btPersistentManifold* manifold, ebtDispatcherQueryType type) override;
 
@@ -140,7 +142,7 @@ public:
     /// in docs/performance.md), gives them their slots in scene(), and keeps both even when no pair needs them. So
     /// slots follow the caller's order. Returns the id of its first mesh. The object must be removed by remove_body
     /// before it is deleted. Throws ObjectError, which has the object, for one that a dispatch would leave out, and
-    /// InputError for one without a mesh.
+    /// InputError for one without a shape or a mesh; std::runtime_error as Scene::add().
     BodyId add_body(const btCollisionObject& object);
     /// Undoes add_body(): its meshes stay in scene() only as long as pairs need them. Faults told of it are forgotten.
     void remove_body(const btCollisionObject& object);
@@ -156,7 +158,7 @@ public:
     void on_fault(std::function<void(const Fault&)> callback);
 
     /// Scene::prepare() for the meshes in scene(): those given to add_body(), and those that met something. Optional: a
-    /// mesh is prepared beside the dispatches once it meets others a second time.
+    /// mesh is prepared beside the dispatches once it meets others a second time. Throws as Scene::prepare().
     void prepare();
 
     /// Pairs of objects that touch since the last dispatch, and those that no longer do; of all pairs that RayContact
@@ -174,11 +176,12 @@ public:
 
     /// Records the meshes from the next dispatch on, for `raycontact view` and `replay`; see Recorder. A mesh is in the
     /// recording while it is in scene(): add_body() keeps it there even when nothing is near it. options.dt: of a
-    /// dispatch. Throws InputError when the file cannot be made, or RayContact was built without recordings.
+    /// dispatch. Throws as Recorder::Recorder(), and InputError where RayContact was built without recordings.
     void record(const std::filesystem::path& file);
     /// The same with options, for which <raycontact/recorder.h> is needed.
     void record(const std::filesystem::path& file, const RecorderOptions& options);
-    /// Ends the recording with its hash. Does nothing where there is none.
+    /// Ends the recording with its hash. Does nothing where there is none. Throws as Recorder::finish(); it is over all
+    /// the same.
     void finish_recording();
 
     /// The contact of a point of RayContact's manifolds.

@@ -25,7 +25,7 @@ public:
     /// Its text is the fault's.
     explicit ObjectError(Fault fault) : InputError(fault.text), fault_(std::move(fault)) {}
     /// What is wrong, and with which object.
-    const Fault& fault() const { return fault_; }
+    const Fault& fault() const noexcept { return fault_; }
 
 private:
     Fault fault_;

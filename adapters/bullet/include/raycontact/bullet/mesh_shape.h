@@ -27,7 +27,7 @@ ATTRIBUTE_ALIGNED16(class) RAYCONTACT_API MeshShape : public btConcaveShape {
 public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
 
-    /// Share one shape among any number of these.
+    /// Share one shape among any number of these. Throws InputError for none.
     explicit MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds = Bounds::vertices);
     ~MeshShape() override;
 
@@ -50,7 +50,8 @@ public:
         const override;
     /// Diagonal of the true inertia tensor about the centre of mass for a closed mesh; that of its box for an open one.
     void calculateLocalInertia(btScalar mass, btVector3 & inertia) const override;
-    /// Makes another Shape, which takes time. Throws InputError when a factor is zero or not finite.
+    /// Makes another Shape, which takes time. Throws InputError when a factor is zero or not finite, or makes the mesh
+    /// too small or too large (Shape::make()).
     void setLocalScaling(const btVector3& scaling) override;
     /// As setLocalScaling() was given it; at first 1.
     const btVector3& getLocalScaling() const override {
