@@ -5,7 +5,6 @@
 #include <raycontact/error.h>
 #include <recording/writer.h>
 #include <report/colour.h>
-#include <view/page.h>
 #include <view/view.h>
 
 #include <gtest/gtest.h>
