@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <candidate.h>
 #include <objects.h>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
@@ -41,9 +42,7 @@ private:
     void convert(Placed& placed, const btCollisionObjectWrapper& whole);
     void run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
                   const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
-    void run_plane(const Placed& a, const Placed& b, btManifoldResult& result);
-    void run_round(const Placed& a, const Placed& b, btManifoldResult& result);
-    void run_batch(const Placed& a, const Placed& b, btManifoldResult& result);
+    void run_batch(const Placed& a, const Placed& b, std::vector<Candidate>& found);
     void run_bullet(const Placed& a, const Placed& b, const btCollisionObjectWrapper& whole_a,
                     const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
 
@@ -93,7 +92,5 @@ private:
     Queries& queries_;
     btPersistentManifold* manifold_ = nullptr; ///< null: it has not run
 };
-
-btVector3 normal_of(const Contact& contact);
 
 } // namespace raycontact::bullet
