@@ -58,7 +58,7 @@ void deflate_onto(Bytes& to, std::span<const unsigned char> raw, Effort effort) 
     stream.avail_in = static_cast<uInt>(raw.size());
     stream.next_out = to.data() + before;
     stream.avail_out = static_cast<uInt>(most);
-    const bool fits = most == stream.avail_out; // zlib counts in 32 bits
+    const bool fits = raw.size() == stream.avail_in && most == stream.avail_out; // zlib counts in 32 bits
     const int status = fits ? deflate(&stream, Z_FINISH) : Z_BUF_ERROR;
     to.resize(to.size() - stream.avail_out);
     deflateEnd(&stream);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "src/body_slots.h"
 #include <recording/file.h>
 #include <recording/recording.h>
 #include <recording/step_codec.h>
 #include <recording/viewer_part.h>
-#include <src/body_slots.h>
 
 #include <raycontact/scene.h>
 

@@ -42,7 +42,7 @@ std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& 
                       placed.leaf.stretch = stretch_of(placed.leaf.kind, placement);
                   } catch (const InputError& error) {
                       placed.leaf.fault = error.what();
-                      faults_.add(fault_of(*wrap.getCollisionObject(), placed.index, placed.leaf.fault));
+                      objects_.faults().add(fault_of(*wrap.getCollisionObject(), placed.index, placed.leaf.fault));
                   }
                   leaves.push_back(placed);
               });
@@ -67,18 +67,18 @@ void Queries::run(const btCollisionObjectWrapper& a, const btCollisionObjectWrap
             result.setPersistentManifold(manifold); // Bullet's algorithms put in theirs, which is gone
         }
     }
-    faults_.tell();
+    objects_.faults().tell();
 }
 
 void Queries::convert(Placed& placed, const btCollisionObjectWrapper& whole) {
     Leaf& leaf = placed.leaf;
     if (!in_scene(leaf.kind) || leaf.converted.shape || leaf.left_out()) return;
     try {
-        leaf.converted = shapes_.get_again(*leaf.shape);
-        if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
+        leaf.converted = objects_.shapes().get_again(*leaf.shape);
+        if (leaf.converted.shape) leaf.converted = objects_.shapes().stretched(leaf.converted, leaf.stretch);
     } catch (const InputError& error) {
         leaf.fault = error.what();
-        faults_.add(fault_of(*whole.getCollisionObject(), placed.index, leaf.fault));
+        objects_.faults().add(fault_of(*whole.getCollisionObject(), placed.index, leaf.fault));
     }
 }
 

@@ -17,8 +17,7 @@ namespace raycontact::bullet {
 class Queries {
 public:
     Queries(const Settings& settings, Objects& objects, ConvexShapes convex, btCollisionDispatcher& dispatcher)
-        : scene_(touching(settings)), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()),
-          convex_(convex), dispatcher_(dispatcher) {}
+        : scene_(touching(settings)), objects_(objects), convex_(convex), dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
@@ -47,9 +46,7 @@ private:
                     const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
 
     Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
-    const Objects& objects_;
-    ShapeCache& shapes_;
-    Faults& faults_;
+    Objects& objects_;
     ConvexShapes convex_;
     btCollisionDispatcher& dispatcher_;
 };
