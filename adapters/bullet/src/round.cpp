@@ -27,7 +27,7 @@ struct Nearest {
 };
 
 Nearest nearest(const btVector3& a, const btVector3& b, const btVector3& c, const btVector3& p) {
-    static thread_local btVoronoiSimplexSolver solver; // it keeps nothing of this
+    btVoronoiSimplexSolver solver; // its functions are no static ones
     btSubSimplexClosestResult found;
     solver.closestPtPointTriangle(p, a, b, c, found);
     const btVector3& q = found.m_closestPointOnSimplex;
