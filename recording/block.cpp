@@ -13,7 +13,6 @@ namespace raycontact::recording {
 namespace {
 
 constexpr std::uint32_t coding_zlib = 1;
-constexpr std::size_t checksum_at = BlockHeader::size - 8;
 constexpr std::uint64_t most_expansion = 64; // of what describes something; deflate can reach 1032
 
 /// How long a payload may be, so that no small file fills the memory: what writers pack stays below by far, but for the
@@ -24,19 +23,26 @@ std::uint64_t most_raw(BlockType type, std::uint64_t stored) {
     return always + most_expansion * stored;
 }
 
-std::uint64_t checksum_of(std::span<const unsigned char> header, std::span<const unsigned char> padded,
-                          std::uint64_t place) {
-    const std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state(XXH64_createState(), XXH64_freeState);
-    if (!state) throw std::bad_alloc();
-    XXH64_reset(state.get(), place);
-    XXH64_update(state.get(), header.data(), checksum_at);
-    if (!padded.empty()) XXH64_update(state.get(), padded.data(), padded.size());
-    return XXH64_digest(state.get());
+/// A header as it lies in the file, but for the checksum.
+Bytes bytes_of(const BlockHeader& header) {
+    Bytes bytes;
+    put(bytes, static_cast<std::uint32_t>(header.type));
+    put(bytes, coding_zlib);
+    put(bytes, header.stored);
+    put(bytes, header.raw);
+    put(bytes, header.first_step);
+    put(bytes, header.step_count);
+    return bytes;
 }
 
-// zlib counts in 32 bits.
-uInt piece(std::size_t bytes) {
-    return static_cast<uInt>(std::min<std::size_t>(bytes, 1u << 30));
+std::uint64_t checksum_of(const BlockHeader& header, std::span<const unsigned char> padded, std::uint64_t place) {
+    const std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state(XXH64_createState(), XXH64_freeState);
+    if (!state) throw std::bad_alloc();
+    const Bytes bytes = bytes_of(header);
+    XXH64_reset(state.get(), place);
+    XXH64_update(state.get(), bytes.data(), bytes.size());
+    if (!padded.empty()) XXH64_update(state.get(), padded.data(), padded.size());
+    return XXH64_digest(state.get());
 }
 
 /// Appends `raw`, compressed, to `to`.
@@ -46,23 +52,17 @@ void deflate_onto(Bytes& to, std::span<const unsigned char> raw, Effort effort) 
     const int level = effort == Effort::none ? Z_NO_COMPRESSION : effort == Effort::quick ? 1 : 6;
     const int strategy = effort == Effort::quick ? Z_RLE : Z_DEFAULT_STRATEGY;
     if (deflateInit2(&stream, level, Z_DEFLATED, 15, 9, strategy) != Z_OK) throw std::bad_alloc();
-    const std::size_t before = to.size();
-    to.resize(before + deflateBound(&stream, static_cast<uLong>(raw.size())));
+    const std::size_t before = to.size(), most = deflateBound(&stream, static_cast<uLong>(raw.size()));
+    to.resize(before + most);
     stream.next_in = const_cast<unsigned char*>(raw.data()); // zlib's type; it only reads
+    stream.avail_in = static_cast<uInt>(raw.size());
     stream.next_out = to.data() + before;
-    std::size_t in_left = raw.size(), out_left = to.size() - before;
-    int status = Z_OK;
-    while (status == Z_OK) {
-        stream.avail_in = piece(in_left);
-        stream.avail_out = piece(out_left);
-        const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
-        status = deflate(&stream, in_given == in_left ? Z_FINISH : Z_NO_FLUSH);
-        in_left -= in_given - stream.avail_in;
-        out_left -= out_given - stream.avail_out;
-    }
+    stream.avail_out = static_cast<uInt>(most);
+    const bool fits = raw.size() == stream.avail_in && most == stream.avail_out; // zlib counts in 32 bits
+    const int status = fits ? deflate(&stream, Z_FINISH) : Z_BUF_ERROR;
+    to.resize(to.size() - stream.avail_out);
     deflateEnd(&stream);
     if (status != Z_STREAM_END) throw std::runtime_error("recording: zlib could not compress a block");
-    to.resize(to.size() - out_left);
 }
 
 } // namespace
@@ -75,18 +75,11 @@ Bytes make_block(BlockType type, std::uint32_t first_step, std::uint32_t step_co
         block.resize(BlockHeader::size);
         deflate_onto(block, raw, Effort::none);
     }
-    const std::uint64_t stored = block.size() - BlockHeader::size;
-    block.resize((block.size() + 7) & ~std::size_t{7});
-    Bytes header;
-    put(header, static_cast<std::uint32_t>(type));
-    put(header, coding_zlib);
-    put(header, stored);
-    put(header, static_cast<std::uint64_t>(raw.size()));
-    put(header, first_step);
-    put(header, step_count);
-    put(header, static_cast<std::uint64_t>(
-                    checksum_of(header, std::span<const unsigned char>(block).subspan(BlockHeader::size), place)));
-    std::copy(header.begin(), header.end(), block.begin());
+    BlockHeader header{type, block.size() - BlockHeader::size, raw.size(), first_step, step_count};
+    block.resize(BlockHeader::size + header.padded());
+    Bytes start = bytes_of(header);
+    put(start, checksum_of(header, std::span<const unsigned char>(block).subspan(BlockHeader::size), place));
+    std::copy(start.begin(), start.end(), block.begin());
     return block;
 }
 
@@ -116,32 +109,17 @@ BlockHeader read_block_header(std::span<const unsigned char> bytes) {
     return header;
 }
 
-bool block_is_intact(const BlockHeader& header, std::span<const unsigned char> header_bytes,
-                     std::span<const unsigned char> stored, std::uint64_t place) {
-    return stored.size() == header.padded() && checksum_of(header_bytes, stored, place) == header.checksum;
+bool block_is_intact(const BlockHeader& header, std::span<const unsigned char> stored, std::uint64_t place) {
+    return stored.size() == header.padded() && checksum_of(header, stored, place) == header.checksum;
 }
 
-Bytes unpack_block(const BlockHeader& header, std::span<const unsigned char> header_bytes,
-                   std::span<const unsigned char> stored, std::uint64_t place) {
-    if (!block_is_intact(header, header_bytes, stored, place)) throw Damage("does not match its checksum");
+Bytes unpack_block(const BlockHeader& header, std::span<const unsigned char> stored, std::uint64_t place) {
+    if (!block_is_intact(header, stored, place)) throw Damage("does not match its checksum");
     Bytes raw(static_cast<std::size_t>(header.raw));
-    z_stream stream{};
-    if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
-    stream.next_in = const_cast<unsigned char*>(stored.data()); // zlib's type; it only reads
-    unsigned char nothing = 0;
-    stream.next_out = raw.empty() ? &nothing : raw.data();
-    std::size_t in_left = static_cast<std::size_t>(header.stored), out_left = raw.size();
-    int status = Z_OK;
-    while (status == Z_OK) {
-        stream.avail_in = piece(in_left);
-        stream.avail_out = piece(out_left);
-        const std::size_t in_given = stream.avail_in, out_given = stream.avail_out;
-        status = inflate(&stream, Z_NO_FLUSH);
-        in_left -= in_given - stream.avail_in;
-        out_left -= out_given - stream.avail_out;
-    }
-    inflateEnd(&stream);
-    if (status != Z_STREAM_END || in_left != 0 || out_left != 0) throw Damage("cannot be unpacked");
+    auto unpacked = static_cast<uLong>(header.raw), used = static_cast<uLong>(header.stored);
+    const int status = uncompress2(raw.data(), &unpacked, stored.data(), &used);
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    if (status != Z_OK || used != header.stored || unpacked != header.raw) throw Damage("cannot be unpacked");
     return raw;
 }
 

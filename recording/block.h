@@ -30,8 +30,8 @@ struct BlockHeader {
     std::uint64_t stored = 0;                     ///< bytes of the payload as it lies in the file, without padding
     std::uint64_t raw = 0;                        ///< bytes of the payload once unpacked
     std::uint32_t first_step = 0, step_count = 0; ///< of a steps block, else 0
-    std::uint64_t checksum =
-        0; ///< XXH64 of the header before this field and the padded payload; seed: the block's place
+    /// XXH64 of the header before this field and the padded payload; seed: the block's place.
+    std::uint64_t checksum = 0;
 
     std::uint64_t padded() const { return (stored + 7) & ~std::uint64_t{7}; }
 };
@@ -51,11 +51,9 @@ BlockHeader read_block_header(std::span<const unsigned char> bytes);
 
 /// The payload unpacked. `stored` is what follows the header, padding included. Throws Damage unless the checksum and
 /// both lengths are right.
-Bytes unpack_block(const BlockHeader& header, std::span<const unsigned char> header_bytes,
-                   std::span<const unsigned char> stored, std::uint64_t place);
+Bytes unpack_block(const BlockHeader& header, std::span<const unsigned char> stored, std::uint64_t place);
 
 /// Whether the checksum is that of these bytes.
-bool block_is_intact(const BlockHeader& header, std::span<const unsigned char> header_bytes,
-                     std::span<const unsigned char> stored, std::uint64_t place);
+bool block_is_intact(const BlockHeader& header, std::span<const unsigned char> stored, std::uint64_t place);
 
 } // namespace raycontact::recording

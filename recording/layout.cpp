@@ -29,9 +29,14 @@ Json from_bytes(std::span<const unsigned char> bytes) {
     return Json::parse(text);
 }
 
-// A length or null: chosen by the library.
-Json length(const std::optional<double>& metres) {
-    return metres ? Json(*metres) : Json(nullptr);
+template <class Value>
+Json to_json(const Value& value) {
+    return value;
+}
+
+template <class Value>
+Json to_json(const std::optional<Value>& value) { // null: chosen by the library
+    return value ? Json(*value) : Json(nullptr);
 }
 
 template <class Value>
@@ -44,39 +49,38 @@ void read_if_there(const Json& document, const char* key, std::optional<Value>& 
     if (const auto at = document.find(key); at != document.end() && !at->is_null()) value = at->get<Value>();
 }
 
+/// Those that are numbers, under the names that recordings give them; older ones lack some.
+template <class AnySettings, class Visit>
+void each_number(AnySettings& settings, Visit&& visit) {
+    auto& paper = settings.paper;
+    visit("displacement_threshold", paper.displacement_threshold);
+    visit("confidence", paper.confidence);
+    visit("culling_distance", paper.culling_distance);
+    visit("distance_extension", paper.distance_extension);
+    visit("max_iterations", paper.max_iterations);
+    visit("cast_lost_walks", paper.cast_lost_walks);
+    visit("skip_outside", paper.skip_outside);
+    visit("speculative", settings.speculative);
+    visit("speculative_margin", settings.speculative_margin);
+    visit("max_contacts_per_pair", settings.max_contacts_per_pair);
+    visit("max_contacts", settings.max_contacts);
+}
+
 Settings read_settings(const Json& document) {
     Settings settings;
+    settings.features = Features::vertices; // recordings from before edges could be in contact do not say
     try {
         settings.method = method_from(document.at("method").get<std::string>());
         settings.paper.caster = caster_from(document.at("caster").get<std::string>());
         settings.direction = direction_from(document.at("direction").get<std::string>());
+        if (const auto at = document.find("features"); at != document.end())
+            settings.features = features_from(at->get<std::string>());
     } catch (const InputError& error) {
         throw UnknownSetting(error.what());
     }
     settings.execution.devices = document.at("device").get<std::string>();
     settings.execution.threads = document.at("threads").get<std::uint32_t>();
-    // Recordings from before edges could be in contact lack it.
-    if (const auto at = document.find("features"); at != document.end()) {
-        try {
-            settings.features = features_from(at->get<std::string>());
-        } catch (const InputError& error) {
-            throw UnknownSetting(error.what());
-        }
-    } else {
-        settings.features = Features::vertices;
-    }
-    // Recordings from before these settings existed lack them; none of theirs depends on one (method standard).
-    read_if_there(document, "displacement_threshold", settings.paper.displacement_threshold);
-    read_if_there(document, "confidence", settings.paper.confidence);
-    read_if_there(document, "culling_distance", settings.paper.culling_distance);
-    read_if_there(document, "distance_extension", settings.paper.distance_extension);
-    read_if_there(document, "max_iterations", settings.paper.max_iterations);
-    read_if_there(document, "cast_lost_walks", settings.paper.cast_lost_walks);
-    read_if_there(document, "skip_outside", settings.paper.skip_outside);
-    read_if_there(document, "speculative", settings.speculative);
-    read_if_there(document, "speculative_margin", settings.speculative_margin);
-    read_if_there(document, "max_contacts_per_pair", settings.max_contacts_per_pair);
-    read_if_there(document, "max_contacts", settings.max_contacts);
+    each_number(settings, [&](const char* key, auto& value) { read_if_there(document, key, value); });
     check_settings(settings);
     return settings;
 }
@@ -128,30 +132,23 @@ void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vec
 }
 
 Bytes encode_info(const Info& info) {
-    Bytes bytes = to_bytes({{"format", "raycontact recording"},
-                            {"version", format_version},
-                            {"scene", info.scene},
-                            {"seed", info.seed},
-                            {"bodies", info.bodies},
-                            {"dt", info.dt},
-                            {"method", to_string(info.settings.method)},
-                            {"caster", to_string(info.settings.paper.caster)},
-                            {"direction", to_string(info.settings.direction)},
-                            {"features", to_string(info.settings.features)},
-                            {"device", info.settings.execution.devices},
-                            {"threads", info.settings.execution.threads},
-                            {"displacement_threshold", length(info.settings.paper.displacement_threshold)},
-                            {"confidence", info.settings.paper.confidence},
-                            {"culling_distance", length(info.settings.paper.culling_distance)},
-                            {"distance_extension", length(info.settings.paper.distance_extension)},
-                            {"max_iterations", info.settings.paper.max_iterations},
-                            {"cast_lost_walks", info.settings.paper.cast_lost_walks},
-                            {"skip_outside", info.settings.paper.skip_outside},
-                            {"speculative", info.settings.is_speculative()},
-                            {"speculative_margin", length(info.settings.speculative_margin)},
-                            {"max_contacts_per_pair", info.settings.max_contacts_per_pair},
-                            {"max_contacts", info.settings.max_contacts},
-                            {"mesh_source", info.mesh_source}});
+    Settings settings = info.settings;
+    settings.speculative = settings.is_speculative();
+    Json document{{"format", "raycontact recording"},
+                  {"version", format_version},
+                  {"scene", info.scene},
+                  {"seed", info.seed},
+                  {"bodies", info.bodies},
+                  {"dt", info.dt},
+                  {"method", to_string(settings.method)},
+                  {"caster", to_string(settings.paper.caster)},
+                  {"direction", to_string(settings.direction)},
+                  {"features", to_string(settings.features)},
+                  {"device", settings.execution.devices},
+                  {"threads", settings.execution.threads}};
+    each_number(settings, [&](const char* key, const auto& value) { document[key] = to_json(value); });
+    document["mesh_source"] = info.mesh_source;
+    Bytes bytes = to_bytes(document);
     if (bytes.size() > most_text)
         throw InputError("recording: the scene's name and what its meshes are need more than "
                          + std::to_string(most_text) + " bytes; shorten them");

@@ -14,29 +14,16 @@ namespace raycontact {
 
 namespace {
 
-recording::Info info_of(const Scene& scene, const RecorderOptions& options) {
-    recording::Info info;
-    info.scene = options.scene;
-    info.seed = options.seed;
-    info.bodies = options.bodies.value_or(scene.body_count());
-    info.dt = options.dt;
-    info.settings = scene.settings();
-    info.mesh_source = options.mesh_source;
-    return info;
-}
-
 /// To get a body its id; a slot that was given so often before the recording began would fill it with bodies.
 constexpr int most_tries = 100'000;
-
-bool keeps_rays(Method method) {
-    return method == Method::iterative || method == Method::predictive;
-}
 
 } // namespace
 
 struct Recorder::State {
-    State(const std::filesystem::path& file, const Scene& s, const RecorderOptions& options)
-        : scene(s), settings(s.settings()), writer(file, info_of(s, options)), hash(s.settings().direction) {}
+    State(const std::filesystem::path& file, const Scene& s, const RecorderOptions& o)
+        : scene(s), settings(s.settings()),
+          writer(file, {o.scene, o.seed, o.bodies.value_or(s.body_count()), o.dt, settings, o.mesh_source}),
+          hash(settings.direction) {}
 
     std::uint32_t shape_number(const Shape& shape) {
         const auto [at, is_new] = shapes.try_emplace(shape.shared_from_this(), 0);
@@ -84,8 +71,9 @@ struct Recorder::State {
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, const RecorderOptions& options) {
-    if (keeps_rays(scene.settings().method) && !scene.pairs().empty())
-        throw InputError("Recorder: method " + std::string(to_string(scene.settings().method))
+    const Method method = scene.settings().method;
+    if ((method == Method::iterative || method == Method::predictive) && !scene.pairs().empty())
+        throw InputError("Recorder: method " + std::string(to_string(method))
                          + " keeps rays from step to step, and a replay would not have those of the steps before; make "
                            "the Recorder before the scene's first step");
     state_ = std::make_unique<State>(file, scene, options);

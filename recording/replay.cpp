@@ -15,6 +15,10 @@ auto ray_of(const Contact& c) {
     return std::tuple(c.body_a, c.body_b, c.key());
 }
 
+bool is_reduced(const Settings& settings) {
+    return settings.max_contacts_per_pair != 0 || settings.max_contacts != 0;
+}
+
 } // namespace
 
 Follower::Follower(const Reader& reader, const Settings& settings) : reader_(reader), scene_(settings) {
@@ -25,10 +29,7 @@ void Follower::place(std::uint32_t i, std::span<const Pose> poses) {
     const std::vector<BodyEvent>& events = reader_.events();
     for (; next_event_ < events.size() && events[next_event_].step <= i; ++next_event_)
         happen(events[next_event_], poses);
-    for (const std::uint32_t number : live_.at(i, events, reader_.bodies())) {
-        const BodyId body = reader_.bodies()[number].id;
-        scene_.set_pose(body, poses[body.slot]);
-    }
+    for (const BodyId body : scene_.bodies()) scene_.set_pose(body, poses[body.slot]);
 }
 
 void Follower::happen(const BodyEvent& event, std::span<const Pose> poses) {
@@ -74,14 +75,6 @@ double WrongRays::percent() const {
                              : std::numeric_limits<double>::quiet_NaN();
 }
 
-namespace {
-
-bool is_reduced(const Settings& settings) {
-    return settings.max_contacts_per_pair != 0 || settings.max_contacts != 0;
-}
-
-} // namespace
-
 bool find_alike(const Settings& recorded, const Settings& used) {
     const auto exact = [](Method method) { return method == Method::standard || method == Method::certified; };
     if (used.direction != recorded.direction || used.features != recorded.features
@@ -93,13 +86,9 @@ bool find_alike(const Settings& recorded, const Settings& used) {
             || used.speculative_margin != recorded.speculative_margin))
         return false;
     if (exact(used.method) && exact(recorded.method)) return true;
-    return used.method == recorded.method && used.paper.displacement_threshold == recorded.paper.displacement_threshold
-           && used.paper.confidence == recorded.paper.confidence
-           && used.paper.culling_distance == recorded.paper.culling_distance
-           && used.paper.distance_extension == recorded.paper.distance_extension
-           && used.paper.max_iterations == recorded.paper.max_iterations
-           && used.paper.cast_lost_walks == recorded.paper.cast_lost_walks
-           && used.paper.skip_outside == recorded.paper.skip_outside;
+    PaperOptions paper = used.paper;
+    paper.caster = recorded.paper.caster; // no contact depends on it
+    return used.method == recorded.method && paper == recorded.paper;
 }
 
 bool must_agree(const Settings& recorded, const Settings& used) {
@@ -113,7 +102,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
     if (options.compare) {
         if (options.settings.is_speculative())
             throw InputError("replay: rays cannot be compared of contacts that have none; set speculative to false");
-        if (options.settings.max_contacts_per_pair != 0 || options.settings.max_contacts != 0)
+        if (is_reduced(options.settings))
             throw InputError("replay: rays cannot be compared while some contacts are left out; set "
                              "max_contacts_per_pair and max_contacts to 0");
         Settings standard = options.settings;

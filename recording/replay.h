@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <recording/live_bodies.h>
 #include <recording/reader.h>
 
 #include <raycontact/scene.h>
@@ -31,7 +30,6 @@ private:
     const Reader& reader_;
     Scene scene_;
     std::size_t next_event_ = 0;
-    LiveBodies live_;
 };
 
 /// How often contacts differ from those of every ray cast in full.

@@ -9,47 +9,11 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace raycontact::recording {
 
 namespace {
-
-double ulps_from(double x, int count) {
-    for (; count > 0; --count) x = std::nextafter(x, INFINITY);
-    for (; count < 0; ++count) x = std::nextafter(x, -INFINITY);
-    return x;
-}
-
-/// Moves the outermost vertices on one axis by a few units in the last place, so that the middle of the box is `middle`
-/// to the bit and every offset from it still rounds to the same float32.
-void restore_middle(PreparedMesh& mesh, double Vec3::*axis, double middle) {
-    const auto below = [&](const Vec3& p, const Vec3& q) { return p.*axis < q.*axis; };
-    const auto [lowest, highest] = std::minmax_element(mesh.vertices.begin(), mesh.vertices.end(), below);
-    const double low = (*lowest).*axis, high = (*highest).*axis;
-    if (0.5 * (low + high) == middle) return;
-    const auto same_offset = [&](double p, double q) {
-        return static_cast<float>(p - middle) == static_cast<float>(q - middle);
-    };
-    // Both ends may have been halfway between two floats and gone different ways: then the true half width lies
-    // between.
-    const double halves[] = {high - middle, middle - low, 0.5 * ((high - middle) + (middle - low))};
-    for (const double half : halves) {
-        for (int i = -4; i <= 4; ++i) {
-            for (int j = -4; j <= 4; ++j) {
-                const double new_low = ulps_from(middle - half, i), new_high = ulps_from(middle + half, j);
-                if (0.5 * (new_low + new_high) != middle || !same_offset(new_low, low) || !same_offset(new_high, high))
-                    continue;
-                for (Vec3& v : mesh.vertices) {
-                    if (v.*axis == low)
-                        v.*axis = new_low;
-                    else if (v.*axis == high)
-                        v.*axis = new_high;
-                }
-                return;
-            }
-        }
-    }
-}
 
 template <class T>
 bool same_bits(std::span<const T> p, std::span<const T> q) {
@@ -81,21 +45,21 @@ Vec3 get_vector(ByteSource& from) {
     return v;
 }
 
-enum Flag : std::uint32_t {
-    closed = 1,
-    manifold = 2,
-    oriented = 4,
-    self_intersecting = 8,
-    outward = 16,
-    unchecked = 32
-};
+/// What is true or false of a mesh, a bit each. `checked` is recorded as its opposite.
+constexpr std::pair<bool MeshReport::*, std::uint32_t> flags[] = {{&MeshReport::closed, 1},
+                                                                  {&MeshReport::manifold, 2},
+                                                                  {&MeshReport::oriented, 4},
+                                                                  {&MeshReport::self_intersecting, 8},
+                                                                  {&MeshReport::outward, 16}};
+constexpr std::uint32_t unchecked = 32;
 
 void put(Bytes& to, const MeshReport& r) {
     for (const std::uint64_t n : {r.vertices, r.triangles, r.file_vertices, r.file_triangles, r.components})
         recording::put(to, n);
-    recording::put(to, (r.closed ? closed : 0u) | (r.manifold ? manifold : 0u) | (r.oriented ? oriented : 0u)
-                           | (r.self_intersecting ? self_intersecting : 0u) | (r.outward ? outward : 0u)
-                           | (r.checked ? 0u : unchecked));
+    std::uint32_t bits = r.checked ? 0 : unchecked;
+    for (const auto& [flag, bit] : flags)
+        if (r.*flag) bits |= bit;
+    recording::put(to, bits);
     recording::put(to, r.volume);
     recording::put(to, r.area);
     put(to, r.box_min);
@@ -108,13 +72,9 @@ MeshReport get_report(ByteSource& from) {
     MeshReport r;
     for (std::uint64_t* n : {&r.vertices, &r.triangles, &r.file_vertices, &r.file_triangles, &r.components})
         *n = from.get<std::uint64_t>();
-    const auto flags = from.get<std::uint32_t>();
-    r.closed = flags & closed;
-    r.manifold = flags & manifold;
-    r.oriented = flags & oriented;
-    r.self_intersecting = flags & self_intersecting;
-    r.outward = flags & outward;
-    r.checked = !(flags & unchecked);
+    const auto bits = from.get<std::uint32_t>();
+    for (const auto& [flag, bit] : flags) r.*flag = bits & bit;
+    r.checked = !(bits & unchecked);
     r.volume = from.get_double();
     r.area = from.get_double();
     r.box_min = get_vector(from);
@@ -146,17 +106,16 @@ void check_claims(PreparedMesh& mesh) {
 PreparedMesh remade_mesh(const Shape& shape) {
     PreparedMesh mesh;
     mesh.name = shape.name();
-    mesh.vertices.assign(shape.vertices().begin(), shape.vertices().end());
     mesh.triangles.assign(shape.triangles().begin(), shape.triangles().end());
     mesh.vertex_index.assign(shape.vertex_index().begin(), shape.vertex_index().end());
     mesh.triangle_index.assign(shape.triangle_index().begin(), shape.triangle_index().end());
     mesh.report = shape.report();
-    restore_middle(mesh, &Vec3::x, shape.centre().x);
-    restore_middle(mesh, &Vec3::y, shape.centre().y);
-    restore_middle(mesh, &Vec3::z, shape.centre().z);
-    if (!same_bits(shape, *Shape::make(mesh)))
-        throw std::runtime_error("recording: the mesh '" + shape.name() + "' cannot be recorded to the bit");
-    return mesh;
+    // Rounded vertices pack better, but the middle of their box may be another.
+    for (const std::span<const Vec3> vertices : {shape.vertices(), shape.file_vertices()}) {
+        mesh.vertices.assign(vertices.begin(), vertices.end());
+        if (same_bits(shape, *Shape::make(mesh))) return mesh;
+    }
+    throw std::runtime_error("recording: the mesh '" + shape.name() + "' cannot be recorded to the bit");
 }
 
 Bytes encode_mesh(const PreparedMesh& mesh) {

@@ -10,8 +10,7 @@
 namespace raycontact::recording {
 
 /// A prepared mesh from which Shape::make makes this very shape again, bit for bit; that is tried before it returns.
-/// A shape keeps its vertices as float32 offsets from its box's middle; the mesh it was made from is gone.
-/// Throws std::runtime_error where no such mesh is found.
+/// Throws std::runtime_error where it does not.
 PreparedMesh remade_mesh(const Shape& shape);
 
 Bytes encode_mesh(const PreparedMesh& mesh);

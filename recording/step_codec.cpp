@@ -11,12 +11,8 @@ namespace {
 
 constexpr std::size_t numbers = 12;
 
-double number_of(const Pose& pose, std::size_t i) {
-    if (i < 9) return pose.rotation[i];
-    return i == 9 ? pose.translation.x : i == 10 ? pose.translation.y : pose.translation.z;
-}
-
-double& number_of(Pose& pose, std::size_t i) {
+/// Of a pose that may be const, the i-th number.
+auto& number_of(auto& pose, std::size_t i) {
     if (i < 9) return pose.rotation[i];
     return i == 9 ? pose.translation.x : i == 10 ? pose.translation.y : pose.translation.z;
 }

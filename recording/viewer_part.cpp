@@ -20,27 +20,8 @@ constexpr double colours[][3] = {{0.60, 0.22, 0.10}, {0.10, 0.33, 0.55}, {0.62, 
                                  {0.16, 0.42, 0.20}, {0.38, 0.20, 0.46}, {0.55, 0.53, 0.48}};
 constexpr std::size_t colour_count = std::size(colours);
 
-/// Unit quaternion x, y, z, w of a rotation matrix; the largest component is found first, so nothing cancels.
-std::array<double, 4> quaternion(const std::array<double, 9>& r) {
-    const double squares[] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
-                              1 + r[0] + r[4] + r[8]}; // 4x^2, 4y^2, 4z^2, 4w^2
-    std::array<double, 4> q{};
-    switch (std::max_element(std::begin(squares), std::end(squares)) - std::begin(squares)) {
-    case 0:
-        q = {squares[0], r[1] + r[3], r[2] + r[6], r[7] - r[5]};
-        break;
-    case 1:
-        q = {r[1] + r[3], squares[1], r[5] + r[7], r[2] - r[6]};
-        break;
-    case 2:
-        q = {r[2] + r[6], r[5] + r[7], squares[2], r[3] - r[1]};
-        break;
-    default:
-        q = {r[7] - r[5], r[2] - r[6], r[3] - r[1], squares[3]};
-    }
-    const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (double& x : q) x /= size;
-    return q;
+std::array<float, 3> in_float(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// The BIN chunk and what the JSON says of it.
@@ -92,26 +73,29 @@ private:
 };
 
 // A mesh once per colour; they share their vertices and triangles.
-Json make_meshes(std::span<const ViewerMesh> meshes, Buffer& buffer) {
+Json make_meshes(std::span<const std::shared_ptr<const Shape>> shapes, Buffer& buffer) {
     Json list = Json::array();
-    for (const ViewerMesh& mesh : meshes) {
-        std::array<float, 3> low = mesh.positions.at(0), high = low;
-        for (const auto& p : mesh.positions) {
+    for (const auto& shape : shapes) {
+        std::vector<std::array<float, 3>> points;
+        for (const Vec3& v : shape->vertices()) points.push_back(in_float(v));
+        std::array<float, 3> low = points.at(0), high = low;
+        for (const auto& p : points) {
             for (std::size_t i = 0; i < 3; ++i) {
                 low[i] = std::min(low[i], p[i]);
                 high[i] = std::max(high[i], p[i]);
             }
         }
         buffer.start_view(array_buffer);
-        const std::size_t positions = buffer.add(std::span(mesh.positions), "VEC3", {{"min", low}, {"max", high}});
+        const std::size_t positions =
+            buffer.add(std::span<const std::array<float, 3>>(points), "VEC3", {{"min", low}, {"max", high}});
         std::vector<std::uint32_t> corners;
-        for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+        for (const auto& triangle : shape->triangles()) corners.insert(corners.end(), triangle.begin(), triangle.end());
         buffer.start_view(element_array_buffer);
         const std::size_t indices =
             buffer.add(std::span<const std::uint32_t>(corners), "SCALAR", {{"componentType", unsigned_int}});
         for (std::size_t colour = 0; colour < colour_count; ++colour) {
             const Json primitive{{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", colour}};
-            list.push_back({{"name", mesh.name}, {"primitives", Json::array({primitive})}});
+            list.push_back({{"name", shape->name()}, {"primitives", Json::array({primitive})}});
         }
     }
     return list;
@@ -139,7 +123,7 @@ Json make_nodes(std::span<const ViewerBody> bodies, std::span<const ViewerTrack>
         const bool still = !tracks.empty() && tracks[i].translations.empty();
         const std::size_t colour = still ? colour_count - 1 : i % (colour_count - 1);
         list.push_back({{"name", "body " + std::to_string(i)},
-                        {"mesh", bodies[i].mesh * colour_count + colour},
+                        {"mesh", bodies[i].shape * colour_count + colour},
                         {"translation", {t.x, t.y, t.z}},
                         {"rotation", quaternion(bodies[i].start.rotation)}});
     }
@@ -178,18 +162,30 @@ void put_chunk(Bytes& to, std::uint32_t type, std::span<const unsigned char> dat
 
 } // namespace
 
-ViewerMesh viewer_mesh(const Shape& shape) {
-    ViewerMesh mesh;
-    mesh.name = shape.name();
-    for (const Vec3& v : shape.vertices())
-        mesh.positions.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
-    mesh.triangles.assign(shape.triangles().begin(), shape.triangles().end());
-    return mesh;
+std::array<double, 4> quaternion(const std::array<double, 9>& r) {
+    const double squares[] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
+                              1 + r[0] + r[4] + r[8]}; // 4x^2, 4y^2, 4z^2, 4w^2
+    std::array<double, 4> q{};
+    switch (std::max_element(std::begin(squares), std::end(squares)) - std::begin(squares)) {
+    case 0:
+        q = {squares[0], r[1] + r[3], r[2] + r[6], r[7] - r[5]};
+        break;
+    case 1:
+        q = {r[1] + r[3], squares[1], r[5] + r[7], r[2] - r[6]};
+        break;
+    case 2:
+        q = {r[2] + r[6], r[5] + r[7], squares[2], r[3] - r[1]};
+        break;
+    default:
+        q = {r[7] - r[5], r[2] - r[6], r[3] - r[1], squares[3]};
+    }
+    const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (double& x : q) x /= size;
+    return q;
 }
 
 void ViewerTrack::add(const Pose& pose) {
-    const Vec3& t = pose.translation;
-    translations.push_back({static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)});
+    translations.push_back(in_float(pose.translation));
     const std::array<double, 4> q = quaternion(pose.rotation);
     std::array<float, 4> next{};
     for (std::size_t i = 0; i < 4; ++i) next[i] = static_cast<float>(q[i]);
@@ -202,16 +198,16 @@ void ViewerTrack::add(const Pose& pose) {
     rotations.push_back(next);
 }
 
-Bytes viewer_part(std::span<const ViewerMesh> meshes, std::span<const ViewerBody> bodies, std::span<const float> times,
-                  std::span<const ViewerTrack> tracks) {
+Bytes viewer_part(std::span<const std::shared_ptr<const Shape>> shapes, std::span<const ViewerBody> bodies,
+                  std::span<const float> times, std::span<const ViewerTrack> tracks) {
     Json document{{"asset", {{"version", "2.0"}, {"generator", "RayContact"}}},
                   {"scene", 0},
                   {"scenes", Json::array({{{"nodes", {0}}}})},
                   {"nodes", make_nodes(bodies, tracks)}};
     Buffer buffer;
-    if (!meshes.empty()) {
+    if (!shapes.empty()) {
         document["materials"] = make_materials();
-        document["meshes"] = make_meshes(meshes, buffer);
+        document["meshes"] = make_meshes(shapes, buffer);
     }
     if (!times.empty()) {
         Json animation = make_animation(times, tracks, buffer);

@@ -8,24 +8,19 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace raycontact::recording {
 
 // The part of a recording that glTF viewers read: float32, metres, seconds; the recording's z becomes glTF's y.
 
-struct ViewerMesh {
-    std::string name;
-    std::vector<std::array<float, 3>> positions;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-};
-
-ViewerMesh viewer_mesh(const Shape& shape);
+/// Unit quaternion x, y, z, w of a rotation matrix; the largest component is found first, so nothing cancels.
+std::array<double, 4> quaternion(const std::array<double, 9>& rotation);
 
 struct ViewerBody {
-    std::uint32_t mesh = 0;
+    std::uint32_t shape = 0;
     Pose start;
 };
 
@@ -40,8 +35,8 @@ struct ViewerTrack {
 
 /// Header, JSON chunk and BIN chunk of a GLB file, the lengths right for a file that ends there. `tracks` is empty (a
 /// still picture) or has one entry a body. Throws std::length_error beyond the 4 GiB of a GLB file.
-Bytes viewer_part(std::span<const ViewerMesh> meshes, std::span<const ViewerBody> bodies, std::span<const float> times,
-                  std::span<const ViewerTrack> tracks);
+Bytes viewer_part(std::span<const std::shared_ptr<const Shape>> shapes, std::span<const ViewerBody> bodies,
+                  std::span<const float> times, std::span<const ViewerTrack> tracks);
 
 namespace glb {
 constexpr std::uint32_t magic = 0x46546c67, version = 2;        // "glTF"

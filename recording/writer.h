@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "src/body_slots.h"
+#include <recording/file.h>
 #include <recording/recording.h>
+#include <recording/step_codec.h>
+#include <recording/viewer_part.h>
 
 #include <raycontact/scene.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace raycontact::recording {
 
@@ -34,8 +40,7 @@ public:
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    /// Its index. Throws std::runtime_error for one that cannot be recorded to the bit. Shapes must be added before the
-    /// bodies that have them.
+    /// Its index. Shapes must be added before the bodies that have them.
     std::uint32_t add_shape(const Shape& shape);
     /// Takes part from the next step on. Bodies come and go here in the order in which they do in the scene; the id is
     /// then the one that Scene::add gives.
@@ -47,19 +52,54 @@ public:
     void step(std::span<const Pose> poses, std::span<const Pair> pairs);
     /// The step that the scene has just done. It must have the bodies that were added here.
     void step(const Scene& scene);
-    void flush();
     /// 16 hex digits, as ContactHash gives them. Nothing can be added afterwards. Throws InputError the second time,
     /// and where the file is gone or damaged.
     void finish(std::string_view hash);
 
-    std::uint32_t steps() const;
-    std::uint64_t bytes() const; ///< length of the file now
-    double seconds() const;      ///< spent in step() and flush()
-    double finish_seconds() const;
+    std::uint32_t steps() const { return steps_; }
+    std::uint64_t bytes() const { return end_; } ///< length of the file now
+    double seconds() const { return seconds_; }  ///< spent in step()
+    double finish_seconds() const { return finish_seconds_; }
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    using Clock = std::chrono::steady_clock;
+
+    void begin();
+    void commit(const Bytes& blocks, std::uint64_t most);
+    void check_whole() const;
+    void flush();
+    std::uint32_t number_of(BodyId body) const;
+    void check_and_keep(std::span<const Pose> by_slot, std::span<const Pair> given);
+    std::uint64_t place() const { return end_ - data_; }
+    std::uint32_t frame_stride() const;
+    Bytes picture(std::span<const float> times, std::span<const ViewerTrack> tracks) const;
+    Bytes animated_part() const;
+    void animate();
+
+    Info info_;
+    WriterOptions options_;
+    File file_;
+    bool begun_ = false, finished_ = false;
+    bool cut_off_ = false; ///< steps were lost in a write that failed: none that come later can follow on those before
+    std::uint64_t data_ = 0; ///< where the side chunk's data starts
+    std::uint64_t end_ = 0;  ///< where the next block goes
+
+    std::vector<std::shared_ptr<const Shape>> shapes_;
+    std::vector<Bytes> waiting_shapes_;
+    std::vector<BodyEvent> waiting_events_;
+    BodySlots slots_;                      ///< as the scene has them
+    std::vector<std::uint32_t> number_in_; ///< by slot: the body that has it, or had it last
+    std::vector<Body> bodies_;
+    std::vector<std::uint32_t> live_; ///< numbers, ascending
+    std::vector<ViewerBody> viewer_bodies_;
+    std::vector<char> moves_; ///< has left its first pose
+    StepEncoder encoder_;
+    Clock::time_point oldest_; ///< of the steps in the encoder
+    std::uint32_t steps_ = 0;
+    std::vector<Pose> poses_; ///< of the step, by number
+    std::vector<NumberPair> pairs_;
+    std::vector<Pose> scene_poses_;
+    double seconds_ = 0, finish_seconds_ = 0;
 };
 
 } // namespace raycontact::recording

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <recording/bytes.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace raycontact::view {
 
-using Bytes = std::vector<unsigned char>;
+using Bytes = recording::Bytes;
 
-/// Whole numbers as the page reads them: least byte first.
-void put16(Bytes& to, std::uint32_t value);
-void put32(Bytes& to, std::uint32_t value);
+/// A part of 1 in 16 bits.
+inline std::uint16_t quantised(double part) {
+    return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
+}
 
 /// Of numbers of 16 bits: first every lower byte, then every upper one. Neighbours that are alike then lie together.
 Bytes split_bytes(std::span<const std::uint16_t> numbers);

@@ -16,8 +16,7 @@ Triple triple(const Vec3& v) {
 }
 
 std::uint16_t part_of(double value, double low, double high) {
-    const double part = high > low ? (value - low) / (high - low) : 0;
-    return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
+    return quantised(high > low ? (value - low) / (high - low) : 0);
 }
 
 std::uint16_t octahedral(const Triple& v) {
@@ -41,14 +40,7 @@ std::uint32_t device_of(const Scene& scene, BodyId a, BodyId b) {
 
 } // namespace
 
-std::uint32_t LayerReader::vertex_of(const Shape& shape, std::uint32_t file_vertex) {
-    auto& own = vertices_[&shape];
-    if (own.empty())
-        for (std::uint32_t v = 0; v < shape.vertex_index().size(); ++v) own.emplace(shape.vertex_index()[v], v);
-    return own.at(file_vertex);
-}
-
-LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
+LayerStep read_layer(const Scene& scene, std::uint32_t step) {
     LayerStep layer{step, {}, {}};
     const auto start = [&](const auto& found, const Vec3& point) {
         const BodyId body = found.feature.source == Side::a ? found.body_a : found.body_b;
@@ -59,7 +51,8 @@ LayerStep LayerReader::read(const Scene& scene, std::uint32_t step) {
     };
     const auto outward = [&](BodyId body, std::uint32_t vertex) {
         const Shape& shape = scene.shape(body);
-        const Vec3& normal = shape.vertex_normals()[vertex_of(shape, vertex)];
+        const auto at = std::ranges::lower_bound(shape.vertex_index(), vertex); // ascending
+        const Vec3& normal = shape.vertex_normals()[static_cast<std::size_t>(at - shape.vertex_index().begin())];
         return triple(transform_point({scene.pose(body).rotation, {}}, normal));
     };
     for (const Contact& contact : scene.contacts()) {

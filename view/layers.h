@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 namespace raycontact::view {
@@ -28,17 +27,8 @@ struct LayerStep {
     std::vector<Segment> contacts, predictions;
 };
 
-/// Reads LayerSteps from a scene.
-class LayerReader {
-public:
-    /// Of the step that the scene has just done.
-    LayerStep read(const Scene& scene, std::uint32_t step);
-
-private:
-    std::uint32_t vertex_of(const Shape& shape, std::uint32_t file_vertex);
-
-    std::map<const Shape*, std::map<std::uint32_t, std::uint32_t>> vertices_; ///< by index of the file
-};
+/// Of the step that the scene has just done.
+LayerStep read_layer(const Scene& scene, std::uint32_t step);
 
 /// Over what the 16 bits of a number are spread.
 struct LayerScale {

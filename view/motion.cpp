@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <view/motion.h>
 
+#include <recording/viewer_part.h>
+#include <view/blob.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,36 +11,6 @@
 namespace raycontact::view {
 
 namespace {
-
-// Unit, x y z w, of a rotation row by row (Shepperd 1978: the largest part first, so that nothing is divided by a small
-// number).
-std::array<double, 4> quaternion_of(const std::array<double, 9>& r) {
-    const double trace = r[0] + r[4] + r[8];
-    const double squares[4] = {r[0], r[4], r[8], trace};
-    const auto largest = static_cast<std::size_t>(std::max_element(squares, squares + 4) - squares);
-    std::array<double, 4> q{};
-    if (largest == 3) {
-        q = {r[7] - r[5], r[2] - r[6], r[3] - r[1], 1 + trace};
-    } else {
-        const std::size_t i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
-        q[i] = 1 + r[4 * i] - r[4 * j] - r[4 * k];
-        q[j] = r[3 * i + j] + r[3 * j + i];
-        q[k] = r[3 * i + k] + r[3 * k + i];
-        q[3] = r[3 * k + j] - r[3 * j + k];
-    }
-    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (double& part : q) part /= length;
-    return q;
-}
-
-std::uint16_t quantised(double part) {
-    return static_cast<std::uint16_t>(std::lround(65535 * std::clamp(part, 0.0, 1.0)));
-}
-
-bool same(const Pose& a, const Pose& b) {
-    const Vec3 &p = a.translation, &q = b.translation;
-    return p.x == q.x && p.y == q.y && p.z == q.z && a.rotation == b.rotation;
-}
 
 struct Kept {
     std::array<double, 3> place{};
@@ -74,10 +47,11 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
             if (!bodies[b].alive(i)) continue;
             const Pose& pose = poses[bodies[b].id.slot];
             if (bodies[b].first_step == i) first[b] = pose;
-            if (!same(pose, first[b])) motion.moves[b] = true;
+            if (pose != first[b]) motion.moves[b] = true;
             if (i % stride != 0 && bodies[b].first_step != i) continue;
             const std::uint32_t at = i / stride;
-            Kept now{{pose.translation.x, pose.translation.y, pose.translation.z}, quaternion_of(pose.rotation)};
+            Kept now{{pose.translation.x, pose.translation.y, pose.translation.z},
+                     recording::quaternion(pose.rotation)};
             Kept* const own = &kept[b * motion.kept];
             if (bodies[b].first_step == i) std::fill(own, own + at, now);
             const auto& last = own[at == 0 ? 0 : at - 1].turn; // both signs are the same turn: take the nearer one

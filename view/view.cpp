@@ -4,15 +4,18 @@
 #include <view/layers.h>
 #include <view/levels.h>
 #include <view/motion.h>
-#include <view/page.h>
 
 #include <raycontact/error.h>
 #include <recording/replay.h>
 #include <report/colour.h>
+#include <report/svg.h>
+
+#include "page_text.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace raycontact::view {
 
@@ -34,7 +37,7 @@ Json shape_json(const Shape& shape, std::uint32_t most, std::uint64_t& bytes) {
     Json counts = Json::array();
     for (const auto& level : levels.triangles) {
         counts.push_back(level.size());
-        for (const std::uint32_t v : level) put32(triangles, v);
+        for (const std::uint32_t v : level) recording::put(triangles, v);
     }
     Json json{{"name", shape.name()},
               {"triangles", shape.triangles().size()},
@@ -88,7 +91,6 @@ struct Found {
 };
 
 Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
-    LayerReader layer_reader;
     recording::Follower follower(reader, options.settings);
     Found found;
     std::vector<Pose> poses;
@@ -101,7 +103,7 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         found.pairs.push_back(scene.stats().pairs);
         found.contacts.push_back(scene.stats().contacts);
         found.depths.push_back(scene.stats().depth_max);
-        if (i % options.layer_every == 0) found.layers.push_back(layer_reader.read(scene, i));
+        if (i % options.layer_every == 0) found.layers.push_back(read_layer(scene, i));
         if (i == 0)
             for (const DeviceWork& work : scene.stats().details.work) found.devices.push_back(work.device);
         if (options.progress) options.progress(reader.steps() + i + 1);
@@ -127,6 +129,43 @@ Json layers_json(const Found& found, View& view) {
         {"depths", found.depths}};
     view.layer_bytes = dump(json).size();
     return json;
+}
+
+std::string_view file(std::string_view name) {
+    for (const PageFile& page_file : page_files)
+        if (page_file.name == name) return page_file.text;
+    throw std::logic_error("view/page has no file " + std::string(name));
+}
+
+// Within a script element no "<" may stand: "<!--" and "</script" would change how the rest is read.
+std::string for_script(std::string_view json) {
+    std::string safe;
+    for (const char c : json) {
+        if (c == '<')
+            safe += "\\u003c";
+        else
+            safe += c;
+    }
+    return safe;
+}
+
+/// The whole HTML document: the files of view/page with the data in their midst. json: of one object.
+std::string make_page(const std::string& title, std::string_view json) {
+    std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+                       + report::escape_html(title) + "</title>\n<style>\n";
+    page += file("view.css");
+    page += "</style>\n</head>\n<body>\n";
+    page += file("view.html");
+    page += "<script type=\"application/json\" id=\"recording\">" + for_script(json) + "</script>\n<script>\n";
+    page += "'use strict';\n";
+    page += file("problem.js");
+    page += "(async()=>{\n";
+    for (const char* part :
+         {"decode.js", "camera.js", "shaders.js", "bodies.js", "layers.js", "controls.js", "main.js"})
+        page += file(part);
+    page += "})().catch(fail);\n</script>\n</body>\n</html>\n";
+    return page;
 }
 
 } // namespace

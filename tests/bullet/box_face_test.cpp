@@ -2,8 +2,8 @@
 // A mesh over one face of a box: what it costs less for must be what the batch would have found.
 #include "test_world.h"
 
-#include <box_face.h>
 #include <objects.h>
+#include <plane.h>
 #include <scenes/random.h>
 #include <stand_in.h>
 
@@ -24,7 +24,7 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
     scenes::Random random(4);
     int over = 0, found_of_all = 0;
     for (const auto& shape : {table(), torus()}) {
-        const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(shape)};
+        const bullet::Converted mesh{shape, std::make_shared<bullet::BulletMesh>(shape)};
         for (int i = 0; i < 1500; ++i) {
             const auto number = [&](double size) { return btScalar(size * random.symmetric()); };
             const auto turn = [&] {
@@ -74,7 +74,7 @@ TEST(BoxFace, FindsWhatTheBatchFinds) {
 TEST(BoxFace, RimsAndMiddleAreTheBatchs) {
     const btBoxShape box(btVector3(2, 2, btScalar(0.5)));
     const auto shape = Shape::make(box_mesh(1, 1, 1));
-    const bullet::Converted mesh{shape, std::make_shared<bullet::MeshTree>(shape)};
+    const bullet::Converted mesh{shape, std::make_shared<bullet::BulletMesh>(shape)};
     const auto face = [&](double x, double y, double z) {
         return bullet::only_face(mesh, at(x, y, z), box, at(0, 0, 0));
     };

@@ -152,7 +152,7 @@ TEST(Convert, ScaledMeshShapeKeepsItsFilesIndices) {
 
 TEST(Convert, AScaleThatChangesForEverKeepsFewMeshes) {
     bullet::ShapeCache cache(1);
-    const bullet::Converted original{table(), std::make_shared<bullet::MeshTree>(table())};
+    const bullet::Converted original{table(), std::make_shared<bullet::BulletMesh>(table())};
     const bullet::Stretch held{3, 0, 0, 0, 3, 0, 0, 0, 3};
     const bullet::Converted in_use = cache.stretched(original, held);
     std::vector<std::weak_ptr<const Shape>> made;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "test_world.h"
 
-#include <box_face.h>
-#include <mesh_tree.h>
+#include <bullet_mesh.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
 
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <new>
 #include <set>
 #include <vector>
 
@@ -64,9 +62,9 @@ TEST(MeshShape, TheBoxOfABodyThatStandsStillIsMadeOnce) {
         bodies.back()->forceActivationState(ISLAND_SLEEPING);
     }
     w.steps(40); // the cache grows
-    const std::uint64_t before = shape.tree()->bounds_made();
+    const std::uint64_t before = shape.in_bullet()->bounds_made();
     w.steps(100);
-    EXPECT_LT(shape.tree()->bounds_made() - before, 100 * 1000 / 20u); // all of them would be 200 000
+    EXPECT_LT(shape.in_bullet()->bounds_made() - before, 100 * 1000 / 20u); // all of them would be 200 000
 
     // Those that move are the only ones whose boxes are made.
     for (int i = 0; i < 10; ++i) {
@@ -74,63 +72,57 @@ TEST(MeshShape, TheBoxOfABodyThatStandsStillIsMadeOnce) {
         w.world.updateSingleAabb(bodies[0].get());
         btVector3 low, high, own_low, own_high;
         bodies[0]->getAabb(low, high);
-        shape.tree()->bounds(btTransform(bodies[0]->getWorldTransform()), own_low, own_high);
+        shape.in_bullet()->bounds(btTransform(bodies[0]->getWorldTransform()), own_low, own_high);
         EXPECT_EQ(low, own_low);
         EXPECT_EQ(high, own_high);
     }
     for (const auto& body : bodies) w.world.removeRigidBody(body.get());
 }
 
-// Their addresses are given to others: what was kept for them would drive out the boxes of bodies.
-TEST(MeshShape, NoBoxIsKeptForATransformThatIsGoneSoon) {
-    struct Any : btCollisionWorld::ContactResultCallback {
-        btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                                 const btCollisionObjectWrapper*, int, int) override {
-            return 0;
-        }
-    };
-    TestWorld w;
-    auto& shape = w.keep(std::make_unique<bullet::MeshShape>(torus()));
-    auto pair = std::make_unique<btCompoundShape>(false);
-    for (const double x : {0.0, 3.0}) pair->addChildShape(at(x, 0, 0), &shape);
-    btRigidBody& object = w.add(std::move(pair), 0, at(0, 0, 0));
-    btRigidBody& box = w.add(std::make_unique<btBoxShape>(btVector3(2, 2, 1)), 0, at(0, 0, -1.1));
-    const std::uint64_t before = shape.tree()->bounds_made();
-    Any any;
-    w.world.contactPairTest(&object, &box, any);
-    EXPECT_EQ(shape.tree()->bounds_made(), before);
-    const bullet::Converted mesh{shape.shape(), shape.tree()};
-    bullet::only_face(mesh, at(1.9, 0, 1.2), btBoxShape(btVector3(2, 2, 1)), at(0, 0, 0));
-    EXPECT_EQ(shape.tree()->bounds_made(), before);
+TEST(MeshShape, TransformsThatComeAndGoLeaveTheBoxesOfOthers) {
+    const bullet::MeshShape shape(torus());
+    const btTransform stays = at(1, 2, 3);
+    btVector3 low, high, again_low, again_high;
+    shape.getAabb(stays, low, high);
+    for (int i = 0; i < 1000; ++i) {
+        const auto gone = std::make_unique<btTransform>(at(i, 0, 0));
+        shape.getAabb(*gone, again_low, again_high);
+        EXPECT_NEAR(double(again_low.x() - low.x()), i - 1, 1e-3);
+    }
+    const std::uint64_t before = shape.in_bullet()->bounds_made();
+    EXPECT_EQ(before, 1001u);
+    shape.getAabb(stays, again_low, again_high);
+    EXPECT_EQ(shape.in_bullet()->bounds_made(), before);
+    EXPECT_EQ(again_low, low);
+    EXPECT_EQ(again_high, high);
 }
 
-TEST(MeshShape, ABoxThatCouldNotBeMadeLeavesTheOthers) {
-    bullet::BoxCache cache;
-    const btTransform pose = at(1, 2, 3);
+TEST(MeshShape, NoMoreBoxesAreKeptThanMemoryBears) {
+    const bullet::MeshShape shape(Shape::make(box_mesh(1, 1, 1)));
+    const std::vector<btTransform> poses(200000, at(0, 0, 0));
     btVector3 low, high;
-    EXPECT_THROW(cache.get(pose, low, high, [](btVector3&, btVector3&) { throw std::bad_alloc(); }), std::bad_alloc);
-    for (int i = 0; i < 3; ++i) cache.get(pose, low, high, [](btVector3& a, btVector3& b) { a = b = {1, 1, 1}; });
-    EXPECT_EQ(cache.made(), 1u);
+    for (const btTransform& pose : poses) shape.getAabb(pose, low, high);
+    const std::uint64_t before = shape.in_bullet()->bounds_made();
+    for (const btTransform& pose : poses) shape.getAabb(pose, low, high);
+    EXPECT_GT(shape.in_bullet()->bounds_made() - before, poses.size() / 2);
 }
 
-TEST(MeshShape, ItsTreeMayOutliveIt) {
+TEST(MeshShape, ItsMeshMayOutliveIt) {
     std::weak_ptr<const Shape> shape;
-    std::shared_ptr<const bullet::MeshTree> tree;
+    std::shared_ptr<const bullet::BulletMesh> in_bullet;
     {
         const bullet::MeshShape mesh(Shape::make(box_mesh(1, 1, 1)));
         shape = mesh.shape();
-        tree = mesh.tree();
+        in_bullet = mesh.in_bullet();
     }
     EXPECT_FALSE(shape.expired());
-    std::vector<std::uint32_t> below;
-    tree->vertices_below(btVector3(0, 0, 1), 0, below); // looks at the triangles
-    EXPECT_EQ(below.size(), 4u);
+    EXPECT_EQ(in_bullet->overlapping(btVector3(-1, -1, -1), btVector3(1, 1, 0)).size(), 10u); // not those of the top
 }
 
 TEST(MeshShape, ABoxTakesFewLooks) {
     const auto looks = [](std::uint32_t triangles) {
         const auto shape = Shape::make(scenes::scene_model("torus", triangles).mesh);
-        return bullet::MeshTree(shape).bounds_size();
+        return bullet::BulletMesh(shape).bounds_size();
     };
     EXPECT_EQ(looks(600), torus()->vertices().size());
     for (const std::uint32_t triangles : {2000u, 2400u, 6000u, 50000u}) EXPECT_LE(looks(triangles), 1024u) << triangles;

@@ -14,7 +14,7 @@ namespace {
 
 /// The tree may rule out boxes, never a vertex: against every vertex, one by one.
 TEST(Plane, FindsEveryVertexBelowOrNear) {
-    const bullet::Converted mesh{torus(), std::make_shared<bullet::MeshTree>(torus())};
+    const bullet::Converted mesh{torus(), std::make_shared<bullet::BulletMesh>(torus())};
     scenes::Random random(3);
     std::size_t total = 0;
     for (int i = 0; i < 500; ++i) {

@@ -19,7 +19,7 @@ namespace raycontact::test {
 namespace {
 
 bullet::Converted converted(const std::shared_ptr<const Shape>& shape) {
-    return {shape, std::make_shared<bullet::MeshTree>(shape)};
+    return {shape, std::make_shared<bullet::BulletMesh>(shape)};
 }
 
 std::vector<bullet::RoundContact> contacts(const bullet::Converted& mesh, const btCollisionShape& shape,

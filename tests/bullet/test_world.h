@@ -22,6 +22,10 @@ inline btTransform at(double x, double y, double z) {
     return btTransform(btQuaternion::getIdentity(), btVector3(btScalar(x), btScalar(y), btScalar(z)));
 }
 
+inline btMatrix3x3 diagonal(double x, double y, double z) {
+    return btMatrix3x3(btScalar(x), 0, 0, 0, btScalar(y), 0, 0, 0, btScalar(z));
+}
+
 /// A Bullet world with our dispatcher in place of Bullet's: z up, metres, 60 steps a second.
 struct TestWorld {
     explicit TestWorld(const Settings& settings = {}, const bullet::ManifoldSettings& manifolds = {},

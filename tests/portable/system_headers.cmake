@@ -3,7 +3,7 @@
 # that is neither of the C++ standard, ours nor one of a library we use, or use what only some compilers have, outside
 # the few files that may.
 cmake_policy(VERSION 3.25)
-set(system_files src/platform/system.cpp recording/system_file.cpp)
+set(system_files src/platform/system.cpp recording/file.cpp)
 set(compiler_files include/raycontact/library_mode.h include/raycontact/export.h src/device/cpu/dialect.h src/device/cpu/instruction_set.h src/device/cpu/kernel_table.cpp
     src/executor/float_environment.h src/platform/prefetch.h adapters/bullet/src/prefetch.h)
 set(dialects src/device/opencl/dialect.h src/device/cuda/dialect.h) # compiled on the device

@@ -127,6 +127,6 @@ TEST(Codec, BlocksAreCheckedByTheirPlaceToo) {
     const BlockHeader header = read_block_header(header_bytes);
     EXPECT_EQ(header.first_step, 3u);
     EXPECT_EQ(header.step_count, 4u);
-    EXPECT_EQ(unpack_block(header, header_bytes, stored, 64), payload);
-    EXPECT_THROW(unpack_block(header, header_bytes, stored, 72), Damage);
+    EXPECT_EQ(unpack_block(header, stored, 64), payload);
+    EXPECT_THROW(unpack_block(header, stored, 72), Damage);
 }

@@ -233,7 +233,7 @@ void edit_json(const std::filesystem::path& file, BlockType type,
         at += BlockHeader::size;
         const std::span stored(at, static_cast<std::size_t>(header.padded()));
         const auto place = static_cast<std::uint64_t>(header_bytes.data() - bytes.data()) - data;
-        Bytes payload = unpack_block(header, header_bytes, stored, place);
+        Bytes payload = unpack_block(header, stored, place);
         if (header.type == type) {
             auto document = nlohmann::ordered_json::parse(payload);
             change(document);

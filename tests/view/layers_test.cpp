@@ -22,8 +22,7 @@ LayerStep layer_of(Method method) {
     pose.translation = {0.3, 0.2, 1.25 - into};
     scene.add(Shape::make(reference::box_mesh({0.25, 0.25, 0.25})), pose);
     scene.find_contacts();
-    LayerReader reader;
-    return reader.read(scene, 3);
+    return read_layer(scene, 3);
 }
 
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -107,8 +106,7 @@ TEST(Layers, PredictionsReachTheFaceAhead) {
     pose.translation = {0.3, 0.2, 1.25 + 0.02}; // just above
     scene.add(Shape::make(reference::box_mesh({0.25, 0.25, 0.25})), pose);
     scene.find_contacts(std::vector<Pair>{{BodyId{0}, BodyId{1}}});
-    LayerReader reader;
-    const LayerStep layer = reader.read(scene, 0);
+    const LayerStep layer = read_layer(scene, 0);
     EXPECT_TRUE(layer.contacts.empty());
     ASSERT_EQ(layer.predictions.size(), 4u);
     for (const Segment& p : layer.predictions) EXPECT_NEAR(p.point[2] + p.length * p.direction[2], 1, 1e-6);

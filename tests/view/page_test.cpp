@@ -5,7 +5,6 @@
 #include <raycontact/error.h>
 #include <recording/writer.h>
 #include <report/colour.h>
-#include <view/page.h>
 #include <view/view.h>
 
 #include <gtest/gtest.h>
@@ -50,7 +49,7 @@ TEST(Page, NeedsNothingElseAndEscapesNames) {
     const std::string html = make_view(reader, {}).html;
     for (const char* outside : {"http://", "https://", "src=", "@import", "alert(1)</script>"})
         EXPECT_EQ(html.find(outside), std::string::npos) << outside;
-    EXPECT_NE(html.find("<title>&lt;/script>"), std::string::npos);
+    EXPECT_NE(html.find("<title>&lt;/script&gt;"), std::string::npos);
     EXPECT_EQ(data_of(html)["scene"], name);
     EXPECT_EQ(data_of(html)["meshSource"], "boxes </script><!-- of a \"test\"");
 }

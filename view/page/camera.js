@@ -61,10 +61,17 @@ class Camera {
     this.changed();
   }
 
+  // From the world to the picture; column by column, as WebGL takes it.
   matrix() {
     const {right, up, back} = this.axes();
     this.eye = this.target.map((t, k) => t + this.distance * back[k]);
     const aspect = this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1);
-    return product(perspective(focal, aspect, 0.02 * this.distance, 30 * this.distance), viewMatrix(this.eye, right, up, back));
+    const near = 0.02 * this.distance, far = 30 * this.distance, m = new Float32Array(16);
+    [[focal / aspect, right], [focal, up], [(far + near) / (near - far), back], [-1, back]].forEach(([scale, axis], row) => {
+      for (let k = 0; k < 3; ++k) m[4 * k + row] = scale * axis[k];
+      m[12 + row] = -scale * (axis[0] * this.eye[0] + axis[1] * this.eye[1] + axis[2] * this.eye[2]);
+    });
+    m[14] += 2 * far * near / (near - far);
+    return m;
   }
 }

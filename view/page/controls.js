@@ -11,8 +11,7 @@ class Controls {
     element('back').onclick = () => { this.pause(); this.seek(this.kept() * this.stride - this.stride); };
     element('forward').onclick = () => { this.pause(); this.seek((this.kept() + 1) * this.stride); };
     document.addEventListener('keydown', e => {
-      if (['SELECT', 'BUTTON', 'INPUT'].includes(e.target.tagName) && e.key !== ' ') return;
-      if (e.target.tagName === 'BUTTON' || e.target.tagName === 'INPUT' || e.target.tagName === 'SELECT') return;
+      if (['SELECT', 'BUTTON', 'INPUT'].includes(e.target.tagName)) return;
       const button = {' ': 'play', ArrowLeft: 'back', ArrowRight: 'forward'}[e.key];
       if (button) { e.preventDefault(); element(button).click(); }
     });

@@ -72,19 +72,15 @@ public:
 private:
     btScalar slack() const { return btScalar(2e-6) * size_; } // of float coordinates, with a margin
 
-    const btVector3& corner(std::uint32_t t, int k) const {
-        return mesh_.tree->vertex(mesh_.tree->triangle(t)[static_cast<std::size_t>(k % 3)]);
-    }
-    btVector3 face_normal(std::uint32_t t) const {
-        return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
-    }
+    const btVector3& corner(std::uint32_t t, int k) const { return mesh_.in_bullet->corner(t, k); }
+    btVector3 face_normal(std::uint32_t t) const { return mesh_.in_bullet->face_normal(t); }
     template <class Visit>
     void each_triangle(btScalar around, Visit&& visit) const {
         btVector3 low = a_, high = a_;
         low.setMin(b_);
         high.setMax(b_);
         const btVector3 more(around, around, around);
-        mesh_.tree->overlapping(low - more, high + more, visit);
+        for (const std::uint32_t t : mesh_.in_bullet->overlapping(low - more, high + more)) visit(t);
     }
     bool holds(std::uint32_t t, const Crossing& c) const {
         for (int k = 0; k < 3; ++k) {
@@ -95,9 +91,9 @@ private:
     }
     /// The corner of a neighbour that is not on the edge.
     const btVector3& far_corner(std::uint32_t t, int k, std::uint32_t neighbour) const {
-        const auto& ids = mesh_.tree->triangle(t);
+        const auto& ids = mesh_.in_bullet->triangle(t);
         int far = 0;
-        for (const std::uint32_t id : mesh_.tree->triangle(neighbour)) {
+        for (const std::uint32_t id : mesh_.in_bullet->triangle(neighbour)) {
             if (id != ids[static_cast<std::size_t>(k)] && id != ids[static_cast<std::size_t>((k + 1) % 3)]) break;
             ++far;
         }

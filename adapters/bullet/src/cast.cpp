@@ -77,12 +77,11 @@ std::optional<CastHit> cast_hit(const Leaf& convex, const Leaf& mesh) {
     shape.getAabb(to, low_then, high_then);
     low.setMin(low_then);
     high.setMax(high_then);
-    const MeshTree& tree = *mesh.converted.tree;
-    tree.overlapping(low, high, [&](std::uint32_t t) {
-        const auto& ids = tree.triangle(t);
-        btVector3 corners[3] = {tree.vertex(ids[0]), tree.vertex(ids[1]), tree.vertex(ids[2])};
+    const BulletMesh& in_bullet = *mesh.converted.in_bullet;
+    for (const std::uint32_t t : in_bullet.overlapping(low, high)) {
+        btVector3 corners[3] = {in_bullet.corner(t, 0), in_bullet.corner(t, 1), in_bullet.corner(t, 2)};
         cast.processTriangle(corners, 0, static_cast<int>(t));
-    });
+    }
     if (!cast.hit()) return std::nullopt;
     CastHit hit;
     const btMatrix3x3& turned = mesh.pose.getBasis();

@@ -124,26 +124,37 @@ struct FieldTriangles : btTriangleCallback {
     }
 };
 
-const btStridingMeshInterface* interface_of(const btCollisionShape& shape) {
+/// Calls visit(interface, part, scaling) for each part of a mesh of Bullet's.
+template <class Visit>
+void each_part(const btCollisionShape& shape, Visit&& visit) {
+    const auto all_of = [&](const btBvhTriangleMeshShape& whole, const btVector3& scaling) {
+        const btStridingMeshInterface& mesh = *whole.getMeshInterface();
+        for (int i = 0; i < mesh.getNumSubParts(); ++i) visit(mesh, i, mesh.getScaling() * scaling);
+    };
+    const auto one = [&](const btGImpactMeshShapePart& part) {
+        const btPrimitiveManagerBase* base = part.getPrimitiveManager();
+        const auto* manager = static_cast<const btGImpactMeshShapePart::TrimeshPrimitiveManager*>(base);
+        visit(*manager->m_meshInterface, part.getPart(), part.getLocalScaling());
+    };
     switch (shape.getShapeType()) {
     case TRIANGLE_MESH_SHAPE_PROXYTYPE:
     case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
-        return static_cast<const btBvhTriangleMeshShape&>(shape).getMeshInterface();
+        all_of(static_cast<const btBvhTriangleMeshShape&>(shape), btVector3(1, 1, 1));
+        break;
     case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
-        return static_cast<const btScaledBvhTriangleMeshShape&>(shape).getChildShape()->getMeshInterface();
-    case GIMPACT_SHAPE_PROXYTYPE:
-        return static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE
-                   ? static_cast<const btGImpactMeshShape&>(shape).getMeshInterface()
-                   : nullptr;
-    default:
-        return nullptr;
+        all_of(*static_cast<const btScaledBvhTriangleMeshShape&>(shape).getChildShape(), shape.getLocalScaling());
+        break;
+    case GIMPACT_SHAPE_PROXYTYPE: {
+        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
+        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART)
+            return one(static_cast<const btGImpactMeshShapePart&>(g));
+        const auto& whole = static_cast<const btGImpactMeshShape&>(g);
+        for (int i = 0; i < whole.getMeshPartCount(); ++i) one(*whole.getMeshPart(i));
+        break;
     }
-}
-
-void append_gimpact(Mesh& mesh, const btGImpactMeshShapePart& part) {
-    const btPrimitiveManagerBase* base = part.getPrimitiveManager();
-    const auto* manager = static_cast<const btGImpactMeshShapePart::TrimeshPrimitiveManager*>(base);
-    append(mesh, *manager->m_meshInterface, part.getPart(), part.getLocalScaling());
+    default:
+        break;
+    }
 }
 
 /// names: of a field's triangles, otherwise none.
@@ -156,72 +167,71 @@ Mesh extract(const btCollisionShape& shape, std::vector<PlaceName>& names) {
         field.getAabb(btTransform::getIdentity(), low, high);
         FieldTriangles triangles(&mesh, &names, field.getUpAxis());
         field.processAllTriangles(&triangles, low, high);
-    } else if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
-        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
-        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART) {
-            append_gimpact(mesh, static_cast<const btGImpactMeshShapePart&>(g));
-        } else {
-            const auto& whole = static_cast<const btGImpactMeshShape&>(g);
-            for (int i = 0; i < whole.getMeshPartCount(); ++i) append_gimpact(mesh, *whole.getMeshPart(i));
-        }
-    } else if (const btStridingMeshInterface* interface = interface_of(shape)) {
-        const btVector3 scaling = scaling_of(shape);
-        for (int i = 0; i < interface->getNumSubParts(); ++i) append(mesh, *interface, i, scaling);
     }
+    each_part(shape, [&](const btStridingMeshInterface& interface, int part, const btVector3& scaling) {
+        append(mesh, interface, part, scaling);
+    });
     if (mesh.triangles.empty()) throw InputError(mesh.name + ": the collision shape has no triangles; fill it first");
     return mesh;
 }
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-    return hash ^ (hash >> 29);
-}
+/// Two hashes that differ in how they mix: 128 bits stand for what a shape is made of, which need not be kept.
+struct ContentHash {
+    std::array<std::uint64_t, 2> hashes{0, ~std::uint64_t{0}};
 
-std::uint64_t content_hash(const std::vector<btScalar>& numbers) {
-    std::uint64_t hash = numbers.size();
-    for (const btScalar n : numbers) hash = mix(hash, std::bit_cast<std::uint64_t>(double(n)));
-    return hash;
-}
-
-/// Two hashes that differ in their beginnings and in how they mix: 128 bits stand for a mesh, which need not be kept.
-std::array<std::uint64_t, 2> content_hashes(const Mesh& mesh) {
-    std::uint64_t one = mesh.vertices.size(), two = ~std::uint64_t{mesh.triangles.size()};
-    const auto add = [&](std::uint64_t word) {
-        one = mix(one, word);
+    void add(std::uint64_t word) {
+        auto& [one, two] = hashes;
+        one = (one ^ word) * 0x9e3779b97f4a7c15ull;
+        one ^= one >> 29;
         two = (std::rotl(two, 23) ^ word) * 0xff51afd7ed558ccdull;
-    };
-    for (const Vec3& v : mesh.vertices) {
-        for (const double c : {v.x, v.y, v.z}) add(std::bit_cast<std::uint64_t>(c));
     }
+    void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+};
+
+std::array<std::uint64_t, 2> content_of(const Mesh& mesh, const std::vector<PlaceName>& names) {
+    ContentHash hash;
+    for (const std::size_t size : {mesh.vertices.size(), mesh.triangles.size(), names.size()})
+        hash.add(std::uint64_t{size});
+    for (const Vec3& v : mesh.vertices)
+        for (const double c : {v.x, v.y, v.z}) hash.add(c);
     for (const auto& t : mesh.triangles) {
-        add(t[0] | std::uint64_t{t[1]} << 32);
-        add(t[2]);
+        hash.add(t[0] | std::uint64_t{t[1]} << 32);
+        hash.add(std::uint64_t{t[2]});
     }
-    return {one, two};
+    for (const PlaceName& name : names) hash.add(double(name.part)), hash.add(double(name.index));
+    return hash.hashes;
+}
+
+/// Of a convex shape, by its numbers: the stand-in is not made to find out whether it is there.
+std::array<std::uint64_t, 2> content_of(const btCollisionShape& convex) {
+    ContentHash hash;
+    for (const btScalar number : surface_numbers(convex)) hash.add(double(number));
+    return hash.hashes;
 }
 
 /// Shape::make has the same limit.
 constexpr btScalar most_metres = btScalar(1e9);
 
+[[noreturn]] void refuse(const btCollisionShape& shape, const std::string& why) {
+    throw InputError(std::string(shape.getName()) + ": " + why);
+}
+
 void check_point(const btCollisionShape& shape, const btVector3& p, const char* what, int number) {
-    const auto fail = [&](const char* why) {
-        throw InputError(std::string(shape.getName()) + ": " + what + ' ' + std::to_string(number) + why);
-    };
+    const std::string name = what + (' ' + std::to_string(number));
     for (int k = 0; k < 3; ++k) {
-        if (!std::isfinite(p[k])) fail(", scaled, is not finite; correct it");
-        if (btFabs(p[k]) > most_metres) fail(" is further than 1e9 m from the origin; scale the shape");
+        if (!std::isfinite(p[k])) refuse(shape, name + ", scaled, is not finite; correct it");
+        if (btFabs(p[k]) > most_metres) refuse(shape, name + " is further than 1e9 m from the origin; scale the shape");
     }
 }
 
 void check_radius(const btCollisionShape& shape, btScalar radius) {
     if (!(radius >= 0 && radius <= most_metres))
-        throw InputError(std::string(shape.getName()) + ": the radius " + std::to_string(radius)
-                         + " is not from 0 to 1e9 m; correct it");
+        refuse(shape, "the radius " + std::to_string(radius) + " is not from 0 to 1e9 m; correct it");
 }
 
-/// Whether anyone beside the cache has it. Its tree has its shape, too.
+/// Whether anyone beside the cache has it. It has its shape, too.
 bool in_use(const Converted& converted) {
-    return converted.tree.use_count() > 1;
+    return converted.in_bullet.use_count() > 1;
 }
 
 /// A ball, or a capsule of two.
@@ -234,7 +244,8 @@ bool is_round(const btMultiSphereShape& shape) {
 
 } // namespace
 
-Kind kind_of(const btCollisionShape& shape) {
+Kind kind_of(const btCollisionShape& shape, ConvexShapes convex) {
+    const bool ours = convex != ConvexShapes::bullet;
     switch (shape.getShapeType()) {
     case FAST_CONCAVE_MESH_PROXYTYPE:
         return dynamic_cast<const MeshShape*>(&shape) ? Kind::mesh : Kind::other;
@@ -252,82 +263,60 @@ Kind kind_of(const btCollisionShape& shape) {
         return Kind::field;
     case SPHERE_SHAPE_PROXYTYPE:
     case CAPSULE_SHAPE_PROXYTYPE:
-        return Kind::round;
+        return ours ? Kind::round : Kind::other;
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
-        return is_round(static_cast<const btMultiSphereShape&>(shape)) ? Kind::round : Kind::convex;
+        if (ours && is_round(static_cast<const btMultiSphereShape&>(shape))) return Kind::round;
+        [[fallthrough]];
+    case BOX_SHAPE_PROXYTYPE:
+    case CYLINDER_SHAPE_PROXYTYPE:
+    case CONE_SHAPE_PROXYTYPE:
+    case CONVEX_HULL_SHAPE_PROXYTYPE:
+        return ours ? Kind::convex : Kind::other;
     default:
-        return has_stand_in(shape) ? Kind::convex : Kind::other;
+        return Kind::other;
     }
 }
 
-unsigned kinds_in(const btCollisionShape& shape) {
-    if (!shape.isCompound()) return bit(kind_of(shape));
+unsigned kinds_in(const btCollisionShape& shape, ConvexShapes convex) {
+    if (!shape.isCompound()) return bit(kind_of(shape, convex));
     const auto& compound = static_cast<const btCompoundShape&>(shape);
     unsigned kinds = 0;
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) kinds |= kinds_in(*compound.getChildShape(i));
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) kinds |= kinds_in(*compound.getChildShape(i), convex);
     return kinds;
 }
 
-void aabb_once(const btCollisionShape& shape, const btTransform& transform, btVector3& low, btVector3& high) {
-    const auto* own = dynamic_cast<const MeshShape*>(&shape);
-    own ? own->aabb_once(transform, low, high) : shape.getAabb(transform, low, high);
-}
-
 btVector3 scaling_of(const btCollisionShape& shape) {
-    switch (shape.getShapeType()) {
-    case GIMPACT_SHAPE_PROXYTYPE: {
-        // The parts scale; the whole shape's own factor stays 1 until it is set.
-        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
-        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE) {
-            const auto& whole = static_cast<const btGImpactMeshShape&>(g);
-            if (whole.getMeshPartCount() > 0) return whole.getMeshPart(0)->getLocalScaling();
-        }
-        return g.getLocalScaling();
-    }
-    case SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE:
-        return interface_of(shape)->getScaling() * shape.getLocalScaling();
-    case TRIANGLE_MESH_SHAPE_PROXYTYPE:
-    case MULTIMATERIAL_TRIANGLE_MESH_PROXYTYPE:
-        return interface_of(shape)->getScaling();
-    default:
-        return shape.getLocalScaling();
-    }
+    btVector3 scaling = shape.getLocalScaling();
+    each_part(shape, [&](const btStridingMeshInterface&, int, const btVector3& of_part) { scaling = of_part; });
+    return scaling;
 }
 
 PlaceName name_of_triangle(const btCollisionShape& shape, int triangle) {
-    if (shape.getShapeType() == GIMPACT_SHAPE_PROXYTYPE) {
-        const auto& g = static_cast<const btGImpactShapeInterface&>(shape);
-        if (g.getGImpactShapeType() == CONST_GIMPACT_TRIMESH_SHAPE_PART)
-            return {static_cast<const btGImpactMeshShapePart&>(g).getPart(), triangle};
-    }
     PlaceName name{0, triangle};
-    const btStridingMeshInterface* mesh = interface_of(shape);
-    for (; mesh && name.part < mesh->getNumSubParts(); ++name.part) {
-        const int count = Part(*mesh, name.part).triangle_count;
-        if (name.index < count) break;
-        name.index -= count;
-    }
+    bool found = false;
+    each_part(shape, [&](const btStridingMeshInterface& mesh, int part, const btVector3&) {
+        if (found) return;
+        name.part = part;
+        const int count = Part(mesh, part).triangle_count;
+        found = name.index < count;
+        if (!found) name.index -= count;
+    });
     return name;
 }
 
 Form form_of(const btCollisionShape& shape) {
     Form form;
     form.type = shape.getShapeType();
-    const auto take_box = [&] {
-        shape.getAabb(btTransform::getIdentity(), form.low, form.high);
-        form.low.setW(0);
-        form.high.setW(0);
-    };
+    form.size = scaling_of(shape);
+    const auto take_box = [&] { shape.getAabb(btTransform::getIdentity(), form.low, form.high); };
     switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
         form.size = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
         break;
-    case CYLINDER_SHAPE_PROXYTYPE: {
-        const auto& s = static_cast<const btCylinderShape&>(shape);
-        form.size = s.getHalfExtentsWithMargin();
-        form.count = s.getUpAxis();
+    case CYLINDER_SHAPE_PROXYTYPE:
+        form.size = static_cast<const btCylinderShape&>(shape).getHalfExtentsWithMargin();
+        form.count = static_cast<const btCylinderShape&>(shape).getUpAxis();
         break;
-    }
     case CONE_SHAPE_PROXYTYPE: {
         const auto& s = static_cast<const btConeShape&>(shape);
         form.size.setValue(s.getRadius(), s.getHeight(), 0);
@@ -335,36 +324,30 @@ Form form_of(const btCollisionShape& shape) {
         break;
     }
     case CONVEX_HULL_SHAPE_PROXYTYPE:
-        form.size = shape.getLocalScaling();
         form.count = static_cast<const btConvexHullShape&>(shape).getNumPoints();
         take_box();
         break;
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
-        form.size = shape.getLocalScaling();
         form.count = static_cast<const btMultiSphereShape&>(shape).getSphereCount();
         take_box();
         break;
-    case SPHERE_SHAPE_PROXYTYPE:
-    case CAPSULE_SHAPE_PROXYTYPE:
-        break; // read anew in every step
     case TERRAIN_SHAPE_PROXYTYPE:
-        form.size = scaling_of(shape);
         take_box();
         break;
     default:
-        form.size = scaling_of(shape);
         if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) {
             form.data = own->shape().get();
-        } else if (const btStridingMeshInterface* mesh = interface_of(shape)) {
-            form.data = mesh;
-            const auto* array = dynamic_cast<const btTriangleIndexVertexArray*>(mesh);
-            if (array && array->getIndexedMeshArray().size() > 0) {
-                form.vertices = array->getIndexedMeshArray()[0].m_vertexBase;
-                form.count = array->getIndexedMeshArray()[0].m_numTriangles;
-            }
+            break;
         }
+        each_part(shape, [&](const btStridingMeshInterface& mesh, int, const btVector3&) {
+            if (form.data) return;
+            form.data = &mesh;
+            const auto* array = dynamic_cast<const btTriangleIndexVertexArray*>(&mesh);
+            if (!array || array->getIndexedMeshArray().size() == 0) return;
+            form.vertices = array->getIndexedMeshArray()[0].m_vertexBase;
+            form.count = array->getIndexedMeshArray()[0].m_numTriangles;
+        });
     }
-    form.size.setW(0);
     return form;
 }
 
@@ -377,7 +360,7 @@ void check_numbers(const btCollisionShape& shape) {
         const auto& s = static_cast<const btCapsuleShape&>(shape);
         check_radius(shape, s.getRadius());
         if (!(s.getHalfHeight() >= 0 && s.getHalfHeight() <= most_metres))
-            throw InputError(std::string(shape.getName()) + ": half the height is not from 0 to 1e9 m; correct it");
+            refuse(shape, "half the height is not from 0 to 1e9 m; correct it");
         break;
     }
     case MULTI_SPHERE_SHAPE_PROXYTYPE: {
@@ -399,9 +382,8 @@ void check_numbers(const btCollisionShape& shape) {
         const auto& s = static_cast<const btStaticPlaneShape&>(shape);
         const btVector3& n = s.getPlaneNormal();
         if (!(std::isfinite(n.x()) && std::isfinite(n.y()) && std::isfinite(n.z()) && !n.isZero()))
-            throw InputError(std::string(shape.getName()) + ": the normal is zero or not finite; correct it");
-        if (!std::isfinite(s.getPlaneConstant()))
-            throw InputError(std::string(shape.getName()) + ": the plane constant is not finite; correct it");
+            refuse(shape, "the normal is zero or not finite; correct it");
+        if (!std::isfinite(s.getPlaneConstant())) refuse(shape, "the plane constant is not finite; correct it");
         break;
     }
     default:
@@ -414,73 +396,46 @@ Converted ShapeCache::convert(Mesh mesh, Repair repair) {
     PreparedMesh prepared = prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_);
     mesh = {}; // a large one is large beside its shape
     const auto shape = Shape::make(std::move(prepared), threads_);
-    return {shape, std::make_shared<const MeshTree>(shape)};
-}
-
-// By its numbers: the stand-in is not made to find out whether it is there.
-Converted ShapeCache::get_convex(const btCollisionShape& shape) {
-    std::vector<btScalar> numbers = surface_numbers(shape);
-    const std::uint64_t hash = content_hash(numbers);
-    const auto [first, last] = entries_.equal_range(hash);
-    for (auto i = first; i != last; ++i) {
-        if (i->second.numbers == numbers) {
-            i->second.used = now_;
-            return i->second.converted;
-        }
-    }
-    check_numbers(shape); // Bullet's hull of points that are not finite never ends
-    sweep();
-    Entry entry;
-    Mesh mesh = stand_in(shape);
-    if (!mesh.triangles.empty()) entry.converted = convert(std::move(mesh), Repair::allowed);
-    entry.numbers = std::move(numbers);
-    entry.used = now_;
-    return entries_.emplace(hash, std::move(entry))->second.converted;
+    return {shape, std::make_shared<const BulletMesh>(shape)};
 }
 
 Converted ShapeCache::get(const btCollisionShape& shape) {
-    if (has_stand_in(shape)) return get_convex(shape);
-    if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->tree()};
+    if (const auto* own = dynamic_cast<const MeshShape*>(&shape)) return {own->shape(), own->in_bullet()};
+    const Kind kind = kind_of(shape);
     std::vector<PlaceName> names;
-    Mesh mesh = extract(shape, names);
-    const auto [hash, second_hash] = content_hashes(mesh);
-    const auto [first, last] = entries_.equal_range(hash);
-    for (auto i = first; i != last; ++i) {
-        const auto& known_names = i->second.converted.names;
-        if (i->second.numbers.empty() && i->second.second_hash == second_hash
-            && (known_names ? *known_names == names : names.empty())) {
-            i->second.used = now_;
-            return i->second.converted;
+    Mesh mesh;
+    if (kind != Kind::convex) mesh = extract(shape, names);
+    const Hashes content = kind == Kind::convex ? content_of(shape) : content_of(mesh, names);
+    auto found = entries_.find(content);
+    if (found == entries_.end()) {
+        if (kind == Kind::convex) {
+            check_numbers(shape); // Bullet's hull of points that are not finite never ends
+            mesh = stand_in(shape);
         }
+        sweep();
+        Entry entry;
+        // We chose the windings of a height field; for an open sheet repairs could only guess.
+        if (!mesh.triangles.empty())
+            entry.converted = convert(std::move(mesh), kind == Kind::field ? Repair::as_is : Repair::allowed);
+        if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
+        found = entries_.emplace(content, std::move(entry)).first;
     }
-    sweep();
-    Entry entry;
-    // We chose the windings of a height field; for an open sheet repairs could only guess.
-    const Repair repair = kind_of(shape) == Kind::field ? Repair::as_is : Repair::allowed;
-    entry.converted = convert(std::move(mesh), repair);
-    if (!names.empty()) entry.converted.names = std::make_shared<const std::vector<PlaceName>>(std::move(names));
-    entry.second_hash = second_hash;
-    entry.used = now_;
-    return entries_.emplace(hash, std::move(entry))->second.converted;
+    found->second.used = now_;
+    return found->second.converted;
 }
 
 Converted ShapeCache::get_again(const btCollisionShape& shape) {
     // These have few numbers to read, or none.
-    if (has_stand_in(shape) || dynamic_cast<const MeshShape*>(&shape)) return get(shape);
-    Known now;
-    now.form = form_of(shape);
-    shape.getAabb(btTransform::getIdentity(), now.low, now.high);
-    const auto found = known_.find(&shape);
-    if (found != known_.end() && found->second.form == now.form && found->second.low == now.low
-        && found->second.high == now.high) {
-        found->second.used = now_;
-        return found->second.converted;
+    if (kind_of(shape) == Kind::convex || dynamic_cast<const MeshShape*>(&shape)) return get(shape);
+    Form form = form_of(shape);
+    shape.getAabb(btTransform::getIdentity(), form.low, form.high);
+    auto found = known_.find(&shape);
+    if (found == known_.end() || found->second.form != form) {
+        sweep();
+        found = known_.insert_or_assign(&shape, Known{{get(shape)}, form}).first;
     }
-    sweep();
-    now.converted = get(shape);
-    now.used = now_;
-    known_[&shape] = now;
-    return now.converted;
+    found->second.used = now_;
+    return found->second.converted;
 }
 
 Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch) {
@@ -495,8 +450,8 @@ Converted ShapeCache::stretched(const Converted& converted, const Stretch& stret
         });
         ++made_;
         const auto shape = stretch_shape(*converted.shape, stretch, threads_);
-        const Converted made{shape, std::make_shared<const MeshTree>(shape), converted.names};
-        found = stretched_.emplace(key, Stretched{converted, made}).first;
+        const Converted made{shape, std::make_shared<const BulletMesh>(shape), converted.names};
+        found = stretched_.emplace(key, Stretched{{made}, converted}).first;
     }
     found->second.used = now_;
     return found->second.converted;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <mesh_tree.h>
+#include <bullet_mesh.h>
 #include <placement.h>
+#include <raycontact/bullet/dispatcher.h>
 #include <raycontact/shape.h>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -29,7 +31,7 @@ struct PlaceName {
 /// Without a shape where a convex shape is flat.
 struct Converted {
     std::shared_ptr<const Shape> shape;
-    std::shared_ptr<const MeshTree> tree;
+    std::shared_ptr<const BulletMesh> in_bullet;
     std::shared_ptr<const std::vector<PlaceName>> names{}; ///< of a field's triangles; null of other shapes
 };
 
@@ -42,15 +44,12 @@ enum class Kind {
     round,  ///< ball or capsule, also as a multi-sphere of one ball, or of two equal ones
     other,  ///< left to Bullet
 };
-Kind kind_of(const btCollisionShape& shape);
+Kind kind_of(const btCollisionShape& shape, ConvexShapes convex = ConvexShapes::by_mesh);
 /// The kinds of a shape and of all its children, a bit for each.
-unsigned kinds_in(const btCollisionShape& shape);
+unsigned kinds_in(const btCollisionShape& shape, ConvexShapes convex);
 constexpr unsigned bit(Kind kind) {
     return 1u << static_cast<unsigned>(kind);
 }
-
-/// Its box at a transform that is gone soon, for which a MeshShape must keep nothing.
-void aabb_once(const btCollisionShape& shape, const btTransform& transform, btVector3& low, btVector3& high);
 
 /// The effective scaling of a mesh or field.
 btVector3 scaling_of(const btCollisionShape& shape);
@@ -106,29 +105,22 @@ public:
     void sweep();
 
 private:
+    using Hashes = std::array<std::uint64_t, 2>;
     struct Entry {
-        std::uint64_t second_hash = 0; ///< of a mesh or field
-        std::vector<btScalar> numbers; ///< of a convex shape, compared in full
         Converted converted;
         std::uint64_t used = 0;
     };
-    /// What get_again() knows by address.
-    struct Known {
+    /// What get_again() knows by address. Its form has the box of any shape: a new mesh may lie where an old one lay.
+    struct Known : Entry {
         Form form;
-        btVector3 low, high; ///< its box: a new mesh may lie where an old one lay
-        Converted converted;
-        std::uint64_t used = 0;
     };
-    struct Stretched {
+    struct Stretched : Entry {
         Converted original; ///< kept, since its shape's address is a key
-        Converted converted;
-        std::uint64_t used = 0;
     };
-    Converted get_convex(const btCollisionShape& shape);
     Converted convert(Mesh mesh, Repair repair);
 
     std::uint32_t threads_;
-    std::multimap<std::uint64_t, Entry> entries_; ///< by hash of the content
+    std::map<Hashes, Entry> entries_; ///< by the content
     std::unordered_map<const btCollisionShape*, Known> known_;
     std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_;
     std::uint64_t now_ = 0, made_ = 0;

@@ -32,6 +32,7 @@ void Faults::add(Fault fault) {
     if (known_.size() > most_known) known_.clear();
     Known& known = known_[fault.object];
     known.seen = now_;
+    known.is_lost = false;
     // It was taken out of the world in between, or is another object where the old one lay.
     if (const int stay = stay_of(*fault.object); known.stay != stay) {
         known.texts.clear();
@@ -52,6 +53,11 @@ void Faults::set(const btCollisionObject& object, std::vector<Fault> faults) {
         if (faults.empty()) known_.erase(known);
     }
     for (Fault& fault : faults) add(std::move(fault));
+}
+
+void Faults::set_lost(const btCollisionObject& object, Fault fault) {
+    set(object, {std::move(fault)});
+    known_[&object].is_lost = true;
 }
 
 void Faults::take_back(const btCollisionObject* object) {

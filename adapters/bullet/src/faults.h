@@ -23,8 +23,9 @@ public:
     void add(Fault fault);
     /// All that an object has now: what else it had is mended.
     void set(const btCollisionObject& object, std::vector<Fault> faults);
-    /// It has none now. It may be gone.
-    void forget(const btCollisionObject* object) { known_.erase(object); }
+    /// The same for an object of which nobody says that it is mended: its fault is found anew in each dispatch until it
+    /// is.
+    void set_lost(const btCollisionObject& object, Fault fault);
     /// What of the object waits is as if it had not been found. It may be gone.
     void take_back(const btCollisionObject* object);
     /// Calls the callback for those that wait. Where it throws, the others go on waiting.
@@ -33,7 +34,9 @@ public:
     /// their addresses. in_use(address) must not look there.
     template <class InUse>
     void sweep(InUse&& in_use) {
-        if (++now_ % 64 != 0) return;
+        ++now_;
+        std::erase_if(known_, [&](const auto& one) { return one.second.is_lost && one.second.seen + 1 < now_; });
+        if (now_ % 64 != 0) return;
         for (auto& [object, known] : known_)
             if (in_use(object)) known.seen = now_;
         std::erase_if(known_, [&](const auto& one) { return one.second.seen + keep_dispatches < now_; });
@@ -43,6 +46,7 @@ private:
     struct Known {
         std::vector<std::string> texts;
         std::uint64_t seen = 0;
+        bool is_lost = false;
         int stay = 0; ///< the number of its broad-phase proxy, of which an object has another each time it is added
     };
     static constexpr std::uint64_t keep_dispatches = 600;

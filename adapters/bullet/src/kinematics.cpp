@@ -68,7 +68,7 @@ void Kinematics::sweep(btCollisionWorld& world, btDispatcher* dispatcher) {
         if (!next) continue;
         btBroadphaseProxy* proxy = const_cast<btBroadphaseProxy*>(object.getBroadphaseHandle());
         btVector3 low, high;
-        aabb_once(*object.getCollisionShape(), *next, low, high);
+        object.getCollisionShape()->getAabb(*next, low, high);
         const btVector3 around(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
         low -= around;
         high += around;
@@ -79,10 +79,6 @@ void Kinematics::sweep(btCollisionWorld& world, btDispatcher* dispatcher) {
         any = true;
     }
     if (any && !finds_pairs_at_once(broad_phase)) broad_phase.calculateOverlappingPairs(dispatcher);
-}
-
-void Kinematics::forget_gone() {
-    std::erase_if(motions_, [&](const auto& one) { return one.second.dispatch + 2 < dispatch_; });
 }
 
 } // namespace raycontact::bullet

@@ -22,7 +22,8 @@ public:
     void begin(std::uint64_t dispatch, btScalar seconds) {
         dispatch_ = dispatch;
         seconds_ = seconds;
-        if (dispatch % 64 == 0) forget_gone();
+        if (dispatch % 64 == 0)
+            std::erase_if(motions_, [&](const auto& m) { return m.second.dispatch + 2 < dispatch; });
     }
     /// Empty where the object is not kinematic, does not move, or was put elsewhere: it went farther than its own size,
     /// unlike in its motion before.
@@ -41,7 +42,6 @@ private:
         int stay = 0;               ///< number of its broad-phase proxy: another object may get its address
         bool is_believed = false;
     };
-    void forget_gone();
 
     std::unordered_map<const btCollisionObject*, Motion> motions_; ///< no order of it shows
     std::uint64_t dispatch_ = 0;

@@ -10,8 +10,8 @@ namespace {
 using Matrix = std::array<double, 9>;
 
 /// Jacobi's rotations; only + - * / and square roots, so the same bits from every compiler.
-void principal_axes(const MassProperties& in, MassProperties& out) {
-    Matrix a = in.inertia, axes{1, 0, 0, 0, 1, 0, 0, 0, 1};
+void find_principal_axes(MassProperties& mass) {
+    Matrix a = mass.inertia, axes{1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int sweep = 0; sweep < 32; ++sweep) {
         const double off = a[1] * a[1] + a[2] * a[2] + a[5] * a[5];
         if (off <= 1e-30 * (a[0] * a[0] + a[4] * a[4] + a[8] * a[8])) break;
@@ -21,26 +21,19 @@ void principal_axes(const MassProperties& in, MassProperties& out) {
                 const double theta = (a[4 * j] - a[4 * i]) / (2 * a[3 * i + j]);
                 const double t = (theta < 0 ? -1 : 1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
                 const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-                for (int k = 0; k < 3; ++k) {
-                    const double x = a[3 * k + i], y = a[3 * k + j];
-                    a[3 * k + i] = c * x - s * y;
-                    a[3 * k + j] = s * x + c * y;
-                }
-                for (int k = 0; k < 3; ++k) {
-                    const double x = a[3 * i + k], y = a[3 * j + k];
-                    a[3 * i + k] = c * x - s * y;
-                    a[3 * j + k] = s * x + c * y;
-                }
-                for (int k = 0; k < 3; ++k) {
-                    const double x = axes[3 * k + i], y = axes[3 * k + j];
-                    axes[3 * k + i] = c * x - s * y;
-                    axes[3 * k + j] = s * x + c * y;
-                }
+                const auto rotate = [&](double& x, double& y) {
+                    const double before = x;
+                    x = c * before - s * y;
+                    y = s * before + c * y;
+                };
+                for (int k = 0; k < 3; ++k) rotate(a[3 * k + i], a[3 * k + j]);
+                for (int k = 0; k < 3; ++k) rotate(a[3 * i + k], a[3 * j + k]);
+                for (int k = 0; k < 3; ++k) rotate(axes[3 * k + i], axes[3 * k + j]);
             }
         }
     }
-    out.principal = Pose{axes, in.centre}; // products of rotations: determinant +1
-    out.principal_inertia = {a[0], a[4], a[8]};
+    mass.principal = Pose{axes, mass.centre}; // products of rotations: determinant +1
+    mass.principal_inertia = {a[0], a[4], a[8]};
 }
 
 } // namespace
@@ -58,7 +51,7 @@ MassProperties mass_properties(const Shape& shape) {
         p.inertia = {p.volume / 12 * (y * y + z * z), 0, 0, 0, p.volume / 12 * (x * x + z * z), 0, 0, 0,
                      p.volume / 12 * (x * x + y * y)};
     }
-    principal_axes(p, p);
+    find_principal_axes(p);
     return p;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/bullet/mesh_shape.h>
 
+#include <bullet_mesh.h>
 #include <convert.h>
-#include <mesh_tree.h>
 #include <raycontact/bullet/mass.h>
 #include <raycontact/error.h>
 #include <vectors.h>
@@ -21,7 +21,7 @@ namespace raycontact::bullet {
 MeshShape::MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds)
     : original_(std::move(shape)), scaled_(original_), scaling_(1, 1, 1), bounds_(bounds) {
     if (!original_) throw InputError("MeshShape: no shape given; make one with raycontact::Shape::make");
-    tree_ = std::make_shared<const MeshTree>(scaled_);
+    in_bullet_ = std::make_shared<const BulletMesh>(scaled_);
     // Not CUSTOM_CONCAVE_SHAPE_TYPE: Bullet 3 gave the same number to its signed-distance shape and would cast to that.
     m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
     m_collisionMargin = 0;
@@ -29,33 +29,24 @@ MeshShape::MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds)
 
 MeshShape::~MeshShape() = default;
 
-void MeshShape::find_aabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max, bool keep) const {
+void MeshShape::getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
     if (bounds_ == Bounds::box) {
         const Vec3 low = scaled_->box_min(), high = scaled_->box_max();
         btTransformAabb(to_bullet(low), to_bullet(high), getMargin(), t, aabb_min, aabb_max);
         return;
     }
-    keep ? tree_->bounds(t, aabb_min, aabb_max) : tree_->bounds_once(t, aabb_min, aabb_max);
+    in_bullet_->bounds(t, aabb_min, aabb_max);
     const btVector3 margin(getMargin(), getMargin(), getMargin());
     aabb_min -= margin;
     aabb_max += margin;
 }
 
-void MeshShape::getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
-    find_aabb(t, aabb_min, aabb_max, true);
-}
-
-void MeshShape::aabb_once(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const {
-    find_aabb(t, aabb_min, aabb_max, false);
-}
-
 void MeshShape::processAllTriangles(btTriangleCallback* callback, const btVector3& aabb_min,
                                     const btVector3& aabb_max) const {
-    tree_->overlapping(aabb_min, aabb_max, [&](std::uint32_t index) {
-        const auto& t = tree_->triangle(index);
-        btVector3 corners[3] = {tree_->vertex(t[0]), tree_->vertex(t[1]), tree_->vertex(t[2])};
-        callback->processTriangle(corners, 0, static_cast<int>(scaled_->triangle_index()[index]));
-    });
+    for (const std::uint32_t t : in_bullet_->overlapping(aabb_min, aabb_max)) {
+        btVector3 corners[3] = {in_bullet_->corner(t, 0), in_bullet_->corner(t, 1), in_bullet_->corner(t, 2)};
+        callback->processTriangle(corners, 0, static_cast<int>(scaled_->triangle_index()[t]));
+    }
 }
 
 void MeshShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
@@ -72,7 +63,7 @@ void MeshShape::setLocalScaling(const btVector3& scaling) {
             throw InputError(original_->name() + ": local scaling must not be zero in any axis");
     const Stretch stretch{double(scaling.x()), 0, 0, 0, double(scaling.y()), 0, 0, 0, double(scaling.z())};
     scaled_ = stretch == no_stretch ? original_ : stretch_shape(*original_, stretch);
-    tree_ = std::make_shared<const MeshTree>(scaled_);
+    in_bullet_ = std::make_shared<const BulletMesh>(scaled_);
     scaling_ = scaling;
 }
 

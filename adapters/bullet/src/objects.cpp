@@ -9,6 +9,7 @@
 #include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace raycontact::bullet {
 
@@ -42,8 +43,15 @@ bool has_velocity(const btCollisionObject& object) {
     return body == nullptr || (is_finite(body->getLinearVelocity()) && is_finite(body->getAngularVelocity()));
 }
 
-/// Why an object cannot take part as a whole; empty: it can. A velocity comes first: the transform is then its doing.
-std::string fault_of_whole(const btCollisionObject& object, std::string fault_of_transform) {
+/// Places an object as a whole. Returns why it cannot take part; empty: it can. A velocity comes first: the transform
+/// is then its doing.
+std::string place_whole(const btCollisionObject& object, const Stretch& kept, Placement& placement) {
+    std::string fault_of_transform;
+    try {
+        placement = place(object.getWorldTransform(), kept);
+    } catch (const InputError& error) {
+        fault_of_transform = error.what();
+    }
     const bool moves = has_velocity(object);
     if (moves && !fault_of_transform.empty()) return fault_of_transform;
     if (moves && is_finite(object.getInterpolationWorldTransform())) return {};
@@ -74,12 +82,6 @@ void find_box(const Shape& shape, const btTransform& pose, btVector3& low, btVec
                     high);
 }
 
-Kind Objects::kind_for_us(const btCollisionShape& shape) const {
-    const Kind kind = kind_of(shape);
-    const bool left = convex_ == ConvexShapes::bullet && (kind == Kind::convex || kind == Kind::round);
-    return left ? Kind::other : kind;
-}
-
 bool Objects::unchanged(const btCollisionObject& object, const Object& record) const {
     if (record.stale || record.version == 0) return false;
     std::size_t count = 0;
@@ -89,53 +91,52 @@ bool Objects::unchanged(const btCollisionObject& object, const Object& record) c
                   same = same && count < record.leaves.size();
                   if (!same) return;
                   const Leaf& leaf = record.leaves[count++];
-                  same = leaf.shape == &shape && unmoved(leaf.local, local) && leaf.kind == kind_for_us(shape)
+                  same = leaf.shape == &shape && unmoved(leaf.local, local) && leaf.kind == kind_of(shape, convex_)
                          && (!in_scene(leaf.kind) || leaf.form == form_of(shape));
               });
     return same && count == record.leaves.size();
 }
 
-Object* Objects::find(const btCollisionObject& object) {
+Object* Objects::find(const btCollisionObject& object) const {
     const auto i = records_.find(&object);
-    return i == records_.end() ? nullptr : &i->second;
+    return i == records_.end() ? nullptr : i->second.lock().get(); // one that is there is held elsewhere
 }
 
 const Stretch& Objects::kept_stretch_of(const btCollisionObject& object, std::size_t leaf,
                                         const btCollisionShape& shape) const {
-    const auto i = records_.find(&object);
-    if (i == records_.end() || leaf >= i->second.leaves.size()) return no_stretch;
-    const Leaf& known = i->second.leaves[leaf];
+    const Object* record = find(object);
+    if (!record || leaf >= record->leaves.size()) return no_stretch;
+    const Leaf& known = record->leaves[leaf];
     return known.shape == &shape ? kept_stretch(known) : no_stretch;
 }
 
-Object& Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
-    try {
-        return refresh(object, records_[&object], dispatch);
-    } catch (...) {
-        drop_unused(&object);
-        throw;
+std::shared_ptr<Object> Objects::refresh(const btCollisionObject& object, std::uint64_t dispatch) {
+    std::shared_ptr<Object> record = records_[&object].lock();
+    if (!record) {
+        record = {new Object, [this, key = &object](Object* gone) {
+                      drop_bodies(*gone);
+                      records_.erase(key);
+                      faults_.take_back(key); // who waits longer may find it deleted
+                      delete gone;
+                  }};
+        records_[&object] = record;
     }
+    refresh(object, *record, dispatch);
+    return record;
 }
 
-Object& Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
-    if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return record;
+void Objects::refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
+    if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return;
     if (!unchanged(object, record)) make_leaves(object, record);
     place_object(object, record);
     if (ahead_ > 0 && !record.misplaced()) expect(object, record);
     record.seen = dispatch;
-    return record;
 }
 
 void Objects::place_object(const btCollisionObject& object, Object& record) {
     Placement whole;
-    record.fault.clear();
-    try {
-        const bool alone = !object.getCollisionShape()->isCompound();
-        whole = place(object.getWorldTransform(), alone ? kept_stretch(record.leaves.front()) : no_stretch);
-    } catch (const InputError& error) {
-        record.fault = error.what();
-    }
-    record.fault = fault_of_whole(object, std::move(record.fault));
+    const bool alone = !object.getCollisionShape()->isCompound();
+    record.fault = place_whole(object, alone ? kept_stretch(record.leaves.front()) : no_stretch, whole);
     record.pose = whole.pose;
     for (Leaf& leaf : record.leaves)
         if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
@@ -152,23 +153,10 @@ void Objects::report_lost(const btCollisionObject& object, std::uint64_t dispatc
         refresh(object, *record, dispatch);
         return;
     }
-    if (std::ranges::find(lost_, &object) != lost_.end()) return;
-    std::string text;
-    try {
-        place(object.getWorldTransform());
-    } catch (const InputError& error) {
-        text = error.what();
-    }
-    faults_.set(object, {fault_of(object, 0, fault_of_whole(object, std::move(text)))});
+    if (std::ranges::find(mended_.left_out, &object) != mended_.left_out.end()) return;
+    Placement ignored;
+    faults_.set_lost(object, fault_of(object, 0, place_whole(object, no_stretch, ignored)));
     mended_.left_out.push_back(&object);
-    lost_.push_back(&object);
-}
-
-void Objects::forget_mended() {
-    for (const btCollisionObject* object : lost_before_)
-        if (std::ranges::find(lost_, object) == lost_.end() && !records_.contains(object)) faults_.forget(object);
-    lost_before_.swap(lost_);
-    lost_.clear();
 }
 
 std::vector<Fault> Objects::faults_of(const btCollisionObject& object, const Object& record) {
@@ -186,36 +174,36 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         record.version = ++versions_; // others may find its contacts now
     }
     const bool was_left_out = leaf.left_out();
-    const auto leave_out = [&](const InputError& error, bool unusable) {
+    const btTransform before = leaf.pose;
+    bool unusable = false;
+    try {
+        const Placement placed = object.getCollisionShape()->isCompound()
+                                     ? place(object.getWorldTransform() * leaf.local, kept_stretch(leaf))
+                                     : whole;
+        leaf.pose = leaf.next = placed.pose;
+        if (placed.drifted) ++mended_.made_rigid;
+        if (placed.stretch != no_stretch) ++mended_.scaled;
+        const Stretch& stretch = stretch_of(leaf.kind, placed);
+        if (stretch != leaf.stretch) {
+            drop_body(leaf);
+            leaf.stretch = stretch;
+            leaf.unusable = false;
+            if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
+        }
+        if (leaf.unusable) return;
+        if (!in_scene(leaf.kind)) {
+            check_numbers(*leaf.shape); // read anew in every step
+        } else if (!leaf.body.valid() && !leaf.flat) {
+            unusable = true;
+            leaf.converted = shapes_.get(*leaf.shape);
+            leaf.flat = !leaf.converted.shape; // a convex shape without a mesh to stand for it, and so without a body
+            if (!leaf.flat) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
+        }
+    } catch (const InputError& error) {
         leaf.fault = error.what();
         leaf.unusable = unusable;
         if (!was_left_out) record.version = ++versions_; // or its manifolds would stay
-    };
-    Placement placed = whole;
-    try {
-        if (object.getCollisionShape()->isCompound())
-            placed = place(object.getWorldTransform() * leaf.local, kept_stretch(leaf));
-    } catch (const InputError& error) {
-        return leave_out(error, false);
-    }
-    const btTransform before = leaf.pose;
-    leaf.pose = leaf.next = placed.pose;
-    if (placed.drifted) ++mended_.made_rigid;
-    if (placed.stretch != no_stretch) ++mended_.scaled;
-    const Stretch& stretch = stretch_of(leaf.kind, placed);
-    if (stretch != leaf.stretch) {
-        drop_body(leaf);
-        leaf.stretch = stretch;
-        leaf.unusable = false;
-        if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
-    }
-    if (leaf.unusable) return;
-    if (!in_scene(leaf.kind)) {
-        try {
-            check_numbers(*leaf.shape); // read anew in every step
-        } catch (const InputError& error) {
-            return leave_out(error, false);
-        }
+        return;
     }
     leaf.fault.clear();
     if (!in_scene(leaf.kind) || leaf.flat) return;
@@ -224,14 +212,6 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
         leaf.way = longest_way(*leaf.converted.shape, before, leaf.pose);
     } else {
-        try {
-            leaf.converted = shapes_.get(*leaf.shape);
-            if (leaf.converted.shape) leaf.converted = shapes_.stretched(leaf.converted, leaf.stretch);
-        } catch (const InputError& error) {
-            return leave_out(error, true);
-        }
-        leaf.flat = !leaf.converted.shape; // a convex shape without a mesh to stand for it, and so without a body
-        if (leaf.flat) return;
         leaf.body = scene_.add(leaf.converted.shape, to_pose(leaf.pose));
     }
     find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
@@ -274,7 +254,7 @@ void Objects::make_leaves(const btCollisionObject& object, Object& record) {
                   Leaf& leaf = record.leaves.emplace_back();
                   leaf.shape = &shape;
                   leaf.local = local;
-                  leaf.kind = kind_for_us(shape);
+                  leaf.kind = kind_of(shape, convex_);
                   if (in_scene(leaf.kind)) leaf.form = form_of(shape);
               });
     record.version = ++versions_;
@@ -292,36 +272,17 @@ void Objects::drop_bodies(Object& record) {
     record.leaves.clear();
 }
 
-void Objects::release(const btCollisionObject* object) {
-    const auto i = records_.find(object);
-    if (i == records_.end()) return;
-    if (i->second.uses > 0) --i->second.uses;
-    drop_unused(object);
-}
-
-void Objects::drop_unused(const btCollisionObject* object) {
-    const auto i = records_.find(object);
-    if (i == records_.end() || i->second.uses > 0 || i->second.pinned) return;
-    drop_bodies(i->second);
-    records_.erase(i);
-    faults_.take_back(object); // who waits longer may find it deleted
-}
-
 void Objects::refresh_pinned(std::uint64_t dispatch) {
     for (const auto& [object, record] : pinned_) refresh(*object, *record, dispatch);
 }
 
-void Objects::pin(const btCollisionObject& object, bool pinned) {
-    const auto i = records_.find(&object);
-    if (i == records_.end()) return;
-    if (i->second.pinned != pinned) {
-        if (pinned)
-            pinned_.emplace_back(&object, &i->second);
-        else
-            std::erase_if(pinned_, [&](const auto& one) { return one.first == &object; });
-    }
-    i->second.pinned = pinned;
-    drop_unused(&object);
+void Objects::pin(const btCollisionObject& object, std::shared_ptr<Object> record) {
+    if (std::ranges::find(pinned_, &object, [](const auto& one) { return one.first; }) == pinned_.end())
+        pinned_.emplace_back(&object, std::move(record));
+}
+
+void Objects::unpin(const btCollisionObject& object) {
+    std::erase_if(pinned_, [&](const auto& one) { return one.first == &object; });
 }
 
 } // namespace raycontact::bullet

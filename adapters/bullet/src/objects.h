@@ -40,14 +40,12 @@ struct Leaf {
     bool left_out() const { return !fault.empty(); }
 };
 
-/// A collision object as RayContact knows it. Lives as long as a pair needs it, or until remove_body.
+/// A collision object as RayContact knows it: for as long as a pair holds its record, or until remove_body.
 struct Object {
     std::vector<Leaf> leaves;
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid
     std::uint64_t version = 0;                     ///< changes when the leaves change
     std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over, or `never`
-    std::uint32_t uses = 0;                        ///< pairs that refer to it
-    bool pinned = false;                           ///< by add_body
     bool stale = false;                            ///< refresh() was called
     std::string fault;                             ///< why all of it is left out: its transform; empty: it is not
 
@@ -92,24 +90,18 @@ public:
 
     /// The object's record. Makes a new one if needed, rebuilds its leaves if its shape has changed, and gives its
     /// poses to the scene once per `dispatch`. A leaf whose mesh or transform cannot be used is left out, which is a
-    /// fault. If this throws, an object that is in no use has no record.
-    Object& refresh(const btCollisionObject& object, std::uint64_t dispatch);
+    /// fault.
+    std::shared_ptr<Object> refresh(const btCollisionObject& object, std::uint64_t dispatch);
     /// The same for a record that is known.
-    Object& refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
-    Object* find(const btCollisionObject& object);
+    void refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
+    /// Null where nobody holds one.
+    Object* find(const btCollisionObject& object) const;
     /// That a query may take, for the mesh that the dispatches have; no_stretch where none is known.
     const Stretch& kept_stretch_of(const btCollisionObject& object, std::size_t leaf,
                                    const btCollisionShape& shape) const;
-    /// The record stays, at the same address, until it is released.
-    Object& acquire(const btCollisionObject& object) {
-        Object& record = records_.at(&object);
-        ++record.uses;
-        return record;
-    }
-    void release(const btCollisionObject* object);
-    /// Forgets an object that no pair refers to and that is not pinned.
-    void drop_unused(const btCollisionObject* object);
-    void pin(const btCollisionObject& object, bool pinned);
+    /// Holds the record until it is unpinned.
+    void pin(const btCollisionObject& object, std::shared_ptr<Object> record);
+    void unpin(const btCollisionObject& object);
     /// Also those that no pair needs now: the scene has their poses, and so has a recording.
     void refresh_pinned(std::uint64_t dispatch);
 
@@ -122,8 +114,6 @@ public:
     /// Leaves an object out if its transform, or Bullet's next one, is not finite: Bullet disables it without a word,
     /// so no pair asks for it any more.
     void report_lost(const btCollisionObject& object, std::uint64_t dispatch);
-    /// Last in a dispatch.
-    void forget_mended();
     /// What leaves the object, or some of its leaves, out.
     static std::vector<Fault> faults_of(const btCollisionObject& object, const Object& record);
     /// Call it once a dispatch.
@@ -138,7 +128,6 @@ public:
     Kinematics& kinematics() { return kinematics_; }
 
 private:
-    Kind kind_for_us(const btCollisionShape& shape) const;
     bool unchanged(const btCollisionObject& object, const Object& record) const;
     void make_leaves(const btCollisionObject& object, Object& record);
     void drop_body(Leaf& leaf);
@@ -153,9 +142,8 @@ private:
     Faults faults_;
     Mended mended_;
     Kinematics kinematics_;
-    std::unordered_map<const btCollisionObject*, Object> records_;
-    std::vector<std::pair<const btCollisionObject*, Object*>> pinned_; ///< in the order of pin()
-    std::vector<const btCollisionObject*> lost_, lost_before_; ///< without a record, of this dispatch and of the last
+    std::unordered_map<const btCollisionObject*, std::weak_ptr<Object>> records_;
+    std::vector<std::pair<const btCollisionObject*, std::shared_ptr<Object>>> pinned_; ///< in the order of pin()
     std::uint64_t versions_ = 0;
     btScalar ahead_ = 0;
 };

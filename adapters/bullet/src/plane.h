@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <candidate.h>
 #include <convert.h>
 
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -25,6 +26,12 @@ struct HalfSpace {
 };
 HalfSpace half_space(const btStaticPlaneShape& plane, const btTransform& plane_pose,
                      const Stretch& stretch = no_stretch);
+
+/// The plane of the one face of a box that a mesh can meet: the mesh, or its turned local box, lies over that face
+/// without reaching a rim, and reaches below it but not to the opposite face or the middle. No edge of the box is near,
+/// so all there is of contact is vertices of the mesh below that plane: those that the batch finds, for less.
+std::optional<HalfSpace> only_face(const Converted& mesh, const btTransform& mesh_pose, const btBoxShape& box,
+                                   const btTransform& box_pose);
 
 /// How far a point is below the surface, metres.
 double depth_in(const HalfSpace& space, const Vec3& point);

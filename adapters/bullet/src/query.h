@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <candidate.h>
 #include <objects.h>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
@@ -16,8 +17,7 @@ namespace raycontact::bullet {
 class Queries {
 public:
     Queries(const Settings& settings, Objects& objects, ConvexShapes convex, btCollisionDispatcher& dispatcher)
-        : scene_(touching(settings)), objects_(objects), shapes_(objects.shapes()), faults_(objects.faults()),
-          convex_(convex), dispatcher_(dispatcher) {}
+        : scene_(touching(settings)), objects_(objects), convex_(convex), dispatcher_(dispatcher) {}
 
     /// Every contact between two shapes or their leaves, given to `result`. Where that asks for what is apart by up to
     /// a distance, balls and capsules answer in closed form, other convex shapes by Bullet's algorithm, meshes not.
@@ -41,16 +41,12 @@ private:
     void convert(Placed& placed, const btCollisionObjectWrapper& whole);
     void run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& whole_a,
                   const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
-    void run_plane(const Placed& a, const Placed& b, btManifoldResult& result);
-    void run_round(const Placed& a, const Placed& b, btManifoldResult& result);
-    void run_batch(const Placed& a, const Placed& b, btManifoldResult& result);
+    void run_batch(const Placed& a, const Placed& b, std::vector<Candidate>& found);
     void run_bullet(const Placed& a, const Placed& b, const btCollisionObjectWrapper& whole_a,
                     const btCollisionObjectWrapper& whole_b, const btDispatcherInfo& info, btManifoldResult& result);
 
     Scene scene_; ///< its own, since the dispatcher's keeps the last step's contacts
-    const Objects& objects_;
-    ShapeCache& shapes_;
-    Faults& faults_;
+    Objects& objects_;
     ConvexShapes convex_;
     btCollisionDispatcher& dispatcher_;
 };
@@ -93,7 +89,5 @@ private:
     Queries& queries_;
     btPersistentManifold* manifold_ = nullptr; ///< null: it has not run
 };
-
-btVector3 normal_of(const Contact& contact);
 
 } // namespace raycontact::bullet

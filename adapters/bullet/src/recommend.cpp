@@ -15,7 +15,7 @@ namespace {
 
 double size_of(const btCollisionShape& shape) {
     btVector3 low, high;
-    aabb_once(shape, btTransform::getIdentity(), low, high);
+    shape.getAabb(btTransform::getIdentity(), low, high);
     // Bullet adds the margin to these; to a small body it adds more than that has.
     const bool has_margin = shape.isConcave() || shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE;
     const btVector3 edges = high - low;

@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btMultiSphereShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
 #include <algorithm>
 #include <array>
@@ -25,26 +26,14 @@ struct Nearest {
     unsigned on = 7;  ///< the corners that span what it lies on: bits 0 to 2
 };
 
-/// After Ericson, Real-Time Collision Detection, 5.1.5.
 Nearest nearest(const btVector3& a, const btVector3& b, const btVector3& c, const btVector3& p) {
-    const auto found = [&](const btVector3& q, unsigned on) { return Nearest{q, (q - p).length2(), on}; };
-    const btVector3 ab = b - a, ac = c - a, ap = p - a;
-    const btScalar d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0 && d2 <= 0) return found(a, 1);
-    const btVector3 bp = p - b;
-    const btScalar d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0 && d4 <= d3) return found(b, 2);
-    const btScalar vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return found(a + ab * (d1 / (d1 - d3)), 3);
-    const btVector3 cp = p - c;
-    const btScalar d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0 && d5 <= d6) return found(c, 4);
-    const btScalar vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return found(a + ac * (d2 / (d2 - d6)), 5);
-    const btScalar va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return found(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 6);
-    const btScalar sum = va + vb + vc;
-    return found(a + ab * (vb / sum) + ac * (vc / sum), 7);
+    btVoronoiSimplexSolver solver; // its functions are no static ones
+    btSubSimplexClosestResult found;
+    solver.closestPtPointTriangle(p, a, b, c, found);
+    const btVector3& q = found.m_closestPointOnSimplex;
+    const btUsageBitfield& used = found.m_usedVertices;
+    const int on = used.usedVertexA | used.usedVertexB << 1 | used.usedVertexC << 2;
+    return {q, (q - p).length2(), static_cast<unsigned>(on)};
 }
 
 /// Normals by which two faces count as one.
@@ -67,12 +56,10 @@ public:
         low.setMin(b);
         high.setMax(b);
         const btVector3 around(limit, limit, limit);
-        triangles_.clear();
-        mesh.tree->overlapping(low - around, high + around, [&](std::uint32_t t) { triangles_.push_back(t); });
-        std::sort(triangles_.begin(), triangles_.end());
+        triangles_ = mesh.in_bullet->overlapping(low - around, high + around);
         fans_.clear();
         for (const std::uint32_t t : triangles_)
-            for (const std::uint32_t v : mesh.tree->triangle(t)) fans_.emplace_back(v, t);
+            for (const std::uint32_t v : mesh.in_bullet->triangle(t)) fans_.emplace_back(v, t);
         std::sort(fans_.begin(), fans_.end());
     }
 
@@ -80,24 +67,20 @@ public:
     void of_side(const btVector3& a, const btVector3& b, std::vector<Found>& out) const;
 
 private:
-    const btVector3& corner(std::uint32_t t, int k) const {
-        return mesh_.tree->vertex(mesh_.tree->triangle(t)[static_cast<std::size_t>(k)]);
-    }
-    btVector3 face_normal(std::uint32_t t) const {
-        return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
-    }
+    const btVector3& corner(std::uint32_t t, int k) const { return mesh_.in_bullet->corner(t, k); }
+    btVector3 face_normal(std::uint32_t t) const { return mesh_.in_bullet->face_normal(t); }
     Nearest nearest_on(std::uint32_t t, const btVector3& p) const {
         return nearest(corner(t, 0), corner(t, 1), corner(t, 2), p);
     }
     /// Calls visit(triangle) for those around a triangle's corner or edge (`on`, bits as Nearest::on), itself included.
     template <class Visit>
     void around(std::uint32_t t, unsigned on, Visit&& visit) const {
-        const auto& ids = mesh_.tree->triangle(t);
+        const auto& ids = mesh_.in_bullet->triangle(t);
         std::size_t first = 0;
         while (!(on >> first & 1)) ++first;
         const auto begin = std::lower_bound(fans_.begin(), fans_.end(), std::pair{ids[first], std::uint32_t{0}});
         for (auto i = begin; i != fans_.end() && i->first == ids[first]; ++i) {
-            const auto& other = mesh_.tree->triangle(i->second);
+            const auto& other = mesh_.in_bullet->triangle(i->second);
             bool holds = true;
             for (std::size_t k = 0; k < 3; ++k)
                 holds = holds && (!(on >> k & 1) || std::find(other.begin(), other.end(), ids[k]) != other.end());
@@ -116,7 +99,7 @@ private:
         if (on == 7) return face_normal(t);
         if ((on & (on - 1)) == 0) {
             const std::size_t k = on == 1 ? 0 : on == 2 ? 1 : 2;
-            const Vec3& n = mesh_.shape->vertex_normals()[mesh_.tree->triangle(t)[k]];
+            const Vec3& n = mesh_.shape->vertex_normals()[mesh_.in_bullet->triangle(t)[k]];
             return to_bullet(n);
         }
         btVector3 sum(0, 0, 0);
@@ -157,13 +140,12 @@ private:
 
     const Converted& mesh_;
     btScalar limit2_;
-    bool two_sided_; ///< it has no inside
-    // Kept from call to call for their memory.
-    static thread_local std::vector<std::uint32_t> triangles_;                      ///< ascending
-    static thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> fans_; ///< corners, and triangles there
+    bool two_sided_;                       ///< it has no inside
+    std::vector<std::uint32_t> triangles_; ///< ascending
+    /// Corners, and triangles there; kept from call to call for its memory.
+    static thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> fans_;
 };
 
-thread_local std::vector<std::uint32_t> Neighbourhood::triangles_;
 thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> Neighbourhood::fans_;
 
 void Neighbourhood::of_end(const btVector3& centre, std::vector<Found>& out) const {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <raycontact/mass.h>
 #include <stand_in.h>
 #include <vectors.h>
 
@@ -154,24 +155,22 @@ Mesh hull(const std::vector<Vec3>& points) {
     // Its own vertices are rounded to 1e-4 of the size: the points given are taken instead.
     for (int i = 0; i < computer.vertices.size(); ++i)
         mesh.vertices.push_back(points[static_cast<std::size_t>(computer.original_vertex_index[i])]);
-    double volume = 0, size = 0;
     for (int i = 0; i < computer.faces.size(); ++i) {
         const btConvexHullComputer::Edge* const begin = &computer.edges[computer.faces[i]];
         const auto first = static_cast<std::uint32_t>(begin->getSourceVertex());
         for (const auto* edge = begin->getNextEdgeOfFace(); edge->getTargetVertex() != static_cast<int>(first);
-             edge = edge->getNextEdgeOfFace()) {
-            const auto from = static_cast<std::uint32_t>(edge->getSourceVertex());
-            const auto to = static_cast<std::uint32_t>(edge->getTargetVertex());
-            mesh.triangles.push_back({first, from, to});
-            const Vec3& origin = mesh.vertices[0];
-            const Vec3 a = minus(mesh.vertices[first], origin), b = minus(mesh.vertices[from], origin),
-                       c = minus(mesh.vertices[to], origin);
-            volume += dot(a, cross(b, c)) / 6;
-            size = std::max({size, dot(a, a), dot(b, b), dot(c, c)});
-        }
+             edge = edge->getNextEdgeOfFace())
+            mesh.triangles.push_back({first, static_cast<std::uint32_t>(edge->getSourceVertex()),
+                                      static_cast<std::uint32_t>(edge->getTargetVertex())});
     }
+    const double volume = mass_of(mesh.vertices, mesh.triangles).volume;
     if (volume < 0)
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    double size = 0;
+    for (const Vec3& v : mesh.vertices) {
+        const Vec3 across = minus(v, mesh.vertices[0]);
+        size = std::max(size, dot(across, across));
+    }
     if (!(std::fabs(volume) > 1e-6 * std::pow(size, 1.5))) return {};
     return mesh;
 }
@@ -199,19 +198,6 @@ std::vector<Vec3> ball_points(const btMultiSphereShape& shape) {
 }
 
 } // namespace
-
-bool has_stand_in(const btCollisionShape& shape) {
-    switch (shape.getShapeType()) {
-    case BOX_SHAPE_PROXYTYPE:
-    case CYLINDER_SHAPE_PROXYTYPE:
-    case CONE_SHAPE_PROXYTYPE:
-    case CONVEX_HULL_SHAPE_PROXYTYPE:
-    case MULTI_SPHERE_SHAPE_PROXYTYPE:
-        return true;
-    default:
-        return false;
-    }
-}
 
 std::vector<btScalar> surface_numbers(const btCollisionShape& shape) {
     std::vector<btScalar> numbers{btScalar(shape.getShapeType())};

@@ -9,10 +9,8 @@
 
 namespace raycontact::bullet {
 
-/// Whether a mesh can stand for the shape: boxes, cylinders, cones, hulls and multi-spheres.
-bool has_stand_in(const btCollisionShape& shape);
-
-/// All numbers that such a shape's surface depends on, its type among them: equal numbers, equal surfaces.
+/// All numbers that the surface of a box, cylinder, cone, hull or multi-sphere depends on, its type among them: equal
+/// numbers, equal surfaces.
 std::vector<btScalar> surface_numbers(const btCollisionShape& shape);
 
 /// The surface of such a shape as a closed mesh, in the shape's frame: exact for boxes and hulls, within 1e-3 of the

@@ -4,7 +4,6 @@
 #include <pair.h>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <raycontact/settings.h>
 
@@ -18,37 +17,6 @@ btScalar size_of(const btCollisionObject& object) {
     return proxy ? (proxy->m_aabbMax - proxy->m_aabbMin).length() : btScalar(BT_LARGE_FLOAT);
 }
 
-btVector3 velocity_at(const btCollisionObject& object, const btVector3& point) {
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    return body ? body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition()) : btVector3(0, 0, 0);
-}
-
-/// What is nearest of a pair, by when it touches.
-class Nearest {
-public:
-    Nearest(const PairState& pair, btScalar seconds) : pair_(pair), seconds_(seconds) {}
-
-    void look(const btVector3& on0, const btVector3& on1, const btVector3& normal, btScalar distance) {
-        const btScalar speed = (velocity_at(*pair_.object1, on1) - velocity_at(*pair_.object0, on0)).dot(normal);
-        touches_ = touches_ || distance <= 0 || speed * seconds_ >= distance;
-        any_ = true;
-        const btScalar then = distance - speed * seconds_;
-        if (then >= least_) return;
-        least_ = then;
-        touch_ = {pair_.object0, pair_.object1, (on0 + on1) / 2, normal, distance, speed};
-    }
-    bool any() const { return any_; }
-    bool touches() const { return touches_; }
-    const Touch& touch() const { return touch_; }
-
-private:
-    const PairState& pair_;
-    btScalar seconds_;
-    Touch touch_;
-    btScalar least_ = BT_LARGE_FLOAT;
-    bool any_ = false, touches_ = false;
-};
-
 } // namespace
 
 void Touches::begin() {
@@ -59,11 +27,21 @@ void Touches::begin() {
 }
 
 void Touches::update(PairState& pair, btScalar seconds) {
-    Nearest nearest(pair, seconds);
     const btScalar trembles = btScalar(speculative_share) * btMin(size_of(*pair.object0), size_of(*pair.object1));
     bool stays = pair.candidates.empty() && !pair.patches.manifolds().empty(); // held
+    bool touches = false;
+    Touch nearest; // by when it touches
+    btScalar least = BT_LARGE_FLOAT;
+    const auto look = [&](const btVector3& on0, const btVector3& on1, const btVector3& normal, btScalar distance) {
+        const btScalar speed = (velocity_at(*pair.object1, on1) - velocity_at(*pair.object0, on0)).dot(normal);
+        touches = touches || distance <= 0 || speed * seconds >= distance;
+        const btScalar then = distance - speed * seconds;
+        if (then >= least) return;
+        least = then;
+        nearest = {pair.object0, pair.object1, (on0 + on1) / 2, normal, distance, speed};
+    };
     for (const Candidate& c : pair.candidates) {
-        nearest.look(c.on0, c.on1, c.normal, c.distance);
+        look(c.on0, c.on1, c.normal, c.distance);
         stays = stays || c.distance <= trembles;
     }
     pair.each_child_manifold([&](const btPersistentManifold& m) {
@@ -71,18 +49,17 @@ void Touches::update(PairState& pair, btScalar seconds) {
         for (int i = 0; i < m.getNumContacts(); ++i) {
             const btManifoldPoint& p = m.getContactPoint(i);
             const btVector3 &a = p.getPositionWorldOnA(), &b = p.getPositionWorldOnB();
-            nearest.look(turned ? b : a, turned ? a : b, turned ? -p.m_normalWorldOnB : p.m_normalWorldOnB,
-                         p.getDistance());
+            look(turned ? b : a, turned ? a : b, turned ? -p.m_normalWorldOnB : p.m_normalWorldOnB, p.getDistance());
             stays = true;
         }
     });
     if (pair.touch.object0 == nullptr) {
-        if (!nearest.touches()) return;
-        pair.touch = nearest.touch();
+        if (!touches) return;
+        pair.touch = nearest;
         ++count_;
         begun_.push_back(pair.touch);
-    } else if (nearest.touches() || stays) {
-        if (nearest.any()) pair.touch = nearest.touch();
+    } else if (touches || stays) {
+        if (nearest.object0) pair.touch = nearest;
     } else {
         end(pair);
     }

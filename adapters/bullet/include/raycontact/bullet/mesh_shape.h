@@ -11,7 +11,7 @@
 
 namespace raycontact::bullet {
 
-class MeshTree;
+class BulletMesh;
 
 /// What the world box of getAabb bounds.
 enum class Bounds {
@@ -36,15 +36,13 @@ public:
         return scaled_;
     }
     /// For the library's own use.
-    const std::shared_ptr<const MeshTree>& tree() const {
-        return tree_;
+    const std::shared_ptr<const BulletMesh>& in_bullet() const {
+        return in_bullet_;
     }
 
     /// The world box, enlarged by the margin. It is kept for the next time that this transform, by its address, is
     /// asked about.
     void getAabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const override;
-    /// The same for a transform that is gone soon: nothing is kept.
-    void aabb_once(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max) const;
     /// Those whose boxes meet this one, as Bullet asks for them.
     void processAllTriangles(btTriangleCallback * callback, const btVector3& aabb_min, const btVector3& aabb_max)
         const override;
@@ -71,11 +69,9 @@ public:
     const char* serialize(void* data, btSerializer* serializer) const override;
 
 private:
-    void find_aabb(const btTransform& t, btVector3& aabb_min, btVector3& aabb_max, bool keep) const;
-
     std::shared_ptr<const Shape> original_;
     std::shared_ptr<const Shape> scaled_;
-    std::shared_ptr<const MeshTree> tree_;
+    std::shared_ptr<const BulletMesh> in_bullet_;
     btVector3 scaling_;
     Bounds bounds_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mesh_tree.h>
+#include <bullet_mesh.h>
 #include <vectors.h>
 
 #include <raycontact/query.h>
@@ -11,39 +11,34 @@
 namespace raycontact::bullet {
 
 namespace {
-constexpr std::size_t exact_bounds = 1024; ///< vertices; beyond that as many boxes
+constexpr std::size_t exact_bounds = 1024;  ///< vertices; beyond that as many boxes
+constexpr std::size_t most_boxes = 1 << 16; ///< kept: at most some 10 MB
 } // namespace
 
-MeshTree::MeshTree(std::shared_ptr<const Shape> shape) : shape_(std::move(shape)), triangles_(shape_->triangles()) {
+BulletMesh::BulletMesh(std::shared_ptr<const Shape> shape) : shape_(std::move(shape)), triangles_(shape_->triangles()) {
     vertices_.reserve(shape_->vertices().size());
-    for (const Vec3& v : shape_->vertices()) vertices_.emplace_back(btScalar(v.x), btScalar(v.y), btScalar(v.z));
+    for (const Vec3& v : shape_->vertices()) vertices_.push_back(to_bullet(v));
 }
 
 // The shape's tree is asked with a margin for the rounding of vertices to Bullet's numbers, which decide.
-std::vector<std::uint32_t> MeshTree::overlapping(const btVector3& low, const btVector3& high) const {
+std::vector<std::uint32_t> BulletMesh::overlapping(const btVector3& low, const btVector3& high) const {
     const Vec3 from = to_vec(low), to = to_vec(high);
     const double more = 1e-6 * shape_->radius();
     std::vector<std::uint32_t> found;
     triangles_in_box(*shape_, {from.x - more, from.y - more, from.z - more}, {to.x + more, to.y + more, to.z + more},
                      found);
     std::erase_if(found, [&](std::uint32_t t) {
-        btVector3 least = vertex(triangle(t)[0]), most = least;
-        for (std::size_t k = 1; k < 3; ++k) {
-            least.setMin(vertex(triangle(t)[k]));
-            most.setMax(vertex(triangle(t)[k]));
+        btVector3 least = corner(t, 0), most = least;
+        for (int k = 1; k < 3; ++k) {
+            least.setMin(corner(t, k));
+            most.setMax(corner(t, k));
         }
         return !TestAabbAgainstAabb2(least, most, low, high);
     });
     return found;
 }
 
-void MeshTree::vertices_below(const btVector3& normal, btScalar offset, std::vector<std::uint32_t>& out) const {
-    const double slack = 1e-6 * double(normal.length()) * shape_->radius();
-    raycontact::vertices_below(*shape_, to_vec(normal), double(offset) + slack, out);
-    std::erase_if(out, [&](std::uint32_t v) { return !(normal.dot(vertex(v)) < offset); });
-}
-
-const Extent& MeshTree::extent() const {
+const Extent& BulletMesh::extent() const {
     std::call_once(made_, [this] {
         if (vertices_.size() <= exact_bounds) {
             extent_.reserve(vertices_.size());
@@ -61,12 +56,20 @@ const Extent& MeshTree::extent() const {
     return extent_;
 }
 
-void MeshTree::bounds(const btTransform& transform, btVector3& low, btVector3& high) const {
-    cache_.get(transform, low, high, [&](btVector3& from, btVector3& to) { extent().bounds(transform, from, to); });
-}
-
-void MeshTree::bounds_once(const btTransform& transform, btVector3& low, btVector3& high) const {
+void BulletMesh::bounds(const btTransform& transform, btVector3& low, btVector3& high) const {
+    const std::unique_lock turn(boxes_in_use_, std::try_to_lock); // who finds another at work makes its box itself
+    if (turn) {
+        if (const auto known = boxes_.find(&transform); known != boxes_.end() && known->second.transform == transform) {
+            low = known->second.low;
+            high = known->second.high;
+            return;
+        }
+    }
     extent().bounds(transform, low, high);
+    ++bounds_made_;
+    if (!turn) return;
+    if (boxes_.size() >= most_boxes) boxes_.clear(); // who is still there asks again in the next step
+    boxes_[&transform] = {transform, low, high};
 }
 
 } // namespace raycontact::bullet

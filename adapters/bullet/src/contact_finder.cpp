@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <contact_finder.h>
+
+#include <LinearMath/btAabbUtil2.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
+    const auto &leaves0 = state.record0->leaves, &leaves1 = state.record1->leaves;
+    const bool speculative = scene_.settings().is_speculative();
+    // The broad phase has tested the boxes of whole objects.
+    const bool several = leaves0.size() > 1 || leaves1.size() > 1;
+    for (int i = 0; i < static_cast<int>(leaves0.size()); ++i) {
+        for (int j = 0; j < static_cast<int>(leaves1.size()); ++j) {
+            const LeafPair pair{leaves0[static_cast<std::size_t>(i)], leaves1[static_cast<std::size_t>(j)], i, j,
+                                convex_};
+            if (pair.leaf0.left_out() || pair.leaf1.left_out()) continue;
+            switch (pair.work()) {
+            case Work::batch: {
+                if (several && apart(pair)) break;
+                note_open(state, pair);
+                if (const auto face = face_between(pair)) {
+                    add_plane(state, pair, *face);
+                    break;
+                }
+                const BodyId a = pair.leaf0.body, b = pair.leaf1.body;
+                const bool swapped = a.slot > b.slot;
+                batch_.push_back({swapped ? Pair{b, a} : Pair{a, b}, &state, i, j, swapped,
+                                  manifolds_.patch_reach * pair.smaller_diagonal()});
+                break;
+            }
+            case Work::plane:
+                add_plane(state, pair, pair.plane());
+                break;
+            case Work::round: {
+                ++stats_.round_pairs;
+                // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
+                const btScalar threshold = gContactBreakingThreshold;
+                pair.add_round(btMin(threshold, pair.other().shape->getContactBreakingThreshold(threshold)),
+                               speculative, state.candidates);
+                break;
+            }
+            case Work::bullet:
+                state.run_child(pair, info);
+                if (!pair.is_two_sided() || pair.other().kind != Kind::convex) break;
+                ++stats_.two_sided_pairs;
+                if (speculative) pair.add_cast(state.candidates);
+                break;
+            case Work::nothing:
+                ++stats_.unsupported;
+                break;
+            }
+        }
+    }
+}
+
+btScalar ContactFinder::margin(const LeafPair& pair) const {
+    const std::optional<double> metres = scene_.settings().speculative_margin;
+    return metres ? btScalar(*metres) : btScalar(speculative_share) * pair.smaller_diagonal();
+}
+
+// Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what
+// is nearer than the margin, or may come so near.
+bool ContactFinder::apart(const LeafPair& pair) const {
+    const Leaf &a = pair.leaf0, &b = pair.leaf1;
+    const Settings& settings = scene_.settings();
+    if (settings.method != Method::standard && settings.method != Method::certified) return false;
+    if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
+    btScalar reach = 0;
+    if (settings.is_speculative()) reach = a.way + b.way + margin(pair);
+    const btVector3 around(reach, reach, reach);
+    return !TestAabbAgainstAabb2(a.low - around, a.high + around, b.low, b.high);
+}
+
+// The batch alone knows other directions, and what does not touch yet.
+std::optional<HalfSpace> ContactFinder::face_between(const LeafPair& pair) const {
+    const Leaf &mesh = pair.mesh(), &box = pair.other();
+    const Settings& settings = scene_.settings();
+    if (box.form.type != BOX_SHAPE_PROXYTYPE || settings.is_speculative()
+        || settings.direction != Direction::reprojected || box.stretch != no_stretch)
+        return std::nullopt;
+    return only_face(mesh.converted, mesh.pose, static_cast<const btBoxShape&>(*box.shape), box.pose);
+}
+
+void ContactFinder::add_plane(PairState& state, const LeafPair& pair, const HalfSpace& space) {
+    ++stats_.plane_pairs;
+    const btScalar size = diagonal(pair.mesh());
+    // Four points would do for what rests; in a fast fall one that is left out may go deep.
+    if (scene_.settings().is_speculative())
+        pair.add_plane(space, margin(pair), manifolds_.patch_reach * size, state.candidates);
+    else
+        pair.add_plane(space, std::nullopt, size, state.candidates);
+}
+
+void ContactFinder::note_open(const PairState& state, const LeafPair& pair) {
+    const auto is_open = [](const Leaf& leaf) {
+        return leaf.kind == Kind::mesh && !leaf.converted.shape->has_inside();
+    };
+    const bool open0 = is_open(pair.leaf0), open1 = is_open(pair.leaf1);
+    if (open0 || open1) ++stats_.one_sided_pairs;
+    if (open0 && pair.leaf1.kind != Kind::field) tell_one_sided(*state.object0, pair.child0, pair.leaf0);
+    if (open1 && pair.leaf0.kind != Kind::field) tell_one_sided(*state.object1, pair.child1, pair.leaf1);
+}
+
+// Once for each mesh: many objects may share it. What moves and is open mostly lies on what is closed.
+void ContactFinder::tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh) {
+    if (!mesh.is_fixed) return;
+    std::weak_ptr<const Shape>& known = told_one_sided_[mesh.converted.shape.get()];
+    if (!known.expired()) return;
+    known = mesh.converted.shape;
+    std::erase_if(told_one_sided_, [](const auto& one) { return one.second.expired(); });
+    faults_.add(hint_of(object, child,
+                        "its mesh is open, so it stops other meshes at the front of its faces alone and lets "
+                        "them through from behind; close it, or turn its faces to where bodies are"));
+}
+
+// Contacts come sorted by pair: the batch is sorted the same way, by small keys, and both are walked once.
+void ContactFinder::run_batch() {
+    order_.clear();
+    for (std::size_t i = 0; i < batch_.size(); ++i) {
+        const auto [first, second] = batch_[i].pair;
+        order_.emplace_back(Slots{first.slot, second.slot}, static_cast<std::uint32_t>(i));
+    }
+    std::sort(order_.begin(), order_.end());
+    pairs_.clear();
+    for (const auto& [slots, index] : order_) pairs_.push_back(batch_[index].pair);
+    stats_.mesh_pairs = pairs_.size();
+    auto at = order_.begin();
+    for (const Contact& contact : scene_.find_contacts(pairs_)) {
+        const Slots slots{contact.body_a.slot, contact.body_b.slot};
+        while (at != order_.end() && at->first < slots) ++at;
+        if (at == order_.end() || at->first != slots) continue;
+        const Entry& entry = batch_[at->second];
+        entry.state->candidates.push_back(candidate_of(contact, entry.child0, entry.child1, entry.swapped));
+        entry.state->candidates.back().reach = entry.reach;
+    }
+}
+
+} // namespace raycontact::bullet

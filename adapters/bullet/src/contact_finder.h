@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <leaf_pair.h>
+#include <pair.h>
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace raycontact::bullet {
+
+/// Gives the pairs of a dispatch their candidates: those of meshes from one batch, the others at once.
+class ContactFinder {
+public:
+    ContactFinder(Scene& scene, const ManifoldSettings& manifolds, ConvexShapes convex, Faults& faults,
+                  DispatcherStats& stats)
+        : scene_(scene), manifolds_(manifolds), convex_(convex), faults_(faults), stats_(stats) {}
+
+    /// First in a dispatch.
+    void begin() { batch_.clear(); }
+    /// What needs no batch. The rest waits.
+    void take(PairState& pair, const btDispatcherInfo& info);
+    void run_batch();
+
+private:
+    /// A pair as contacts name it.
+    using Slots = std::pair<std::uint32_t, std::uint32_t>;
+    /// Where the contacts of one pair in the batch belong.
+    struct Entry {
+        Pair pair;
+        PairState* state;
+        int child0, child1;
+        bool swapped; ///< the scene's first body is the manifold's body 1
+        btScalar reach;
+    };
+    btScalar margin(const LeafPair& pair) const;
+    bool apart(const LeafPair& pair) const;
+    std::optional<HalfSpace> face_between(const LeafPair& pair) const;
+    void add_plane(PairState& state, const LeafPair& pair, const HalfSpace& space);
+    void note_open(const PairState& state, const LeafPair& pair);
+    void tell_one_sided(const btCollisionObject& object, int child, const Leaf& mesh);
+
+    Scene& scene_;
+    const ManifoldSettings& manifolds_;
+    ConvexShapes convex_;
+    Faults& faults_;
+    DispatcherStats& stats_;
+    std::vector<Entry> batch_;
+    std::vector<std::pair<Slots, std::uint32_t>> order_; ///< of the batch: pairs ascending, with their places in it
+    std::vector<Pair> pairs_;
+    std::unordered_map<const Shape*, std::weak_ptr<const Shape>> told_one_sided_;
+};
+
+} // namespace raycontact::bullet

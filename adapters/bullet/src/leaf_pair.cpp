@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <leaf_pair.h>
+
+#include <cast.h>
+#include <round.h>
+#include <vectors.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+namespace {
+
+bool has_triangles(const Leaf& leaf) {
+    return (leaf.kind == Kind::mesh || leaf.kind == Kind::field) && leaf.converted.shape != nullptr;
+}
+
+/// triangle: as Candidate::triangle.
+PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
+    if (!has_triangles(leaf)) return {};
+    if (leaf.converted.names) return (*leaf.converted.names)[static_cast<std::size_t>(triangle)];
+    return bullet::name_of_triangle(*leaf.shape, triangle);
+}
+
+PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
+    if (!has_triangles(leaf)) return {};
+    if (key.feature == FeatureKind::edges) return name_of_triangle(leaf, key.vertex / 3);
+    const Shape& shape = *leaf.converted.shape;
+    const auto vertices = shape.vertex_index(); // ascending
+    const auto at = std::ranges::lower_bound(vertices, static_cast<std::uint32_t>(key.vertex));
+    if (at == vertices.end() || *at != static_cast<std::uint32_t>(key.vertex)) return {};
+    const std::uint32_t triangle = shape.vertex_triangles()[static_cast<std::size_t>(at - vertices.begin())];
+    if (triangle == Shape::no_triangle) return {};
+    return name_of_triangle(leaf, static_cast<int>(shape.triangle_index()[triangle]));
+}
+
+} // namespace
+
+bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
+    const auto empty = [](const btCollisionShape& s) { return s.getShapeType() == EMPTY_SHAPE_PROXYTYPE; };
+    return a.isConcave() && b.isConcave() && !empty(a) && !empty(b);
+}
+
+btScalar diagonal(const Leaf& leaf) {
+    if (leaf.kind == Kind::plane) return BT_LARGE_FLOAT;
+    const Vec3 a = leaf.converted.shape->box_min(), b = leaf.converted.shape->box_max();
+    return to_bullet({b.x - a.x, b.y - a.y, b.z - a.z}).length();
+}
+
+Work LeafPair::work() const {
+    // A flat hull has no mesh to stand for it, and a stretched ball is none.
+    const auto kind = [](const Leaf& leaf) {
+        if (leaf.kind == Kind::round && leaf.stretch != no_stretch) return Kind::other;
+        return leaf.kind == Kind::convex && !leaf.converted.shape ? Kind::other : leaf.kind;
+    };
+    const Kind one = kind(leaf0), two = kind(leaf1);
+    const auto either = [&](Kind k) { return one == k || two == k; };
+    if (either(Kind::mesh)) {
+        if (either(Kind::plane)) return Work::plane;
+        if (either(Kind::round)) return Work::round;
+        if (either(Kind::convex) && is_two_sided()) return Work::bullet;
+        if (!either(Kind::other)) return Work::batch;
+    }
+    return unsupported(*leaf0.shape, *leaf1.shape) ? Work::nothing : Work::bullet;
+}
+
+bool LeafPair::is_two_sided() const {
+    return convex == ConvexShapes::by_mesh && mesh().kind == Kind::mesh && mesh().is_fixed && mesh().converted.shape
+           && !mesh().converted.shape->has_inside();
+}
+
+Candidate LeafPair::candidate(bool feature_of_mesh, int feature, const btVector3& on_mesh, const btVector3& on_other,
+                              const btVector3& normal, btScalar distance) const {
+    Candidate c;
+    c.key = {child0, child1, feature_of_mesh == mesh_is_0() ? 0 : 1, feature};
+    c.on0 = mesh_is_0() ? on_mesh : on_other;
+    c.on1 = mesh_is_0() ? on_other : on_mesh;
+    c.normal = mesh_is_0() ? normal : -normal;
+    c.distance = distance;
+    return c;
+}
+
+HalfSpace LeafPair::plane() const {
+    const Leaf& plane = leaf0.kind == Kind::plane ? leaf0 : leaf1;
+    return half_space(static_cast<const btStaticPlaneShape&>(*plane.shape), plane.pose, plane.stretch);
+}
+
+void LeafPair::add_plane(const HalfSpace& space, std::optional<btScalar> near_by, btScalar reach,
+                         std::vector<Candidate>& out) const {
+    static thread_local std::vector<PlaneContact> below;
+    const Leaf& leaf = mesh();
+    plane_contacts(leaf.converted, leaf.pose, space, near_by ? btMax(*near_by, leaf.way) : 0, below);
+    const Pose next = to_pose(leaf.next);
+    const auto will_touch = [&](const PlaneContact& f) {
+        return depth_in(space, transform_point(next, leaf.converted.shape->vertices()[f.vertex])) >= 0;
+    };
+    for (const PlaneContact& f : below) {
+        if (f.depth < -near_by.value_or(0) && !will_touch(f)) continue;
+        const auto vertex = static_cast<int>(leaf.converted.shape->vertex_index()[f.vertex]);
+        Candidate c = candidate(true, vertex, f.point, f.point + space.normal * f.depth, space.normal, -f.depth);
+        c.speculative = f.depth <= 0;
+        c.reach = reach;
+        out.push_back(c);
+    }
+}
+
+void LeafPair::add_round(btScalar near_by, bool speculative, std::vector<Candidate>& out) const {
+    static thread_local std::vector<RoundContact> found;
+    const Leaf& ball = other();
+    Round round = round_of(*ball.shape);
+    round.two_sided = is_two_sided();
+    round_contacts(mesh().converted, mesh().pose, round, ball.pose, near_by, found);
+    const std::size_t near_now = found.size();
+    if (speculative) first_touches(mesh().converted, mesh().pose, mesh().next, round, ball.pose, ball.next, found);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const RoundContact& f = found[i];
+        Candidate c = candidate(false, f.place, f.point, f.point + f.normal * f.distance, -f.normal, f.distance);
+        c.triangle = static_cast<int>(mesh().converted.shape->triangle_index()[f.triangle]);
+        c.reach = btMin(diagonal(mesh()), 2 * round.radius + (round.ends[1] - round.ends[0]).length());
+        c.speculative = i >= near_now;
+        out.push_back(c);
+    }
+}
+
+void LeafPair::add_cast(std::vector<Candidate>& out) const {
+    const auto hit = cast_hit(other(), mesh());
+    if (!hit) return;
+    const btVector3 on_mesh = hit->point - hit->normal * hit->distance;
+    Candidate c = candidate(false, 0, on_mesh, hit->point, -hit->normal, hit->distance);
+    c.triangle = hit->triangle;
+    c.reach = smaller_diagonal();
+    c.speculative = true;
+    out.push_back(c);
+}
+
+Candidate candidate_of(const Contact& contact, int child0, int child1, bool swapped) {
+    Candidate c;
+    const FeatureKind kind = contact.feature.kind;
+    const int source = contact.feature.source == Side::a ? 0 : 1;
+    c.key = {child0,
+             child1,
+             swapped ? 1 - source : source,
+             static_cast<int>(contact.feature.source_index()),
+             kind,
+             static_cast<int>(kind == FeatureKind::edges ? contact.feature.index_b : 0)};
+    c.triangle = static_cast<int>(contact.feature.other_index());
+    c.on0 = to_bullet(swapped ? contact.point_b : contact.point_a);
+    c.on1 = to_bullet(swapped ? contact.point_a : contact.point_b);
+    c.normal = to_bullet(contact.normal);
+    if (!swapped) c.normal = -c.normal;
+    c.distance = btScalar(-contact.depth);
+    c.speculative = contact.is_speculative();
+    return c;
+}
+
+void name_places(Candidate& c, const Leaf& leaf0, const Leaf& leaf1) {
+    const bool of_0 = c.key.vertex_body == 0;
+    const int other = c.key.feature == FeatureKind::edges ? c.triangle / 3 : c.triangle;
+    c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, other);
+    c.name1 = of_0 ? name_of_triangle(leaf1, other) : name_of_feature(leaf1, c.key);
+}
+
+} // namespace raycontact::bullet
