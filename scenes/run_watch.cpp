@@ -31,18 +31,13 @@ void RunWatch::add_body(const BodyStart& start, const Pose& pose) {
 }
 
 void RunWatch::add_step(double step_ms, const Scene& scene, std::span<const Pose> poses) {
-    const StepStats& s = scene.stats();
     const auto found = scene.contacts();
     StepRow row;
-    static_cast<StepStats&>(row) = s;
+    static_cast<StepStats&>(row) = scene.stats();
     row.step = steps();
     row.step_ms = step_ms;
     hash_.add(row.step, found);
     depths_.add(row.step, found);
-    contacts_ += s.contacts;
-    rays_ += s.details.rays;
-    ray_length_ += s.details.ray_length;
-    pairs_max_ = std::max(pairs_max_, s.pairs);
     for (const Contact& c : found) row.penetration_max = std::max(row.penetration_max, static_cast<double>(c.depth));
     row.median_speed = median_speed(poses);
     keep_frame(row.step, poses);
