@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
-#include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
 #include "cli/number_option.h"

@@ -10,7 +10,7 @@
 
 namespace raycontact::scenes {
 
-SceneDescription rain(const RainOptions& options) {
+SceneDescription rain(const SceneOptions& options) {
     constexpr double height = 7; // metres
     SceneDescription scene = begin_scene("rain", options);
     add_slab(scene, 15, height + 1);

@@ -18,6 +18,6 @@ struct RainOptions : SceneOptions {
 /// the shapes and their sizes. Ours: a bunny, a torus, a star and a knot, each 1 m large, from 7 m above the ground,
 /// and a circle on which the next body does not meet the last; 9 800 to 10 200 pairs of boxes overlap at the end.
 /// Ground as in the avalanche; its body is the first.
-SceneDescription rain(const RainOptions& options);
+SceneDescription rain(const SceneOptions& options);
 
 } // namespace raycontact::scenes

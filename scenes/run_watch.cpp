@@ -78,7 +78,7 @@ Health RunWatch::health() const {
     h.median_speed_last_second = quantile(std::move(late_speeds), 0.5);
     h.depth_limit = depths_.limit();
     h.deep_contacts = depths_.contacts();
-    h.deep_steps_longest = depths_.longest();
+    h.deep_steps_longest = depths_.longest_since(0);
     h.deep_steps_last_second = depths_.longest_since(late);
     if (!region_.has_ground(gravity_)) return h;
     std::uint32_t below = 0, left = 0;
