@@ -31,6 +31,7 @@ struct Health {
 /// What is measured of a simulation as it runs: its log, its hash, its health.
 class RunWatch {
 public:
+    /// The description must outlive it.
     explicit RunWatch(const SceneDescription& description);
 
     /// A body comes: the next of the log's lists.
@@ -47,9 +48,7 @@ private:
     double median_speed(std::span<const Pose> poses);
     void keep_frame(std::uint32_t step, std::span<const Pose> poses);
 
-    Region region_;
-    Vec3 gravity_;
-    std::uint32_t planned_steps_, frames_;
+    const SceneDescription& scene_;
     RunLog log_;
     ContactHash hash_;
     DepthWatch depths_;
