@@ -10,6 +10,7 @@
 #include <scenes/models/model.h>
 #include <scenes/peers/clock.h>
 #include <scenes/random.h>
+#include <tests/stacks/solids.h>
 
 #include <btBulletDynamicsCommon.h>
 
