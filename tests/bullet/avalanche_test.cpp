@@ -90,7 +90,7 @@ TEST(Avalanche, LogHoldsWhatAReportNeeds) {
     EXPECT_EQ(log.frames[3].poses.size(), 11u);
     EXPECT_EQ(log.shapes.size(), 2u);
     EXPECT_FALSE(log.mesh_source.empty());
-    EXPECT_EQ(log.rows.back().contacts, scene.contacts().size());
+    EXPECT_EQ(log.rows.back().contacts, scene.stats().contacts);
 }
 
 TEST(Avalanche, RefusesAModelThatIsNotKnown) {
