@@ -6,10 +6,11 @@
 
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/mesh_shape.h>
+#include <scenes/models/machined.h>
 #include <scenes/models/model.h>
 #include <scenes/peers/clock.h>
 #include <scenes/random.h>
-#include <scenes/stacks/solids.h>
+#include <tests/stacks/solids.h>
 
 #include <btBulletDynamicsCommon.h>
 

@@ -6,7 +6,7 @@
 #include "bench/options.h"
 
 #include <report/page.h>
-#include <scenes/holds/run.h>
+#include <tests/holds/run.h>
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include "bench/options.h"
 
 #include <scenes/peers/clock.h>
-#include <scenes/stacks/stack_world.h>
-#include <scenes/stacks/verdict.h>
+#include <tests/stacks/stack_world.h>
+#include <tests/stacks/verdict.h>
 
 #include <fmt/format.h>
 

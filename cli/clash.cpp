@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
-#include "cli/exit_status.h"
 #include "cli/number_option.h"
 #include "cli/out_option.h"
+#include "cli/program.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
 

@@ -2,7 +2,6 @@
 #include "cli/commands.h"
 
 #include "cli/cavities_option.h"
-#include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/pairs_file.h"
 

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <iostream>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -177,6 +179,18 @@ void check_common_options(const raycontact::Settings& settings) {
     } catch (const InputError& error) {
         throw InputError(with_options(error.what()));
     }
+}
+
+void warn_if_coarse(const raycontact::Shape& shape, const raycontact::Settings& settings) {
+    // In diagonals of the mesh's box: less than the sides of a box, more than a mesh of a few hundred triangles has.
+    constexpr double longest_fine_edge = 0.25;
+    if (settings.features != raycontact::Features::vertices) return;
+    const raycontact::Vec3 low = shape.box_min(), high = shape.box_max();
+    const double part = shape.longest_edge() / std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+    if (part <= longest_fine_edge) return;
+    std::cerr << fmt::format("{}: coarse for --features vertices: an edge is {:.0f} % of its size long and can cross "
+                             "another mesh unseen; --features edges sees it\n",
+                             shape.name(), 100 * part);
 }
 
 raycontact::Settings recorded_unless_given(const CLI::App& command, const raycontact::Settings& given,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raycontact/settings.h>
+#include <raycontact/shape.h>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,9 @@ void add_speculative_option(CLI::App& command, raycontact::Settings& settings);
 
 /// The same for values that make no sense together; for the command to call once all are known.
 void check_common_options(const raycontact::Settings& settings);
+
+/// Says on stderr that a mesh has edges so long that, with Features::vertices, they can cross another mesh unseen.
+void warn_if_coarse(const raycontact::Shape& shape, const raycontact::Settings& settings);
 
 /// What decides the contacts is the recording's unless the command line says otherwise; where they are found is ours.
 /// Throws InputError when the two together make no sense.

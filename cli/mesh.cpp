@@ -2,7 +2,7 @@
 #include "cli/commands.h"
 
 #include "cli/cavities_option.h"
-#include "cli/complain.h"
+#include "cli/program.h"
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/program.h"
 
-#include "cli/complain.h"
-#include "cli/exit_status.h"
 #include "cli/stop.h"
 #include "cli/suggest.h"
 
@@ -58,6 +56,12 @@ int run(const Program& program, int argc, char** argv) {
 }
 
 } // namespace
+
+void complain(std::string_view program, std::string_view message) {
+    std::string line = std::string(program) + ": ";
+    for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    std::cerr << line << '\n';
+}
 
 int run_program(const Program& program, int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is then an error like a full disk

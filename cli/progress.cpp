@@ -10,13 +10,16 @@
 #include <unistd.h>
 
 namespace {
-constexpr std::uint32_t cells = 40;
-}
 
+constexpr std::uint32_t cells = 40;
+
+/// Of work of which `done` of `total` took so many seconds, 0 < done <= total: "1 min 5 s left".
 std::string time_left(double seconds, double done, double total) {
     const auto left = static_cast<std::uint64_t>(std::ceil(seconds * (total - done) / done));
     return left < 60 ? fmt::format("{} s left", left) : fmt::format("{} min {} s left", left / 60, left % 60);
 }
+
+} // namespace
 
 Progress::Progress(std::string title, std::uint32_t total, std::string unit)
     : title_(std::move(title)), unit_(std::move(unit)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}

@@ -20,6 +20,3 @@ private:
     bool terminal_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// Of work of which `done` of `total` took so many seconds, 0 < done <= total: "1 min 5 s left".
-std::string time_left(double seconds, double done, double total);

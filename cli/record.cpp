@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/record.h"
 
-#include <raycontact/recorder.h>
-
 #include <fmt/format.h>
 
 #include <iostream>
@@ -11,35 +9,28 @@
 
 using namespace raycontact;
 
-struct RunRecorder::State {
-    output::OutFile file;
-    Recorder recorder;
-    bool kept = false;
-    State(output::OutFile f, const scenes::Simulation& scene, const RecorderOptions& options)
-        : file(std::move(f)), recorder(file.part(), scene.scene(), options) {}
-    ~State() {
-        if (!kept && recorder.steps() > 0) file.leave();
-    }
-};
-
-RunRecorder::RunRecorder(std::optional<output::OutFile> file, const scenes::Simulation& scene) {
-    if (!file) return;
+RunRecorder::RunRecorder(std::optional<output::OutFile> file, const scenes::Simulation& scene)
+    : file_(std::move(file)) {
+    if (!file_) return;
     const scenes::RunLog& log = scene.log();
     const RecorderOptions options{log.scene, log.dt, log.seed, log.mesh_source, scene.body_count()};
-    state_ = std::make_unique<State>(std::move(*file), scene, options);
+    recorder_.emplace(file_->part(), scene.scene(), options);
 }
 
-RunRecorder::~RunRecorder() = default;
+RunRecorder::~RunRecorder() {
+    if (recorder_ && recorder_->steps() > 0) file_->leave();
+}
 
 void RunRecorder::give_up(const std::string& why) {
-    error_ = why + "; the steps until then are in " + state_->file.part().string();
-    state_.reset();
+    error_ = why + "; the steps until then are in " + file_->part().string();
+    if (recorder_->steps() > 0) file_->leave();
+    recorder_.reset();
 }
 
 void RunRecorder::step() {
-    if (!state_) return;
+    if (!recorder_) return;
     try {
-        state_->recorder.record();
+        recorder_->record();
     } catch (const std::runtime_error& error) {
         give_up(error.what());
         std::cerr << "the run goes on without its recording: " << error_ << '\n';
@@ -47,15 +38,14 @@ void RunRecorder::step() {
 }
 
 void RunRecorder::finish(bool cut_short) {
-    if (!state_) return;
-    Recorder& recorder = state_->recorder;
+    if (!recorder_) return;
     try {
-        recorder.finish();
-        const auto kept = state_->file.keep(cut_short && state_->file.is_there());
-        state_->kept = true;
+        recorder_->finish();
+        const auto kept = file_->keep(cut_short && file_->is_there());
         std::cerr << fmt::format("recording: {}, {:.1f} MB; writing took {:.2f} ms a step and {:.2f} s at the end\n",
-                                 kept.string(), static_cast<double>(recorder.bytes()) / 1e6,
-                                 1000 * recorder.seconds() / recorder.steps(), recorder.finish_seconds());
+                                 kept.string(), static_cast<double>(recorder_->bytes()) / 1e6,
+                                 1000 * recorder_->seconds() / recorder_->steps(), recorder_->finish_seconds());
+        recorder_.reset();
     } catch (const std::runtime_error& error) {
         give_up(error.what());
     }

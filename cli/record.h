@@ -2,9 +2,9 @@
 #pragma once
 
 #include <output/out_file.h>
+#include <raycontact/recorder.h>
 #include <scenes/simulation.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -23,8 +23,8 @@ public:
     const std::string& error() const { return error_; } ///< empty: none so far
 
 private:
-    struct State;
     void give_up(const std::string& why);
-    std::unique_ptr<State> state_;
+    std::optional<raycontact::output::OutFile> file_;
+    std::optional<raycontact::Recorder> recorder_; ///< as long as there is something to write
     std::string error_;
 };

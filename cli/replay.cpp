@@ -49,7 +49,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"bodies", reader.info().bodies},
                 {"pairs_max", replay.pairs_max},
                 {"rays", replay.rays},
-                {"rays_cast", work.rays_cast()},
+                {"rays_cast", work.sum().details.rays_cast},
                 {"contacts", replay.contacts},
                 {"ray_length", replay.ray_length},
                 {"penetration_max", replay.penetration_max},

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
-#include "cli/coarse.h"
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
 #include "cli/number_option.h"
@@ -57,6 +56,7 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
     const Health health = scene.health();
     const RunLog& log = scene.log();
     const Work work(log.rows);
+    const raycontact::StepStats& sum = work.sum();
     const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(steps_of_a_second(log.dt), log.rows.size()));
     const std::vector<StepRow> last_second(log.rows.end() - second, log.rows.end());
     Json result{
@@ -66,11 +66,11 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"steps_planned", scene.description().steps},
         {"cut_short", scene.steps() < scene.description().steps},
         {"bodies", scene.body_count()},
-        {"pairs_max", scene.pairs_max()},
-        {"rays", scene.rays_total()},
-        {"rays_cast", work.rays_cast()},
-        {"contacts", scene.contacts_total()},
-        {"ray_length", scene.ray_length_total()},
+        {"pairs_max", sum.pairs},
+        {"rays", sum.details.rays},
+        {"rays_cast", sum.details.rays_cast},
+        {"contacts", sum.contacts},
+        {"ray_length", sum.details.ray_length},
         {"penetration_max", health.penetration_max},
         {"wall_ms", wall_ms},
         {"step_ms", median_and_p95(log.rows, [](const StepRow& r) { return r.step_ms; })},
@@ -179,7 +179,7 @@ RunLog log_of(const Simulation& scene, const std::string& summary_json) {
     if (log.rows.size() < scene.description().steps && log.frames.back().step != log.rows.back().step) {
         Frame& last = log.frames.emplace_back();
         last.step = log.rows.back().step;
-        for (std::uint32_t body = 0; body < log.body_shape.size(); ++body) last.poses.push_back(scene.pose(body));
+        last.poses = scene.poses();
     }
     return log;
 }

@@ -49,19 +49,17 @@ void refuse_mesh_options(const RunScene& given) {
     if (given.nested) throw InputError("--cavities" + only);
 }
 
-template <class Options>
-void take_common(Options& how, const RunScene& given, const Settings& settings) {
+void take_common(SceneOptions& how, const RunScene& given, const Settings& settings) {
     how.bodies = given.bodies.value_or(how.bodies);
     how.steps = given.steps.value_or(how.steps);
     how.seed = given.seed.value_or(how.seed);
     how.settings = settings;
 }
 
-/// One of the paper's.
-template <class Options>
-SceneDescription named(SceneDescription (*make)(const Options&), const RunScene& given, const Settings& settings) {
+/// One of the paper's; `how`: what it has by itself.
+SceneDescription named(SceneDescription (*make)(const SceneOptions&), SceneOptions how, const RunScene& given,
+                       const Settings& settings) {
     refuse_mesh_options(given);
-    Options how;
     take_common(how, given, settings);
     return make(how);
 }
@@ -141,8 +139,8 @@ SceneDescription describe_scene(const RunScene& given, const Settings& settings)
         return from_meshes(given, settings);
     }
     if (given.scene.empty()) throw InputError("SCENE: give avalanche, rain or FILE.json, or your own meshes by --mesh");
-    if (given.scene == "avalanche") return named(avalanche, given, settings);
-    if (given.scene == "rain") return named(rain, given, settings);
+    if (given.scene == "avalanche") return named(avalanche, SceneOptions(), given, settings);
+    if (given.scene == "rain") return named(rain, RainOptions(), given, settings);
     if (is_scene_file(given.scene)) return from_file(given, settings);
     throw InputError("SCENE: \"" + given.scene + "\" is not known; scenes are: avalanche, rain, FILE.json");
 }

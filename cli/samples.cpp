@@ -7,7 +7,6 @@
 #include <output/out_folder.h>
 #include <scenes/models/machined.h>
 #include <scenes/models/model.h>
-#include <scenes/stacks/solids.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace raycontact;
@@ -56,6 +57,10 @@ Json length(const std::optional<double>& metres) {
 } // namespace
 
 void Work::add(const StepStats& step) {
+    sum_.pairs = std::max(sum_.pairs, step.pairs);
+    sum_.contacts += step.contacts;
+    sum_.details.rays += step.details.rays;
+    sum_.details.ray_length += step.details.ray_length;
     for (const Count& count : counts) {
         std::uint64_t& sum = count.of(sum_);
         sum = is_memory(count) ? std::max(sum, count.of(step)) : sum + count.of(step);

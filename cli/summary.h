@@ -27,14 +27,14 @@ nlohmann::ordered_json median_and_p95(const std::vector<Row>& rows, Value value)
     return {{"median", quantile(rows, 0.5, value)}, {"p95", quantile(rows, 0.95, value)}};
 }
 
-/// What the steps did, added up; `pair_bytes` is the most of a step.
+/// What the steps did, added up; of `pairs` and `pair_bytes` the most of a step.
 class Work {
 public:
     template <class Row>
     explicit Work(const std::vector<Row>& rows) {
         for (const raycontact::StepStats& row : rows) add(row);
     }
-    std::uint64_t rays_cast() const { return sum_.details.rays_cast; }
+    const raycontact::StepStats& sum() const { return sum_; }
     void put(nlohmann::ordered_json& object) const;
 
 private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <report/report.h>
 
-#include <raycontact/error.h>
 #include <report/image.h>
 #include <report/page.h>
 #include <report/render.h>
@@ -22,23 +21,6 @@ constexpr int jpeg_quality = 82;           // in the page; the files beside it a
 const char* const page_name = "report.html";
 const char* const film_name = "pictures/film.webp";
 
-/// A log that would index out of its own lists must not reach the renderer.
-void check(const scenes::RunLog& log) {
-    if (log.rows.empty() || log.frames.empty())
-        throw InputError("report: the run has no " + std::string(log.rows.empty() ? "steps" : "frames")
-                         + ", nothing to show");
-    if (log.body_moves.size() != log.body_shape.size())
-        throw InputError("report: the run has " + std::to_string(log.body_shape.size()) + " bodies but says of "
-                         + std::to_string(log.body_moves.size()) + " whether they move");
-    for (const std::uint32_t shape : log.body_shape)
-        if (shape >= log.shapes.size())
-            throw InputError("report: a body has shape " + std::to_string(shape) + ", which the run lacks");
-    for (const scenes::Frame& frame : log.frames)
-        if (frame.poses.size() > log.body_shape.size())
-            throw InputError("report: the frame of step " + std::to_string(frame.step)
-                             + " has more poses than the run has bodies");
-}
-
 /// The first, the last, and as many as fit evenly between.
 std::vector<std::size_t> chosen_frames(std::size_t count, std::size_t most) {
     std::vector<std::size_t> chosen;
@@ -52,22 +34,6 @@ std::vector<std::size_t> film_frames_of(const scenes::RunLog& log, const ReportO
     if (options.pictures == 0 || log.frames.size() < 3) return {};
     return chosen_frames(log.frames.size(), film_frames);
 }
-
-/// Counts what is drawn, and asks whether to go on.
-class Drawing {
-public:
-    explicit Drawing(const ReportOptions& options) : options_(options) {}
-    std::uint32_t done() const { return done_; }
-    bool goes_on() const { return !options_.stop || !options_.stop(); }
-    void did(std::uint32_t work) {
-        done_ += work;
-        if (options_.progress) options_.progress(done_);
-    }
-
-private:
-    const ReportOptions& options_;
-    std::uint32_t done_ = 0;
-};
 
 template <class Value>
 Line line(const scenes::RunLog& log, const char* name, Value value) {
@@ -117,7 +83,7 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          "Half of the moving bodies are slower than this at the end of the step.",
          {line(log, "speed", [](const StepRow& r) { return r.median_speed; })}},
     };
-    const std::size_t devices = log.rows.empty() ? 0 : log.rows.front().details.work.size();
+    const std::size_t devices = log.rows.front().details.work.size();
     if (devices > 1) {
         Plot load{
             "Load of devices", "pairs at rest", "What each device had to do, counted: pairs, vertices and rays.", {}};
@@ -140,13 +106,13 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
 }
 
 /// As long as the run where it can be shown so.
-std::string film_of(const scenes::RunLog& log, const std::vector<std::size_t>& frames, const Renderer& renderer,
-                    Drawing& drawing) {
+std::string film_of(const scenes::RunLog& log, const Renderer& renderer, const ReportOptions& options,
+                    std::uint32_t& done) {
     std::vector<Image> images;
-    for (const std::size_t k : frames) {
-        if (!drawing.goes_on()) return {};
+    for (const std::size_t k : film_frames_of(log, options)) {
+        if (options.stop()) return {};
         images.push_back(renderer.render_for_film(log.frames[k], film_width, film_height));
-        drawing.did(1);
+        options.progress(++done);
     }
     if (images.empty()) return {};
     const double seconds = static_cast<double>(log.rows.size()) * log.dt;
@@ -169,24 +135,23 @@ std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options) {
 }
 
 void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options) {
-    check(log);
     Page page;
     describe(log, page);
     page.plots = plots_of(log);
     page.comparison = options.comparison;
     std::optional<Renderer> renderer; // building its scenes takes a while
     if (options.pictures > 0) renderer.emplace(log);
-    Drawing drawing(options);
+    std::uint32_t done = 0; // of work_of()
     for (const std::size_t k : chosen_frames(log.frames.size(), options.pictures)) {
-        if (!drawing.goes_on()) break;
+        if (options.stop()) break;
         const scenes::Frame& frame = log.frames[k];
         const Image image = renderer->render(frame, picture_width, picture_height);
         folder.write(fmt::format("pictures/step-{:03}.png", frame.step), encode_png(image));
         page.stills.push_back({encode_jpeg(image, jpeg_quality),
                                fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
-        drawing.did(picture_cost);
+        options.progress(done += picture_cost);
     }
-    if (renderer) page.film = film_of(log, film_frames_of(log, options), *renderer, drawing);
+    if (renderer) page.film = film_of(log, *renderer, options, done);
     if (!page.film.empty()) {
         folder.write(film_name, page.film);
         page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
@@ -195,8 +160,7 @@ void write_report(output::OutFolder& folder, const scenes::RunLog& log, const Re
         page.footer = fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. "
                                   "The camera follows the pile from picture to picture. {}",
                                   log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
-    if (drawing.done() < work_of(log, options))
-        page.footer = "Drawing was ended before all pictures were made. " + page.footer;
+    if (done < work_of(log, options)) page.footer = "Drawing was ended before all pictures were made. " + page.footer;
     folder.write(page_name, make_page(page));
 }
 

@@ -19,8 +19,8 @@ void claim_report(output::OutFolder& folder);
 struct ReportOptions {
     std::uint32_t pictures = 4; ///< large ones, evenly over the log's frames; 0: neither these nor the film
     Comparison comparison;
-    std::function<void(std::uint32_t)> progress = {}; ///< told how much of work_of() is drawn
-    std::function<bool()> stop = {};                  ///< asked before each picture: true leaves out those to come
+    std::function<void(std::uint32_t)> progress = [](std::uint32_t) {}; ///< told how much of work_of() is drawn
+    std::function<bool()> stop = [] { return false; }; ///< asked before each picture: true leaves out those to come
 };
 
 /// Frames that a log should have for a film, and for so many pictures.
@@ -31,7 +31,7 @@ std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options);
 
 /// Writes report.html, one file that needs no network and no other file, and the pictures in it once more as
 /// pictures/step-NNN.png. About 24 of the log's frames are a film, pictures/film.webp, too. The caller keeps them.
-/// Throws InputError for a log without steps or frames, and as OutFolder::write does.
+/// The log has a step and a frame. Throws as OutFolder::write does.
 void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options = {});
 
 } // namespace raycontact::report

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace raycontact::report {
 namespace {
@@ -59,26 +60,13 @@ Axis logarithmic_axis(const std::vector<double>& values) {
 }
 
 std::string escape_html(const std::string& text) {
+    constexpr std::pair<char, const char*> names[] = {
+        {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
     std::string safe;
-    for (const char c : text) switch (c) {
-        case '&':
-            safe += "&amp;";
-            break;
-        case '<':
-            safe += "&lt;";
-            break;
-        case '>':
-            safe += "&gt;";
-            break;
-        case '"':
-            safe += "&quot;";
-            break;
-        case '\'':
-            safe += "&#39;";
-            break;
-        default:
-            safe += c;
-        }
+    for (const char c : text) {
+        const auto* named = std::ranges::find(names, c, &std::pair<char, const char*>::first);
+        named == std::end(names) ? safe += c : safe += named->second;
+    }
     return safe;
 }
 

@@ -2,11 +2,10 @@
 #include <reproduce/plane_test.h>
 
 #include <raycontact/scene.h>
-#include <reproduce/penalty.h>
 #include <reproduce/plan.h>
+#include <scenes/models/machined.h>
 #include <scenes/models/trigonometry.h>
 #include <scenes/random.h>
-#include <scenes/stacks/solids.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,8 +36,6 @@ double lowest(const Shape& shape, const std::array<double, 9>& r) {
 } // namespace
 
 Deviation plane_deviation(const PlaneTest& test, Direction direction) {
-    // Nothing moves: no damper acts, and nothing slides. A ratio of forces does not depend on the stiffness.
-    constexpr Penalty springs{.stiffness = 1};
     Settings settings = by_default(Method::standard);
     settings.direction = direction;
     Scene scene(settings);
@@ -70,9 +67,11 @@ Deviation plane_deviation(const PlaneTest& test, Direction direction) {
         }
         std::vector<Vec3> force(test.orientations); // on the plane
         for (const Contact& contact : scene.find_contacts(pairs)) {
-            const Vec3 push = penalty_force(springs, contact);
+            // Of a spring: nothing moves, so no damper acts. A ratio of forces does not depend on the stiffness.
+            const double push = static_cast<double>(contact.weight) * static_cast<double>(contact.depth);
+            const Vec3 normal = contact.normal;
             Vec3& of = force[contact.body_a.slot];
-            of = {of.x + push.x, of.y + push.y, of.z + push.z};
+            of = {of.x + push * normal.x, of.y + push * normal.y, of.z + push * normal.z};
         }
         for (const Vec3& of : force) {
             if (of.z == 0) continue;

@@ -22,7 +22,7 @@ struct Deviation {
 };
 
 /// The ground is a closed slab far wider than the object; contacts come from a Scene with that direction, their forces
-/// from springs (reproduce/penalty.h). Orientations are random, the same in every call.
+/// from springs. Orientations are random, the same in every call.
 Deviation plane_deviation(const PlaneTest& test, Direction direction);
 
 } // namespace raycontact::reproduce

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <stdexcept>
 
 namespace raycontact::reproduce {
 
@@ -30,49 +29,16 @@ scenes::Response paper_response() {
     return response;
 }
 
-template <class SceneOptions>
-scenes::SceneDescription described(scenes::SceneDescription (*make)(const SceneOptions&),
-                                   const SimulationOptions& options) {
-    SceneOptions how;
+scenes::SceneDescription described(const SimulationOptions& options) {
+    scenes::SceneOptions how;
     how.bodies = options.size.bodies;
     how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
     how.settings.speculative = options.speculative;
     if (options.paper_response) how.response = paper_response();
-    return make(how);
+    return options.scene == "rain" ? scenes::rain(how) : scenes::avalanche(how);
 }
-
-scenes::SceneDescription described(const SimulationOptions& options) {
-    if (options.scene == "avalanche") return described(scenes::avalanche, options);
-    if (options.scene == "rain") return described(scenes::rain, options);
-    throw std::logic_error("scene " + options.scene + " is not known; report this");
-}
-
-/// Records a simulation as it runs.
-class Record {
-public:
-    Record(const std::filesystem::path& file, const scenes::Simulation& scene)
-        : scene_(scene), writer_(file, info_of(scene), {.animation_bytes = small_animation}) {
-        for (const auto& shape : scene.log().shapes) writer_.add_shape(*shape);
-    }
-    void step() {
-        const auto& shapes = scene_.log().body_shape;
-        for (; bodies_ < shapes.size(); ++bodies_) writer_.add_body(shapes[bodies_]);
-        writer_.step(scene_.scene());
-    }
-    void finish() { writer_.finish(scene_.hash()); }
-
-private:
-    static recording::Info info_of(const scenes::Simulation& scene) {
-        const scenes::RunLog& log = scene.log();
-        return {log.scene, log.seed, scene.body_count(), log.dt, scene.description().settings, log.mesh_source};
-    }
-
-    const scenes::Simulation& scene_;
-    recording::Writer writer_;
-    std::size_t bodies_ = 0; ///< so far
-};
 
 std::string picture(const scenes::RunLog& log, std::uint32_t width) {
     const report::Renderer renderer(log);
@@ -85,12 +51,18 @@ std::vector<std::string> scene_names() {
     return {"avalanche", "rain"};
 }
 
-Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
+Json simulate(const SimulationOptions& options, const std::filesystem::path& file, std::uint32_t picture_width,
               const Tick& tick) {
     scenes::Simulation scene(described(options));
     const scenes::RunLog& log = scene.log();
-    std::optional<Record> record;
-    if (!recording.empty()) record.emplace(recording, scene);
+    std::optional<recording::Writer> writer;
+    std::size_t recorded = 0; // bodies
+    if (!file.empty()) {
+        const recording::Info info{log.scene,      log.seed, scene.body_count(), log.dt, scene.description().settings,
+                                   log.mesh_source};
+        writer.emplace(file, info, recording::WriterOptions{.animation_bytes = small_animation});
+        for (const auto& shape : log.shapes) writer->add_shape(*shape);
+    }
     Json result{{"pairs", Json::array()},
                 {"contacts", Json::array()},
                 {"ray_length", Json::array()},
@@ -99,7 +71,10 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
     for (std::uint32_t i = 0; i < options.size.steps; ++i) {
         scene.step();
         pairs.add(scene.contacts());
-        if (record) record->step();
+        if (writer) {
+            for (; recorded < log.body_shape.size(); ++recorded) writer->add_body(log.body_shape[recorded]);
+            writer->step(scene.scene());
+        }
         double depth = 0;
         for (const Contact& contact : scene.contacts())
             if (!contact.is_speculative()) depth += static_cast<double>(contact.depth);
@@ -109,7 +84,7 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& rec
         result["depth_length"].push_back(depth);
         tick(1.0 / options.size.steps);
     }
-    if (record) record->finish();
+    if (writer) writer->finish(scene.hash());
     std::uint64_t triangles = 0;
     for (std::size_t i = 0; i < log.body_shape.size(); ++i)
         if (log.body_moves[i]) triangles += log.shapes[log.body_shape[i]]->triangles().size();

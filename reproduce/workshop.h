@@ -69,9 +69,9 @@ private:
     Json here_;
 };
 
-/// Runs a simulation; writes a recording unless `recording` is empty. {"pairs", "contacts", "ray_length",
+/// Runs a simulation; writes a recording unless `file` is empty. {"pairs", "contacts", "ray_length",
 /// "depth_length": a number a step; "triangles" of the moving bodies, "mesh_source", "hash", "picture"}.
-Json simulate(const SimulationOptions& options, const std::filesystem::path& recording, std::uint32_t picture_width,
+Json simulate(const SimulationOptions& options, const std::filesystem::path& file, std::uint32_t picture_width,
               const Tick& tick);
 
 Json to_json(const Settings& settings);

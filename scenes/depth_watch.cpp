@@ -7,20 +7,16 @@
 namespace raycontact::scenes {
 
 void DepthWatch::add(std::uint32_t step, std::span<const Contact> contacts) {
-    std::vector<Run> now;
+    std::map<Key, std::uint32_t> now;
+    by_step_.resize(step + 1u, 0);
     for (const Contact& c : contacts) {
         if (static_cast<double>(c.depth) <= limit_) continue;
-        now.push_back({{c.body_a, c.body_b, c.key()}, 1});
-    }
-    contacts_ += now.size();
-    std::sort(now.begin(), now.end(), [](const Run& a, const Run& b) { return a.key < b.key; });
-    auto old = runs_.begin();
-    by_step_.resize(step + 1u, 0);
-    for (Run& run : now) {
-        while (old != runs_.end() && old->key < run.key) ++old;
-        if (old != runs_.end() && old->key == run.key) run.steps = old->steps + 1;
-        longest_ = std::max(longest_, run.steps);
-        by_step_[step] = std::max(by_step_[step], run.steps);
+        const Key key{c.body_a, c.body_b, c.key()};
+        const auto before = runs_.find(key);
+        const std::uint32_t steps = before == runs_.end() ? 1 : before->second + 1;
+        now.emplace(key, steps);
+        by_step_[step] = std::max(by_step_[step], steps);
+        ++contacts_;
     }
     runs_ = std::move(now);
 }

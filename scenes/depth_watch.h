@@ -4,6 +4,7 @@
 #include <raycontact/contact.h>
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -18,22 +19,16 @@ public:
     /// The contacts of one step; steps follow each other.
     void add(std::uint32_t step, std::span<const Contact> contacts);
 
-    double limit() const { return limit_; }                ///< metres
-    std::uint64_t contacts() const { return contacts_; }   ///< deeper than the limit, all steps
-    std::uint32_t longest() const { return longest_; }     ///< most steps in a row for one key
-    std::uint32_t longest_since(std::uint32_t step) const; ///< the same, of runs that end in `step` or later
+    double limit() const { return limit_; }              ///< metres
+    std::uint64_t contacts() const { return contacts_; } ///< deeper than the limit, all steps
+    /// Most steps in a row for one key, of runs that end in `step` or later.
+    std::uint32_t longest_since(std::uint32_t step) const;
 
 private:
     using Key = std::tuple<BodyId, BodyId, std::uint64_t>; ///< body_a, body_b, Contact::key()
-    struct Run {
-        Key key;
-        std::uint32_t steps;
-    };
-
     double limit_;
     std::uint64_t contacts_ = 0;
-    std::uint32_t longest_ = 0;
-    std::vector<Run> runs_;              ///< of the last step, sorted by key
+    std::map<Key, std::uint32_t> runs_;  ///< of the last step: for how many steps
     std::vector<std::uint32_t> by_step_; ///< longest run that was alive in each step
 };
 

@@ -1,43 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <scenes/own.h>
 
-#include <raycontact/error.h>
 #include <scenes/centred_shape.h>
 #include <scenes/grid.h>
 #include <scenes/ground.h>
 #include <scenes/meshes_in_words.h>
-#include <scenes/random.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace raycontact::scenes {
 
-namespace {
-
-constexpr std::uint32_t most_bodies = 1u << 20;
-
-void check(const OwnOptions& o) {
-    const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
-    if (o.files.empty()) throw InputError("own meshes: none given; name at least one file");
-    if (o.bodies < 1 || o.bodies > most_bodies)
-        throw InputError("own meshes: " + std::to_string(o.bodies) + " bodies; choose 1 to "
-                         + std::to_string(most_bodies));
-    if (o.size && !positive(*o.size)) throw InputError("own meshes: the size must be a positive number of metres");
-    if (!positive(o.density)) throw InputError("own meshes: the density must be positive");
-    if (o.ground && o.plane) throw InputError("own meshes: the ground is either a mesh or the plane");
-}
-
-} // namespace
-
 SceneDescription own(const OwnOptions& options) {
-    check(options);
-    SceneDescription scene;
-    scene.name = "own";
-    scene.seed = options.seed;
-    scene.steps = options.steps;
-    scene.settings = options.settings;
-    scene.response = options.response;
+    SceneDescription scene = begin_scene("own", options);
     double diameter = 0, largest = 0, smallest = Region::inf;
     for (const std::filesystem::path& file : options.files) {
         const CentredShape mesh = centred_shape(load_mesh(file), options.size, 1, options.nesting);

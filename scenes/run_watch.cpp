@@ -11,9 +11,7 @@
 namespace raycontact::scenes {
 
 RunWatch::RunWatch(const SceneDescription& description)
-    : region_(description.region), gravity_(description.gravity), planned_steps_(std::max(description.steps, 1u)),
-      frames_(std::max(description.frames, 2u)), hash_(description.settings.direction),
-      depths_(description.depth_limit) {
+    : scene_(description), hash_(description.settings.direction), depths_(description.depth_limit) {
     log_.scene = description.name;
     log_.arguments = description.arguments;
     log_.seed = description.seed;
@@ -31,18 +29,13 @@ void RunWatch::add_body(const BodyStart& start, const Pose& pose) {
 }
 
 void RunWatch::add_step(double step_ms, const Scene& scene, std::span<const Pose> poses) {
-    const StepStats& s = scene.stats();
     const auto found = scene.contacts();
     StepRow row;
-    static_cast<StepStats&>(row) = s;
+    static_cast<StepStats&>(row) = scene.stats();
     row.step = steps();
     row.step_ms = step_ms;
     hash_.add(row.step, found);
     depths_.add(row.step, found);
-    contacts_ += s.contacts;
-    rays_ += s.details.rays;
-    ray_length_ += s.details.ray_length;
-    pairs_max_ = std::max(pairs_max_, s.pairs);
     for (const Contact& c : found) row.penetration_max = std::max(row.penetration_max, static_cast<double>(c.depth));
     row.median_speed = median_speed(poses);
     keep_frame(row.step, poses);
@@ -64,8 +57,10 @@ double RunWatch::median_speed(std::span<const Pose> poses) {
 
 // Evenly over the planned run, its first and last step included.
 void RunWatch::keep_frame(std::uint32_t step, std::span<const Pose> poses) {
-    for (std::uint32_t k = 0; k < frames_; ++k) {
-        if (step != static_cast<std::uint64_t>(planned_steps_ - 1) * k / (frames_ - 1)) continue;
+    const std::uint64_t last = std::max(scene_.steps, 1u) - 1;
+    const std::uint32_t frames = std::max(scene_.frames, 2u);
+    for (std::uint32_t k = 0; k < frames; ++k) {
+        if (step != last * k / (frames - 1)) continue;
         log_.frames.push_back({step, {poses.begin(), poses.end()}});
         return;
     }
@@ -83,14 +78,14 @@ Health RunWatch::health() const {
     h.median_speed_last_second = quantile(std::move(late_speeds), 0.5);
     h.depth_limit = depths_.limit();
     h.deep_contacts = depths_.contacts();
-    h.deep_steps_longest = depths_.longest();
+    h.deep_steps_longest = depths_.longest_since(0);
     h.deep_steps_last_second = depths_.longest_since(late);
-    if (!region_.has_ground(gravity_)) return h;
+    if (!scene_.region.has_ground(scene_.gravity)) return h;
     std::uint32_t below = 0, left = 0;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         if (!log_.body_moves[i]) continue;
-        below += region_.is_below(gravity_, positions_[i]);
-        left += region_.has_left(gravity_, positions_[i]);
+        below += scene_.region.is_below(scene_.gravity, positions_[i]);
+        left += scene_.region.has_left(scene_.gravity, positions_[i]);
     }
     h.below_ground = below;
     h.flown_off = left;

@@ -5,19 +5,33 @@
 #include <raycontact/scene.h>
 #include <scenes/depth_watch.h>
 #include <scenes/description.h>
-#include <scenes/health.h>
 #include <scenes/run_log.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace raycontact::scenes {
 
-/// What is measured of a simulation as it runs: its log, its hash, its sums, its health.
+/// How well the bodies of a run behave; over the whole run unless said otherwise.
+struct Health {
+    double penetration_max = 0;               ///< deepest contact, metres
+    double depth_limit = 0;                   ///< SceneDescription::depth_limit
+    std::uint64_t deep_contacts = 0;          ///< contacts deeper than the limit, summed over the steps
+    std::uint32_t deep_steps_longest = 0;     ///< most steps in a row that one contact (same key) was deeper
+    std::uint32_t deep_steps_last_second = 0; ///< the same, of runs that reach into the last second
+    double median_speed_last_second = 0; ///< over the bodies, and of these medians over the last second's steps, m/s
+    /// Bodies whose centre of mass is now under the region, and beside or above it; one that fell past an edge is both.
+    /// Nothing where the scene has no ground.
+    std::optional<std::uint32_t> below_ground, flown_off;
+};
+
+/// What is measured of a simulation as it runs: its log, its hash, its health.
 class RunWatch {
 public:
+    /// The description must outlive it.
     explicit RunWatch(const SceneDescription& description);
 
     /// A body comes: the next of the log's lists.
@@ -29,23 +43,15 @@ public:
     Health health() const;
     std::uint32_t steps() const { return static_cast<std::uint32_t>(log_.rows.size()); }
     std::string hash() const { return hash_.hex(); }
-    std::uint64_t contacts() const { return contacts_; }
-    std::uint64_t rays() const { return rays_; }
-    std::uint64_t pairs_max() const { return pairs_max_; }
-    double ray_length() const { return ray_length_; } ///< metres
 
 private:
     double median_speed(std::span<const Pose> poses);
     void keep_frame(std::uint32_t step, std::span<const Pose> poses);
 
-    Region region_;
-    Vec3 gravity_;
-    std::uint32_t planned_steps_, frames_;
+    const SceneDescription& scene_;
     RunLog log_;
     ContactHash hash_;
     DepthWatch depths_;
-    std::uint64_t contacts_ = 0, rays_ = 0, pairs_max_ = 0;
-    double ray_length_ = 0;
     std::vector<Vec3> positions_; ///< of the bodies at the end of the last step
 };
 

@@ -15,7 +15,7 @@ namespace raycontact::bench {
 
 namespace {
 
-constexpr double avalanche_body = 1; // metres, see AvalancheOptions
+constexpr double avalanche_body = 1; // metres, see avalanche()
 
 struct Watcher {
     SeedRow row;
@@ -51,7 +51,7 @@ std::vector<Watcher> watchers(std::uint64_t seed) {
 
 void sweep(const SeedOptions& options, const Progress& progress, std::vector<SeedRow>& rows) {
     for (std::uint32_t i = 0; i < options.count; ++i) {
-        scenes::AvalancheOptions how;
+        scenes::SceneOptions how;
         how.bodies = options.bodies;
         how.seed = options.first + i;
         how.settings.speculative = false;

@@ -85,7 +85,7 @@ std::shared_ptr<const Shape> one_metre_mesh(const std::filesystem::path& file) {
 }
 
 Work avalanche_work(const AvalancheWorkOptions& options) {
-    scenes::AvalancheOptions how;
+    scenes::SceneOptions how;
     how.bodies = options.bodies;
     how.seed = options.seed;
     how.settings.speculative = false; // what the peers find, too, is in each other
@@ -103,8 +103,7 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
         if (k >= options.first) {
             // Bullet detects at the poses a step begins with.
             WorkStep& step = work.steps.emplace_back();
-            for (std::uint32_t body = 0; body < options.bodies; ++body) step.poses.push_back(scene.pose(body));
-            step.poses.emplace_back(); // the ground
+            step.poses = scene.poses();
         }
         scene.step();
     }

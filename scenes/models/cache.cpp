@@ -3,6 +3,7 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
@@ -34,12 +35,9 @@ std::optional<std::string> bytes_of(const std::filesystem::path& file) {
 }
 
 std::string payload_of(const Mesh& mesh) {
-    std::string bytes;
-    bytes.reserve(24 * mesh.vertices.size() + 12 * mesh.triangles.size());
-    for (const Vec3& v : mesh.vertices)
-        for (const double c : {v.x, v.y, v.z}) bytes.append(reinterpret_cast<const char*>(&c), sizeof c);
-    for (const auto& t : mesh.triangles) bytes.append(reinterpret_cast<const char*>(t.data()), sizeof t);
-    return bytes;
+    static_assert(sizeof mesh.vertices[0] == 24 && sizeof mesh.triangles[0] == 12);
+    std::string bytes(reinterpret_cast<const char*>(mesh.vertices.data()), 24 * mesh.vertices.size());
+    return bytes.append(reinterpret_cast<const char*>(mesh.triangles.data()), 12 * mesh.triangles.size());
 }
 
 } // namespace
@@ -58,11 +56,6 @@ std::optional<std::uint64_t> hash_of_file(const std::filesystem::path& file) {
     return XXH64(bytes->data(), bytes->size(), 0);
 }
 
-std::uint64_t hash_of_mesh(const Mesh& mesh) {
-    const std::string payload = payload_of(mesh);
-    return XXH64(payload.data(), payload.size(), 0);
-}
-
 std::optional<Mesh> read_cached(const std::filesystem::path& file) {
     const auto bytes = bytes_of(file);
     Header header{};
@@ -78,18 +71,12 @@ std::optional<Mesh> read_cached(const std::filesystem::path& file) {
     mesh.name = file.stem().string();
     mesh.vertices.resize(header.vertices);
     mesh.triangles.resize(header.triangles);
-    for (Vec3& v : mesh.vertices) {
-        double c[3];
-        std::memcpy(c, at, sizeof c);
-        v = {c[0], c[1], c[2]};
-        at += sizeof c;
-    }
-    for (auto& t : mesh.triangles) {
-        std::memcpy(t.data(), at, sizeof t);
-        at += sizeof t;
+    const std::uint64_t points = 24 * header.vertices;
+    std::copy_n(at, points, reinterpret_cast<char*>(mesh.vertices.data()));
+    std::copy_n(at + points, room - points, reinterpret_cast<char*>(mesh.triangles.data()));
+    for (const auto& t : mesh.triangles)
         for (const std::uint32_t v : t)
             if (v >= mesh.vertices.size()) return std::nullopt;
-    }
     return mesh;
 }
 

@@ -16,9 +16,6 @@ std::filesystem::path cache_folder();
 /// XXH64 of a file's bytes; nothing when it cannot be read.
 std::optional<std::uint64_t> hash_of_file(const std::filesystem::path& file);
 
-/// XXH64 of vertices and triangles, little-endian.
-std::uint64_t hash_of_mesh(const Mesh& mesh);
-
 /// A mesh from the cache; nothing when it is missing, truncated or damaged (checked by length and XXH64). Never throws.
 std::optional<Mesh> read_cached(const std::filesystem::path& file);
 

@@ -4,7 +4,7 @@
 // the polygon in which their shadows overlap; on it the lower height is linear, but for one straight fold.
 #include <scenes/overlap/volume.h>
 
-#include "mesh/vector.h"
+#include "mesh/measure.h"
 
 #include <algorithm>
 #include <array>
@@ -15,10 +15,6 @@ namespace raycontact::scenes {
 
 namespace {
 
-struct Box {
-    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-};
-
 struct Placed {
     std::vector<Vec3> vertices;
     Box box;
@@ -27,11 +23,9 @@ struct Placed {
 /// Relative to `origin`, so that far away nothing is lost.
 Placed place(const Shape& shape, const Pose& pose, const Vec3& origin) {
     Placed placed;
-    for (const Vec3& v : shape.vertices()) {
+    for (const Vec3& v : shape.vertices())
         placed.vertices.push_back(rotated(pose.rotation, v) + (pose.translation - origin));
-        placed.box.low = least(placed.box.low, placed.vertices.back());
-        placed.box.high = most(placed.box.high, placed.vertices.back());
-    }
+    placed.box = box_of(placed.vertices);
     return placed;
 }
 

@@ -24,7 +24,7 @@ TEST(DepthWatch, CountsRunsPerKey) {
     watch.add(3, std::vector{shallow, other});
     watch.add(4, std::vector{deep, other});
     EXPECT_EQ(watch.contacts(), 7u);
-    EXPECT_EQ(watch.longest(), 3u);
+    EXPECT_EQ(watch.longest_since(0), 3u);
     EXPECT_EQ(watch.longest_since(3), 2u);
     EXPECT_EQ(watch.longest_since(5), 0u);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of scenes/holds, shortened: nothing passes through anything, and what rests is slow. The whole runs are
+// Scenes of tests/holds, shortened: nothing passes through anything, and what rests is slow. The whole runs are
 // raycontact-bench holds (docs/internals/bullet-measurements.md).
-#include <scenes/holds/depth.h>
-#include <scenes/holds/run.h>
+#include <tests/holds/depth.h>
+#include <tests/holds/run.h>
 
 #include <gtest/gtest.h>
 

@@ -14,9 +14,6 @@
 namespace raycontact::test {
 namespace {
 
-using reproduce::Penalty;
-using reproduce::penalty_force;
-
 constexpr double gravity = 9.81, density = 1000;
 constexpr double step = 1.0 / 1200;
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "penalty.h"
+
 #include <raycontact/scene.h>
-#include <reproduce/penalty.h>
 
 #include <array>
 #include <memory>
 #include <vector>
 
 namespace raycontact::test {
-
-using reproduce::Penalty;
-using reproduce::penalty_force;
 
 /// Rigid bodies whose contacts answer with springs and dampers: a small reference beside sequential impulses. Steps are
 /// explicit, so they must be short: dt^2 x stiffness of all of a body's contacts well below its mass.

@@ -56,8 +56,8 @@ TEST(Rain, FourSoundShapesOfOneMetre) {
 }
 
 TEST(Rain, TenASecondFromACircle) {
-    const RainOptions options = without_package();
-    const SceneDescription scene = rain(options);
+    constexpr double radius = 2.5, height = 7;
+    const SceneDescription scene = rain(without_package());
     std::vector<BodyStart> moving;
     for (const BodyStart& body : scene.bodies)
         if (body.density > 0) moving.push_back(body);
@@ -67,16 +67,16 @@ TEST(Rain, TenASecondFromACircle) {
         EXPECT_EQ(moving[k].step, 6 * k);
         EXPECT_EQ(moving[k].shape, moving[k % 4].shape);
         const btVector3& p = moving[k].pose.getOrigin();
-        EXPECT_NEAR(std::hypot(double(p.x()), double(p.y())), options.radius, 1e-5);
-        EXPECT_NEAR(double(p.z()), options.height, 1e-5);
+        EXPECT_NEAR(std::hypot(double(p.x()), double(p.y())), radius, 1e-5);
+        EXPECT_NEAR(double(p.z()), height, 1e-5);
         least_x = std::min(least_x, double(p.x()));
         least_y = std::min(least_y, double(p.y()));
         if (k > 0) { // the last one is out of the way
             EXPECT_GT((p - moving[k - 1].pose.getOrigin()).length(), btScalar(1.1));
         }
     }
-    EXPECT_NEAR(least_x, -options.radius, 0.1); // all the way round
-    EXPECT_NEAR(least_y, -options.radius, 0.1);
+    EXPECT_NEAR(least_x, -radius, 0.1); // all the way round
+    EXPECT_NEAR(least_y, -radius, 0.1);
 }
 
 TEST(Rain, BodiesComeAsTheyAreDue) {
@@ -88,7 +88,7 @@ TEST(Rain, BodiesComeAsTheyAreDue) {
         scene.step();
         ASSERT_EQ(scene.scene().body_count(), 2 + step / 6); // with the ground
     }
-    EXPECT_GT(scene.contacts_total(), 0u); // the first has landed
+    EXPECT_FALSE(scene.contacts().empty()); // the first has landed
     EXPECT_EQ(scene.health().below_ground, 0u);
     EXPECT_EQ(scene.health().flown_off, 0u);
     const RunLog& log = scene.log();
@@ -103,8 +103,12 @@ TEST(Rain, SameSeedSameHash) {
     o.steps = 150;
     const auto hash_of = [](const RainOptions& options) {
         Simulation scene(rain(options));
-        for (std::uint32_t i = 0; i < options.steps; ++i) scene.step();
-        EXPECT_GT(scene.contacts_total(), 300u);
+        std::uint64_t contacts = 0;
+        for (std::uint32_t i = 0; i < options.steps; ++i) {
+            scene.step();
+            contacts += scene.stats().contacts;
+        }
+        EXPECT_GT(contacts, 300u);
         return scene.hash();
     };
     o.settings.execution.threads = 1;
@@ -120,14 +124,8 @@ TEST(Rain, SameSeedSameHash) {
     EXPECT_NE(hash_of(o), hash);
 }
 
-TEST(Rain, RefusesNonsense) {
+TEST(Rain, RefusesAModelThatIsNotKnown) {
     RainOptions o = without_package();
-    o.bodies = 0;
-    EXPECT_THROW(rain(o), InputError);
-    o = without_package();
-    o.rate = 0;
-    EXPECT_THROW(rain(o), InputError);
-    o = without_package();
     o.model = "teapot";
     EXPECT_THROW(rain(o), InputError);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stacks stand in Bullet with one line changed, at least as well as twice Bullet's own boxes drift; and whatever
 // overlaps at the end comes apart, by CGAL's exact test, when one body moves by 3 % of its size.
-#include <scenes/stacks/stack_world.h>
-#include <scenes/stacks/verdict.h>
+#include <tests/stacks/stack_world.h>
+#include <tests/stacks/verdict.h>
 
 // CGAL's headers are not written for these warnings.
 #pragma GCC diagnostic push

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/error.h>
 #include <raycontact/mass.h>
-#include <scenes/models/cache.h>
 #include <scenes/models/model.h>
 #include <scenes/models/procedural.h>
 #include <scenes/models/simplify.h>
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +78,14 @@ TEST(Procedural, CountsOfThePaperAndLargeOnes) {
         for (const std::uint32_t triangles : {902u, 1000u, 2130u, 2166u, 3456u, 3458u, 20'000u})
             expect_good(kind.name, triangles);
     expect_good("knot", 200'000);
+}
+
+/// Of vertices and triangles, little-endian.
+std::uint64_t hash_of_mesh(const Mesh& mesh) {
+    std::string bytes;
+    for (const Vec3& v : mesh.vertices) bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+    for (const auto& t : mesh.triangles) bytes.append(reinterpret_cast<const char*>(&t), sizeof t);
+    return XXH64(bytes.data(), bytes.size(), 0);
 }
 
 /// The same bits from every compiler and at every optimisation: what the scenes' own hashes rest on.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/depth.h>
+#include <tests/holds/depth.h>
 
 #include "shape/mesh_rays.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <scenes/stacks/stack_world.h>
+#include <tests/stacks/stack_world.h>
 
 #include <functional>
 #include <limits>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/hold.h>
+#include <tests/holds/hold.h>
 
-#include <scenes/holds/scenes.h>
 #include <scenes/models/trigonometry.h>
+#include <tests/holds/scenes.h>
 
 #include <iterator>
 

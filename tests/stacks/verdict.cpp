@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/stacks/verdict.h>
+#include <tests/stacks/verdict.h>
 
-#include <scenes/stacks/overlap.h>
+#include <tests/stacks/overlap.h>
 
 #include <algorithm>
 #include <cmath>

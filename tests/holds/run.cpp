@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/run.h>
+#include <tests/holds/run.h>
 
-#include <scenes/holds/depth.h>
 #include <scenes/quantile.h>
-#include <scenes/stacks/verdict.h>
+#include <tests/holds/depth.h>
+#include <tests/stacks/verdict.h>
 
 #include "mesh/vector.h"
 

@@ -3,7 +3,7 @@
 
 #include <raycontact/contact.h>
 
-namespace raycontact::reproduce {
+namespace raycontact::test {
 
 /// What a spring and a damper at each contact answer. The contact's weight w multiplies both: with direction `weighted`
 /// it is an area, so units differ.
@@ -21,4 +21,4 @@ struct Penalty {
 /// `friction` times that, by min(1, speed / slip_speed): Coulomb's law without its jump. 0 of a speculative contact.
 Vec3 penalty_force(const Penalty& penalty, const Contact& contact, const Vec3& velocity = {});
 
-} // namespace raycontact::reproduce
+} // namespace raycontact::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/stacks/solids.h>
+#include <tests/stacks/solids.h>
 
 #include <raycontact/mass.h>
 
@@ -27,17 +27,6 @@ Mesh centred(Mesh mesh) {
 }
 
 } // namespace
-
-Mesh solid_box(const Vec3& size) {
-    Mesh mesh;
-    mesh.name = "box";
-    add_ring(mesh, size.x, size.y, -size.z / 2);
-    add_ring(mesh, size.x, size.y, size.z / 2);
-    add_quad(mesh.triangles, 0, 3, 2, 1);
-    add_quad(mesh.triangles, 4, 5, 6, 7);
-    for (std::uint32_t k = 0; k < 4; ++k) add_quad(mesh.triangles, k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k);
-    return mesh;
-}
 
 Mesh solid_wedge(const Vec3& size, bool upper) {
     Mesh mesh;

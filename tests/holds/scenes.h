@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <scenes/holds/hold.h>
+#include <tests/holds/hold.h>
 
 namespace raycontact::scenes {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <reproduce/penalty.h>
+#include "penalty.h"
 
 #include "mesh/vector.h"
 
 #include <algorithm>
 
-namespace raycontact::reproduce {
+namespace raycontact::test {
 
 Vec3 penalty_force(const Penalty& penalty, const Contact& contact, const Vec3& velocity) {
     if (contact.is_speculative()) return {};
@@ -18,4 +18,4 @@ Vec3 penalty_force(const Penalty& penalty, const Contact& contact, const Vec3& v
     return pressed * normal - (penalty.friction * pressed / std::max(length(sliding), penalty.slip_speed)) * sliding;
 }
 
-} // namespace raycontact::reproduce
+} // namespace raycontact::test

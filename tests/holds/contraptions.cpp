@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/scenes.h>
-#include <scenes/models/machined.h>
 #include <scenes/models/model.h>
+#include <tests/holds/parts.h>
+#include <tests/holds/scenes.h>
 
 #include <btBulletDynamicsCommon.h>
 

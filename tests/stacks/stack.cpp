@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/stacks/stack.h>
+#include <tests/stacks/stack.h>
 
+#include <scenes/models/machined.h>
 #include <scenes/random.h>
-#include <scenes/stacks/solids.h>
+#include <tests/stacks/solids.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <raycontact/scene.h>
-#include <scenes/stacks/stack_world.h>
+#include <tests/stacks/stack_world.h>
 
 #include <memory>
 #include <vector>

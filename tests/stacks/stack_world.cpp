@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/stacks/stack_world.h>
+#include <tests/stacks/stack_world.h>
 
 #include <raycontact/bullet/dispatcher.h>
 #include <raycontact/bullet/recommend.h>
 #include <raycontact/error.h>
 #include <raycontact/mass.h>
-#include <scenes/stacks/solids.h>
+#include <scenes/models/machined.h>
 
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>

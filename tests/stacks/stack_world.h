@@ -2,7 +2,7 @@
 #pragma once
 
 #include <raycontact/settings.h>
-#include <scenes/stacks/stack.h>
+#include <tests/stacks/stack.h>
 
 #include <cstdio>
 #include <memory>

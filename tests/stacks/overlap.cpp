@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/stacks/overlap.h>
+#include <tests/stacks/overlap.h>
 
 #include <algorithm>
 #include <cmath>

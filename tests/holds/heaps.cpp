@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <scenes/holds/scenes.h>
-#include <scenes/models/machined.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
+#include <tests/holds/parts.h>
+#include <tests/holds/scenes.h>
 
 #include <algorithm>
 #include <cmath>
