@@ -22,6 +22,7 @@ from .queries import (
 )  # fmt: skip
 from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Recorder, Scene
 from .shape import Mass, Shape
+from .show import show
 
 __version__: str = _core.version
 
@@ -30,5 +31,5 @@ __all__ = [
     "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "PairContacts",
     "RayHit", "Recorder", "Scene", "Shape", "StepStats", "closest_point", "collide", "common_point", "contains",
     "distance", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
-    "raycast", "raycast_any",
+    "raycast", "raycast_any", "show",
 ]  # fmt: skip
