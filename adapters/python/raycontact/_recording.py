@@ -58,7 +58,7 @@ class Recording:
         try:
             chunks = dict(_chunks(data))
             if b"RAYC" not in chunks:
-                raise InputError(f"{name}: is no recording; name a file made by a Recorder or `raycontact run --record`")
+                raise InputError(f"{name}: is no recording; name one that a Recorder or `raycontact run --record` made")
             blocks = dict(_blocks(chunks[b"RAYC"]))
             if b"END " not in blocks:
                 raise InputError(f"{name}: was not finished, so it has no animation; `raycontact view` shows it")

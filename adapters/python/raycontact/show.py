@@ -49,16 +49,16 @@ def show(
 
     what: a Scene, as it is now, or the .glb file of a Recorder or of `raycontact run --record`.
     out: writes a page that needs no server to this file instead of serving; it can be mailed, or put on a web site.
-    contacts: draws contacts as points and their normals as lines, and bodies see-through. From yellow to red: the deeper
-        the redder, red the deepest shown so far; speculative ones are blue. Of a scene those of its last step; those of
-        a recording are found again with its direction and features, from its animation's float32 poses.
+    contacts: draws contacts as points and their normals as lines, and bodies see-through. Yellow ones are shallow, the
+        deepest shown so far is red, speculative ones are blue. A scene's are those of its last step; a recording's are
+        found again with its direction and features, from its animation's float32 poses, without speculative ones.
     static: ids of a scene's bodies that are drawn grey, as a recording's bodies that never move are.
     fps: pictures a second of a recording; it plays as fast as it was recorded.
     host, port: where to serve; the next free port where this one is taken. "0.0.0.0" lets other machines see it.
     block: serves until Ctrl-C. False: returns the server at once; `server.stop()` ends it.
 
-    Prints the address that it serves at. World frame, metres, z up. Raises ImportError without viser, and InputError for
-    a file that is no finished recording, for ids that are not in the scene and for fps <= 0.
+    Prints the address that it serves at. World frame, metres, z up. Raises ImportError without viser, and InputError
+    for a file that is no finished recording, for ids that are not in the scene and for fps <= 0.
     """
     rate = as_length(fps, "fps")
     if not 0 < rate < np.inf:
