@@ -18,6 +18,7 @@ import numpy as np
 from ._core import InputError
 
 _FORMATS = {5125: "<u4", 5126: "<f4"}
+_MOST_TEXT = 1 << 20
 _WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 
 
@@ -35,18 +36,19 @@ class Placed(NamedTuple):
 class Recording:
     """A finished recording. Raises InputError naming the file for one that is not, and for any other file.
 
-    meshes: vertices (v, 3) float32, metres, and triangles (t, 3) uint32, of each shape.
+    meshes: name, vertices (v, 3) float32, metres, and triangles (t, 3) uint32, of each shape.
     mesh_of: (n,) int64, which of them each of the n bodies has.
     moves: (n,) bool: false for bodies that stay where they are.
     times: (f,) float32, seconds.
-    info: what the recording says of itself, as its run's settings.
+    direction, features: of its run's settings.
     """
 
-    meshes: list[tuple[np.ndarray, np.ndarray]]
+    meshes: list[tuple[str, np.ndarray, np.ndarray]]
     mesh_of: np.ndarray
     moves: np.ndarray
     times: np.ndarray
-    info: dict[str, Any]
+    direction: str
+    features: str
 
     def __init__(self, file: Union[str, os.PathLike[str]]) -> None:
         name = os.fspath(file)
@@ -62,11 +64,12 @@ class Recording:
             blocks = dict(_blocks(chunks[b"RAYC"]))
             if b"END " not in blocks:
                 raise InputError(f"{name}: was not finished, so it has no animation; `raycontact view` shows it")
-            self.info = json.loads(zlib.decompress(blocks[b"INFO"]))
+            info = dict(json.loads(zlib.decompressobj().decompress(blocks[b"INFO"], _MOST_TEXT)))
+            self.direction, self.features = str(info["direction"]), str(info.get("features", "vertices"))
             self._read(json.loads(chunks[b"JSON"]), chunks.get(b"BIN\0", b""))
         except InputError:
             raise
-        except (ValueError, LookupError, TypeError, struct.error, zlib.error) as error:
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError, struct.error, zlib.error) as error:
             raise InputError(f"{name}: is no recording that can be shown: {error!r}") from None
 
     def _read(self, document: dict[str, Any], binary: bytes) -> None:
@@ -78,10 +81,10 @@ class Recording:
             return flat.reshape(-1, width)
 
         # A mesh is there once for each colour; those with the same vertices are one shape.
-        primitives = [mesh["primitives"][0] for mesh in document.get("meshes", [])]
-        keys = [(p["attributes"]["POSITION"], p["indices"]) for p in primitives]
+        primitives = [(str(mesh.get("name", "")), mesh["primitives"][0]) for mesh in document.get("meshes", [])]
+        keys = [(name, p["attributes"]["POSITION"], p["indices"]) for name, p in primitives]
         shapes = list(dict.fromkeys(keys))
-        self.meshes = [(array(vertices), array(corners).reshape(-1, 3)) for vertices, corners in shapes]
+        self.meshes = [(name, array(vertices), array(corners).reshape(-1, 3)) for name, vertices, corners in shapes]
 
         nodes = document["nodes"]
         bodies = nodes[0].get("children", [])  # node 0 turns z up into glTF's y up
@@ -131,5 +134,8 @@ def _blocks(chunk: bytes) -> Iterator[tuple[bytes, bytes]]:
     at = 16
     while at + 40 <= len(chunk):
         kind, stored = struct.unpack_from("<4s4xQ", chunk, at)
+        end = at + 40 + (stored + 7) // 8 * 8
+        if end > len(chunk):
+            return  # not whole
         yield kind, chunk[at + 40 : at + 40 + stored]
-        at += 40 + (stored + 7) // 8 * 8
+        at = end

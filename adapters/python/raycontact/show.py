@@ -117,8 +117,8 @@ def _film_of_recording(recording: Recording, fps: float) -> _Film:
     # The first step of each period, and the last of all.
     steps = np.unique(np.floor(recording.times.astype(np.float64) * fps + 1e-3), return_index=True)[1]
     steps = np.union1d(steps, len(recording.times) - 1)
-    shapes = [Shape(Mesh(vertices, triangles), repair=False) for vertices, triangles in recording.meshes]
-    scene = Scene(direction=recording.info["direction"], features=recording.info.get("features", "vertices"))
+    shapes = [Shape(Mesh(*mesh, name=name), repair=False) for name, *mesh in recording.meshes]
+    scene = Scene(direction=recording.direction, features=recording.features)
     ids = np.array([scene.add(shapes[i]) for i in recording.mesh_of], np.int64)
 
     def contacts(frame: int) -> Contacts:
@@ -159,7 +159,7 @@ class _Stage:
         for i, shape in enumerate(film.shapes):
             which = np.flatnonzero(film.shape_of == i)
             batch = server.scene.add_batched_meshes_simple(
-                f"/bodies/{i} {shape.name}".rstrip(),
+                f"/bodies/{i} {shape.name.replace('/', ' ')}".rstrip(),  # a slash begins a node below
                 shape.vertices,
                 shape.triangles,
                 placed.wxyzs[which],
