@@ -63,7 +63,7 @@ def main() -> None:
         share = cast.sum() / rays[0].sum()
         print(f"{method:<12} {sum(map(len, keys)):9d} {missed:7d} {invented:9d} {cast.sum():10d} {100 * share:13.1f} %")
     if options.picture:
-        means = [[part.mean() for part in np.array_split(cast, 80)] / rays.max() for cast in rays]
+        means = [[part.mean() for part in np.array_split(cast, min(80, len(cast)))] / rays.max() for cast in rays]
         picture.save(options.picture, np.concatenate([picture.bars(mean, 480, 90) for mean in means]))
 
 

@@ -179,11 +179,11 @@ class _Stage:
             # Something must be there; it is not seen.
             nothing, black = np.zeros((1, 3), np.float32), np.zeros(3, np.uint8)
             self.points = server.scene.add_point_cloud(
-                "/contacts/points", nothing, black, point_size=0.012 * self.grain, point_shape="circle",
+                "/contacts/points", nothing, black, point_size=0.018 * self.grain, point_shape="circle",
                 precision="float32", position=self.middle, visible=False,
             )  # fmt: skip
             self.normals = server.scene.add_line_segments(
-                "/contacts/normals", np.zeros((1, 2, 3), np.float32), black, thickness=0.004 * self.grain,
+                "/contacts/normals", np.zeros((1, 2, 3), np.float32), black, thickness=0.006 * self.grain,
                 position=self.middle, visible=False,
             )  # fmt: skip
         self.draw(0)
@@ -208,7 +208,7 @@ class _Stage:
         share = np.clip(found.depth / (self.deepest or 1.0), 0.0, 1.0)[:, None]
         colours = np.where(found.depth[:, None] > 0, (1 - share) * _SHALLOW + share * _DEEP, _APART).astype(np.uint8)
         self.points.points, self.points.colors = points.astype(np.float32), colours
-        ends = np.stack([points, points + 0.06 * self.grain * normals], axis=1)
+        ends = np.stack([points, points + 0.09 * self.grain * normals], axis=1)
         self.normals.points, self.normals.colors = ends.astype(np.float32), np.repeat(colours[:, None], 2, axis=1)
 
     def start(self) -> None:
