@@ -113,7 +113,9 @@ def test_clashes(example, tmp_path):
     assert number(text, r"plate - bracket 1 +clash, (#) mm") == 2.0
     # The shaft's corners are 1.5 mm outside the bore's; both are polygons.
     assert 1.3 < number(text, r"gear 2 - shaft 2 +clash, (#) mm") <= 1.5
-    assert 0 < number(text, r"gear 1 - gear 2 +clash, (#) mm") <= 2.8
+    # Tips lie at 0.1 m cos(0.35 x 7.5 degrees) from either axis.
+    tips = 200 * np.cos(np.radians(0.35 * 7.5)) - 197
+    assert number(text, r"gear 1 - gear 2 +clash, (#) mm") == pytest.approx(tips, abs=1e-3)
     assert re.search(r"plate - bracket 2 +touch", text)
     pieces = {piece.name: brute_force.triangles_of(piece.mesh, piece.pose) for piece in clashes.assembly()}
     for a, b, gap in re.findall(r"  (\S.*) - (\S.*?) +([\d.]+) mm apart", text):

@@ -6,6 +6,7 @@ import importlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -249,6 +250,15 @@ def test_without_viser_it_says_what_to_install(scene, monkeypatch):
 def test_importing_raycontact_does_not_import_viser():
     code = "import sys, raycontact; sys.exit('viser' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_ctrl_c_ends_it(recording):
+    code = "import sys, raycontact as rc; rc.show(sys.argv[1], port=0); print('over')"
+    with subprocess.Popen([sys.executable, "-c", code, recording[0]], stdout=subprocess.PIPE, text=True) as process:
+        assert "http://127.0.0.1:" in process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        assert "over" in process.stdout.read()
+    assert process.returncode == 0
 
 
 def test_serves_until_it_is_stopped(recording, capsys):

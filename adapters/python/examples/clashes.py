@@ -23,9 +23,9 @@ def assembly() -> list[rc.AssemblyPart]:
         "bracket 1": (bracket, (0.28, 0, -7 / 128 - 0.002)),
         "bracket 2": (bracket, (-0.08, 0, -7 / 128)),  # stands on the plate, to the last bit
         "gear 1": (gear, (0, 0, 0)),
-        "gear 2": (gear, (0.197, 0, 0)),  # tip on tip, 2.8 mm too close
+        "gear 2": (gear, (0.197, 0.001, 0.002)),  # tip on tip, 2.79 mm too close
         "shaft 1": (parts.ring(0.01, 0.0385, 0.15), (0, 0, 0.045)),
-        "shaft 2": (parts.ring(0.01, 0.0415, 0.15), (0.197, 0, 0.045)),
+        "shaft 2": (parts.ring(0.01, 0.0415, 0.15), (0.197, 0.001, 0.045)),
         "knot": (parts.knot(), (0.05, 0, 0.173)),
     }
     return [rc.AssemblyPart(name, mesh, rc.pose(place)) for name, (mesh, place) in placed.items()]

@@ -71,20 +71,17 @@ def show(
         raise InputError(f"show: {type(what).__name__} is neither a Scene nor the file of a recording")
 
     if out is not None:
-        with _server("127.0.0.1", 0, silent=True) as server:
+        with _server("127.0.0.1", 0) as server:
             page = _page(_Stage(server, film, contacts))
         Path(out).write_text(page, encoding="utf-8")
         return None
     with _server(host, as_count(port, "port"), keep=not block) as server:
-        stage = _Stage(server, film, contacts)
-        print(f"raycontact.show: http://{server.get_host()}:{server.get_port()}", flush=True)
-        stage.start()
-        if not block:
-            return server
-        with contextlib.suppress(KeyboardInterrupt):
-            while True:
+        _Stage(server, film, contacts).start()
+        with contextlib.suppress(KeyboardInterrupt) if block else contextlib.nullcontext():
+            print(f"raycontact.show: http://{server.get_host()}:{server.get_port()}", flush=True)
+            while block:
                 time.sleep(1.0)
-    return None
+    return None if block else server
 
 
 class _Film(NamedTuple):
@@ -99,9 +96,9 @@ class _Film(NamedTuple):
 def _film_of_scene(scene: Scene, static: np.ndarray) -> _Film:
     ids = scene.ids
     grey = as_ids(static, "static")[0]
-    for body in grey:
-        if body not in ids:
-            raise InputError(f"static: body {body} is not in the scene")
+    unknown = grey[~np.isin(grey, ids)]
+    if len(unknown):
+        raise InputError(f"static: body {unknown[0]} is not in the scene")
     bodies = [scene.shape(body) for body in ids]
     # Bodies that share a shape have the same one of the C++ half.
     shapes = list({id(shape._core): shape for shape in bodies}.values())
@@ -255,7 +252,7 @@ def _page(stage: _Stage) -> str:
 
 
 @contextlib.contextmanager
-def _server(host: str, port: int, *, keep: bool = False, silent: bool = False) -> Iterator[Any]:
+def _server(host: str, port: int, *, keep: bool = False) -> Iterator[Any]:
     """A server that ends with the block; with `keep` only if that fails."""
     try:
         import viser
