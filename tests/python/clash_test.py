@@ -4,7 +4,6 @@
 import meshes
 import numpy as np
 import pytest
-
 import raycontact as rc
 
 BOX = rc.Mesh(*meshes.box(), name="box")

@@ -59,7 +59,11 @@ def test_the_shell_has_the_programs_queries(samples):
         (["nothing"], 2),
     ):
         run = subprocess.run(
-            [sys.executable, "-m", "raycontact", *arguments], cwd=samples, env=environment, capture_output=True, text=True
+            [sys.executable, "-m", "raycontact", *arguments],
+            cwd=samples,
+            env=environment,
+            capture_output=True,
+            text=True,
         )
         assert run.returncode == status, (arguments, run.stdout, run.stderr)
         assert status != 2 or run.stderr.strip()

@@ -32,6 +32,7 @@ from .queries import (
 )  # fmt: skip
 from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Recorder, Scene
 from .shape import Mass, Shape
+from .show import show
 
 __version__: str = _core.version
 
@@ -40,5 +41,5 @@ __all__ = [
     "CollisionManager", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass",
     "Mesh", "MeshReport", "PairContacts", "RayHit", "Recorder", "Scene", "Shape", "StepStats", "clash",
     "closest_point", "collide", "common_point", "contains", "distance", "intersects", "list_devices", "load_assembly",
-    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any",
+    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any", "show",
 ]  # fmt: skip

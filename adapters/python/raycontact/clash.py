@@ -23,8 +23,8 @@ class Clash(NamedTuple):
     b: str
     """Name of a later part."""
     depth: Optional[float]
-    """Of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a depth, as one
-    of them is open, intersects itself or winds the wrong way somewhere."""
+    """Of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a depth, as
+    one of them is open, intersects itself or winds the wrong way somewhere."""
     point: np.ndarray
     """(3,) float64, metres, frame of the assembly: of that contact; else one that both share."""
     normal: Optional[np.ndarray]

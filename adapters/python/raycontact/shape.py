@@ -123,7 +123,7 @@ class Shape:
     @property
     def box(self) -> NDArray[np.float64]:
         """(2, 3) float64, metres, body frame: least and greatest coordinates."""
-        return np.array(self._core.box)
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     @property
     def radius(self) -> float:

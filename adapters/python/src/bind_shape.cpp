@@ -55,7 +55,6 @@ void bind_shape(nb::module_& m) {
         .def_prop_ro("vertex_normals", &view<double, 3, &Shape::vertex_normals>, nb::rv_policy::automatic)
         .def_prop_ro("vertex_areas", &view<float, 1, &Shape::vertex_areas>, nb::rv_policy::automatic)
         .def_prop_ro("exit_distances", &view<float, 1, &Shape::exit_distances>, nb::rv_policy::automatic)
-        .def_prop_ro("box", [](const Shape& s) { return nb::make_tuple(three(s.box_min()), three(s.box_max())); })
         .def_prop_ro("radius", &Shape::radius)
         .def_prop_ro("longest_edge", &Shape::longest_edge)
         .def_prop_ro("memory_bytes", &Shape::memory_bytes)

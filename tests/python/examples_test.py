@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The examples run with NumPy alone, and what they print is what trying everything finds."""
+
+import importlib
+import os
+import re
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+import brute_force
+import numpy as np
+import pytest
+import raycontact as rc
+
+FOLDER = Path(__file__).resolve().parents[2] / "adapters" / "python" / "examples"
+
+
+def run(name, *words):
+    """What an example prints."""
+    done = subprocess.run([sys.executable, FOLDER / f"{name}.py", *map(str, words)], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def number(text, pattern):
+    """The one that stands where the pattern has (#)."""
+    found = re.search(pattern.replace("#", r"-?[\d.]+(?:e-?\d+)?"), text)
+    assert found, f"{pattern} is not in\n{text}"
+    return float(found[1])
+
+
+@pytest.fixture(scope="module")
+def example():
+    """Modules of the examples, by name."""
+    sys.path.insert(0, str(FOLDER))
+    yield importlib.import_module
+    sys.path.remove(str(FOLDER))
+
+
+def assert_picture(file):
+    data = Path(file).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    size = int.from_bytes(data[33:37], "big")
+    assert data[37:41] == b"IDAT" and len(set(zlib.decompress(data[41 : 41 + size]))) > 2, "one colour"
+
+
+def test_parts_are_closed_outward_and_concave(example):
+    parts = example("parts")
+    for make in (parts.knot, parts.gear, parts.bracket, parts.pad, lambda: parts.ring(0.1, 0.2, 0.1)):
+        shape = rc.Shape(make())
+        assert shape.report.good and not shape.report.repairs, shape.report
+        faces = brute_force.triangles_of(shape)
+        normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        above = np.max(normals @ shape.vertices.T - np.sum(normals * faces[:, 0], axis=1)[:, None])
+        assert above > 0.01, f"{shape.name} is convex"
+
+
+def test_pair(example, tmp_path):
+    pair = example("pair")
+    text = run("pair", "--picture", tmp_path / "pair.png")
+    gear, knot = pair.meshes()
+    a = brute_force.triangles_of(gear)
+    assert "intersect: True" in text and brute_force.meet(a, brute_force.triangles_of(knot, pair.BESIDE))
+    true = brute_force.distance(a, brute_force.triangles_of(knot, pair.APART))
+    assert number(text, r"distance: (#) mm") == pytest.approx(1e3 * true, abs=1e-6)
+    # The deepest witness point of the gear lies in the knot, no farther from its surface than the contact is deep.
+    point = 1e-3 * np.array([[float(x) for x in re.search(r"mm at \((.*)\) mm", text)[1].split(",")]])
+    b = brute_force.triangles_of(knot, pair.BESIDE)
+    assert brute_force.winding(point, b)[0] == pytest.approx(1, abs=1e-6)
+    assert brute_force.to_triangles(point, b)[0] <= 1e-3 * number(text, r"deepest: (#) mm") + 1e-6
+    assert number(text, r"depth x normal to (#) m") < 1e-8
+    assert_picture(tmp_path / "pair.png")
+
+
+def test_pair_of_files(tmp_path):
+    corners = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [(1, 2, 4), (1, 4, 3), (5, 7, 8), (5, 8, 6), (1, 5, 6), (1, 6, 2),
+             (3, 4, 8), (3, 8, 7), (1, 3, 7), (1, 7, 5), (2, 6, 8), (2, 8, 4)]  # fmt: skip
+    for name, shift in (("a", 0), ("b", 1.25)):
+        lines = [f"v {x + shift} {y} {z}" for x, y, z in corners] + [f"f {i} {j} {k}" for i, j, k in faces]
+        (tmp_path / f"{name}.obj").write_text("\n".join(lines))
+    text = run("pair", tmp_path / "a.obj", tmp_path / "b.obj")
+    assert "intersect: False, 0 contacts" in text and number(text, r"distance: (#) mm") == 250
+
+
+def test_batch(example, tmp_path):
+    batch = example("batch")
+    text = run("batch", "--pairs", 400, "--picture", tmp_path / "batch.png")
+    meeting, none_apart = number(text, r"(#) intersect"), number(text, r"(#) have distance 0")
+    assert meeting == none_apart == number(text, r"(#) have # contacts")
+    assert sum(int(n) for n in re.findall(r"mm: +(\d+)", text)) == meeting
+    # Of the first pairs each answer is that of trying everything.
+    a, b = batch.meshes()
+    pose_a, pose_b = (poses[:40] for poses in batch.poses(400))
+    found = rc.intersects(rc.Shape(a), rc.Shape(b), pose_a, pose_b)
+    gaps = rc.distance(rc.Shape(a), rc.Shape(b), pose_a, pose_b).distance
+    placed = [(brute_force.triangles_of(a, p), brute_force.triangles_of(b, q)) for p, q in zip(pose_a, pose_b)]
+    assert found.tolist() == [brute_force.meet(*pair) for pair in placed]
+    for i in np.flatnonzero(~found)[:5]:
+        assert gaps[i] == pytest.approx(brute_force.distance(*placed[i]), rel=1e-9)
+    assert_picture(tmp_path / "batch.png")
+
+
+def test_clashes(example, tmp_path):
+    clashes = example("clashes")
+    text = run("clashes", "--picture", tmp_path / "clashes.png")
+    assert "8 parts, 28 pairs: 3 clash, 1 touch" in text
+    assert number(text, r"plate - bracket 1 +clash, (#) mm") == 2.0
+    # The shaft's corners are 1.5 mm outside the bore's; both are polygons.
+    assert 1.3 < number(text, r"gear 2 - shaft 2 +clash, (#) mm") <= 1.5
+    # Tips lie at 0.1 m cos(0.35 x 7.5 degrees) from either axis.
+    tips = 200 * np.cos(np.radians(0.35 * 7.5)) - 197
+    assert number(text, r"gear 1 - gear 2 +clash, (#) mm") == pytest.approx(tips, abs=1e-3)
+    assert re.search(r"plate - bracket 2 +touch", text)
+    pieces = {piece.name: brute_force.triangles_of(piece.mesh, piece.pose) for piece in clashes.assembly()}
+    for a, b, gap in re.findall(r"  (\S.*) - (\S.*?) +([\d.]+) mm apart", text):
+        assert not brute_force.meet(pieces[a], pieces[b])
+        assert float(gap) == pytest.approx(1e3 * brute_force.distance(pieces[a], pieces[b]), abs=6e-4)
+    assert_picture(tmp_path / "clashes.png")
+
+
+def test_clashes_of_a_file(example, tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    for name, mesh, pose in example("clashes").assembly():
+        scene.add_geometry(trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False), name, name, transform=pose)
+    (tmp_path / "gearbox.glb").write_bytes(scene.export(file_type="glb"))
+    text = run("clashes", tmp_path / "gearbox.glb")
+    # A .glb has float32 coordinates: what touched to the last bit may miss.
+    assert "8 parts, 28 pairs: 3 clash" in text
+    assert number(text, r"plate - bracket 1 +clash, (#) mm") == pytest.approx(2, abs=2e-3)
+
+
+def test_gripper(example, tmp_path):
+    gripper = example("gripper")
+    text = run("gripper", "--cells", 40, "--picture", tmp_path / "field.png")
+    parts = example("parts")
+    part = parts.knot()
+    shape, faces = rc.Shape(part), brute_force.triangles_of(part)
+    points = gripper.grid(shape, 40).reshape(-1, 3)
+    field = gripper.signed_distance(shape, points)
+    assert 1e3 * field.min() == pytest.approx(number(text, r": (#) to # mm"), abs=1e-3)
+    some = np.random.default_rng(2).choice(len(points), 200, replace=False)
+    inside = brute_force.winding(points[some], faces) > 0.5
+    true = np.where(inside, -1, 1) * brute_force.to_triangles(points[some], faces)
+    assert inside.any() and np.allclose(field[some], true, atol=1e-12)
+    # Half a micrometre wider the pads are free, two micrometres narrower one goes in.
+    opening = 1e-3 * number(text, r"closed to (#) mm")
+    pad = brute_force.triangles_of(parts.pad(), np.eye(4))
+
+    def pads(width):
+        return [pad @ pose[:3, :3].T + pose[:3, 3] for pose in gripper.fingers(width)]
+
+    assert min(brute_force.distance(one, faces) for one in pads(opening + 1e-6)) > 0
+    assert not any(brute_force.meet(one, faces) for one in pads(opening + 1e-6))
+    assert any(brute_force.meet(one, faces) for one in pads(opening - 8e-6))
+    assert number(text, r"other pad is (#) mm") == pytest.approx(
+        1e3 * max(brute_force.distance(one, faces) for one in pads(opening)), abs=2e-3)  # fmt: skip
+    assert_picture(tmp_path / "field.png")
+
+
+def test_methods(example, tmp_path):
+    methods = example("methods")
+    steps = 60
+    text = run("methods", "--steps", steps, "--picture", tmp_path / "rays.png")
+    lines = re.findall(r"(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +[\d.]+ %", text)
+    rows = {method: [int(x) for x in numbers] for method, *numbers in lines}
+    assert list(rows) == list(methods.METHODS)
+    # `collide` keeps nothing from step to step.
+    shapes, path = methods.shapes(), methods.poses(steps)
+    every = len(rc.collide(*shapes, pose_b=path, features="vertices"))
+    assert rows["standard"][0] == rows["certified"][0] == every
+    assert rows["standard"][1:3] == rows["certified"][1:3] == [0, 0]
+    for contacts, missed, invented, _ in rows.values():
+        assert contacts == every - missed + invented
+    assert all(0 < rows[method][3] <= rows["standard"][3] for method in rows)
+    assert_picture(tmp_path / "rays.png")
+
+
+def test_falling(example, tmp_path):
+    file = tmp_path / "run.glb"
+    text = run("falling", "--bodies", 6, "--seconds", 2.0, "--record", file, "--picture", tmp_path / "run.png")
+    assert number(text, r"moves at (#) mm/s") < 60
+    # At rest the ground carries what there is.
+    assert number(text, r"carries (#) N") == pytest.approx(number(text, r"N of (#) N"), rel=0.1)
+    assert number(text, r"at the end (#) mm") < 4
+    # The recording agrees: bodies fell, and lie on the ground, whose top is z = 0.
+    recording = importlib.import_module("raycontact._recording").Recording(file)
+    first, last = recording.at(0), recording.at(-1)
+    assert not recording.moves[0] and recording.moves[1:].all() and len(recording.times) == 60
+    assert (last.positions[1:, 2] < first.positions[1:, 2]).all()
+    last_poses = rc.pose_from_quaternion(last.positions, last.wxyzs)
+    vertices = [recording.meshes[mesh][1] for mesh in recording.mesh_of]
+    lowest = [(v @ p[:3, :3].T + p[:3, 3])[:, 2].min() for v, p in zip(vertices, last_poses)]
+    assert min(lowest[1:]) > -4e-3 and max(lowest[1:]) < 0.2
+    assert_picture(tmp_path / "run.png")
