@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import as_count, as_length, as_poses
@@ -16,27 +17,29 @@ from .mesh import Mesh
 
 
 class Clash(NamedTuple):
-    """Two parts that share a point."""
+    """Two parts that share a point.
+
+    a: name of a part.
+    b: name of a later part.
+    depth: of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a
+        depth, as one of them is open, intersects itself or winds the wrong way somewhere.
+    point: (3,) float64, metres, frame of the assembly: of that contact; else one that both share.
+    normal: (3,) float64, unit, from a to b: of that contact; None without one.
+    contacts: how many contacts the two have.
+    duplicate: they are copies in one place.
+    index_a: of a in the list of parts.
+    index_b: of b in the list of parts.
+    """
 
     a: str
-    """Name of a part."""
     b: str
-    """Name of a later part."""
     depth: Optional[float]
-    """Of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a depth, as
-    one of them is open, intersects itself or winds the wrong way somewhere."""
-    point: np.ndarray
-    """(3,) float64, metres, frame of the assembly: of that contact; else one that both share."""
-    normal: Optional[np.ndarray]
-    """(3,) float64, unit, from a to b: of that contact; None without one."""
+    point: NDArray[np.float64]
+    normal: Optional[NDArray[np.float64]]
     contacts: int
-    """How many contacts the two have."""
     duplicate: bool
-    """They are copies in one place."""
     index_a: int
-    """Of a in the list of parts."""
     index_b: int
-    """Of b in the list of parts."""
 
 
 class Clashes(Sequence[Clash]):

@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ from .scene import Scene
 from .shape import Shape
 
 if TYPE_CHECKING:
-    import viser
+    pass
 
 _COLOURS = np.array([(196, 84, 40), (40, 106, 170), (206, 158, 48), (60, 140, 72), (132, 78, 156)], np.uint8)
 _GREY = (150, 147, 138)
@@ -45,7 +45,7 @@ def show(
     host: str = "127.0.0.1",
     port: int = 8080,
     block: bool = True,
-) -> Optional[viser.ViserServer]:
+) -> Any:
     """Shows a scene or plays a recording in a browser. Needs viser: `pip install viser`.
 
     what: a Scene, as it is now, or the .glb file of a Recorder or of `raycontact run --record`.
@@ -56,7 +56,7 @@ def show(
     static: ids of a scene's bodies that are drawn grey, as a recording's bodies that never move are.
     fps: pictures a second of a recording; it plays as fast as it was recorded.
     host, port: where to serve; the next free port where this one is taken. "0.0.0.0" lets other machines see it.
-    block: serves until Ctrl-C. False: returns the server at once; `server.stop()` ends it.
+    block: serves until Ctrl-C. False: returns viser's server at once; `server.stop()` ends it.
 
     Prints the address that it serves at. World frame, metres, z up. Raises ImportError without viser, and InputError
     for a file that is no finished recording, for ids that are not in the scene and for fps <= 0.
