@@ -324,7 +324,7 @@ void CollisionDispatcher::record(const std::filesystem::path& file, const Record
     state_->recorder.emplace(file, state_->scene, options);
 }
 void CollisionDispatcher::finish_recording() {
-    if (const auto recorder = std::move(state_->recorder)) recorder->finish(); // ends it even if it throws
+    if (auto recorder = std::exchange(state_->recorder, std::nullopt)) recorder->finish(); // over even if it throws
 }
 void CollisionDispatcher::remove_body(const btCollisionObject& object) {
     state_->objects.unpin(object);
