@@ -34,7 +34,7 @@ struct Counts {
 void report(const char* what, const Counts& counts, double wanted);
 
 /// A `displacement_threshold` to be told.
-inline constexpr double thresholds[] = {0, 1e-6, 1e-4, 1e-2, 0.3, 100, 1e300};
+inline constexpr double thresholds[] = {0, 1e-6, 1e-4, 1e-2, 0.3, 100, 1e12};
 
 /// One thread; direction, features and whether rays are skipped by chance: edges now and then, since they take longer.
 Settings some_settings(Random& random);
