@@ -461,7 +461,7 @@ class TestErrors:
             (np.diag([2, 2, 2, 1]), "scaled"),
             (np.diag([1, 1, -1, 1]), "mirrored"),
             (np.full((4, 4), np.nan), "transform"),
-            (at(np.inf), "not finite"),
+            (at(np.inf), "not a finite"),
             (at(5).T, "last row"),
             ("identity", "array|numbers"),
         ],
@@ -615,7 +615,7 @@ class TestScenes:
     def test_errors_name_the_node(self):
         for transform, geometry, why in (
             (np.diag([1, 1, 0, 1]), box(), "flat"),
-            (at(np.nan), box(), "flat or not finite"),
+            (at(np.nan), box(), "not a finite number"),
             (np.eye(4), object(), "has no vertices and faces"),
         ):
             with pytest.raises(rc.InputError, match=f"object 'n': .*{why}"):

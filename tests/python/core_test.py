@@ -217,7 +217,7 @@ def test_rays_and_points_of_a_torus(torus):
         (lambda s: rc.intersects(s, s, pose_b=np.diag([2, 2, 2, 1.0])), "rigid"),
         (lambda s: rc.intersects(s, s, pose_b=np.diag([-1, 1, 1, 1.0])), "mirrored"),
         (lambda s: rc.intersects(s, s, pose_b=np.eye(4).T + np.eye(4)[::-1] * 3), "last row"),
-        (lambda s: rc.collide(s, s, pose_b=rc.pose([[0, 0, 0], [np.nan, 0, 0]])), "pair 1"),
+        (lambda s: rc.collide(s, s, pose_b=rc.pose([[0, 0, 0], [np.nan, 0, 0]])), r"pose_b\[1\]"),
         (lambda s: rc.distance(s, s, max=-1), "max|greatest"),
         (lambda s: rc.distance(s, s, max="far"), "max"),
         (lambda s: rc.distance(s, s, threads=-1), "threads"),
@@ -618,3 +618,64 @@ def test_an_object_with_vertices_and_faces_is_one_mesh_even_if_it_is_a_tuple(tor
     pair = collections.namedtuple("pair", "vertices faces")(*meshes.bracket())
     assert rc.intersects(pair, pair) is True
     assert rc.Scene().add(pair) == 0
+
+
+def test_scales_reach_files_shapes_assemblies_and_clashes(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box((1000, 1000, 1000)), node_name="a", geom_name="box")
+    scene.graph.update("b", geometry="box", matrix=rc.pose([750, 0, 0]))
+    scene.export(tmp_path / "mm.glb")
+    parts = rc.load_assembly(tmp_path / "mm.glb", scale=0.001)
+    assert parts[0].mesh is parts[1].mesh and parts[1].pose[0, 3] == 0.75
+    assert rc.Shape(parts[0].mesh).mass.volume == pytest.approx(1)
+    for assembly in (tmp_path / "mm.glb", scene):
+        found = rc.clash(assembly, scale=0.001)
+        assert len(found) == 1 and found[0].depth == pytest.approx(0.25, abs=1e-5), assembly
+    assert rc.Shape(trimesh.creation.box((1000, 1000, 1000)), scale=0.001).box.tolist() == [[-0.5] * 3, [0.5] * 3]
+    for bad in (0, -1, np.nan, np.inf, "big"):
+        with pytest.raises(rc.InputError, match="scale"):
+            rc.Shape(trimesh.creation.box(), scale=bad)
+
+
+def test_columns_are_not_written_by_mistake(torus):
+    scene, _ = ring_scene(torus)
+    contacts = scene.find_contacts()
+    with pytest.raises(ValueError, match="read-only"):
+        contacts.depth[:] = 7
+    own = contacts.depth.copy()
+    own[:] = 7
+    assert not (scene.contacts.depth == 7).any()
+
+
+def test_slots_index_arrays_of_ones_own(torus):
+    scene, ids = ring_scene(torus)
+    scene.remove(ids[[0, 2]])
+    scene.find_contacts()
+    new = scene.add(torus, rc.pose([[0.5, 0, 0], [90, 0, 0], [99, 0, 0]]))
+    contacts = scene.find_contacts()
+    assert (new[:2] >= 2**32).all() and scene.slot_count == 9
+    push = np.zeros((scene.slot_count, 3))
+    np.add.at(push, contacts.slots[:, 0], -contacts.normal * contacts.depth[:, None])
+    assert push.any() and rc.Scene().slot_count == 0
+
+
+def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
+    good = rc.pose(np.zeros((4, 3)))
+    lost, drifted = good.copy(), good.copy()
+    lost[2] = np.nan
+    drifted[3, :3, :3] *= 1.001
+    with pytest.raises(rc.InputError, match=r"pose_b\[2\]: an entry is not a finite number"):
+        rc.distance(torus, torus, pose_b=lost)
+    with pytest.raises(rc.InputError, match=r"pose_a\[3\]: not rigid.*nearest_rigid"):
+        rc.collide(torus, torus, pose_a=drifted)
+    assert (
+        "576 triangles" in repr(torus.report)
+        and "pairs" in repr(rc.Scene().stats)
+        and "cpu" in repr(rc.list_devices()[0])
+    )
+
+
+def test_rotations_of_scipy_are_taken():
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_euler("z", 90, degrees=True)
+    assert np.allclose(rc.pose([1, 2, 3], rotation), rc.pose_from_quaternion([1, 2, 3], [1, 0, 0, 1]))

@@ -49,7 +49,9 @@ def _collide(options: argparse.Namespace) -> int:
 
 
 def _clash(options: argparse.Namespace) -> int:
-    found = rc.clash(options.files, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty())
+    found = rc.clash(
+        options.files, scale=options.scale, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty()
+    )
     for name, why in found.faults.items():
         print(f"not checked: {name}: {why}", file=sys.stderr)
     if options.json:
@@ -94,9 +96,9 @@ def main(arguments: list[str] | None = None) -> int:
     collide.add_argument("--pose", nargs="+", type=float, metavar="X", help="of B: x y z, or a 4 x 4 matrix by rows")
     collide.add_argument("--direction", default="reprojected", choices=["ray", "weighted", "reprojected", "refined"])
     collide.add_argument("--features", default="edges", choices=["vertices", "edges"])
-    for sub in (mesh, collide):
-        sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
     clash = command("clash", _clash, "Find the parts of an assembly that intersect")
+    for sub in (mesh, collide, clash):
+        sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
     clash.add_argument("files", nargs="+", metavar="FILE", help="of a glTF file each node with a mesh is a part")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)

@@ -38,8 +38,10 @@ def as_points(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
     raise InputError(f"{what}: has shape {array.shape}; give (3,) or (n, 3)")
 
 
-def as_poses(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
-    """(n, 4, 4) float64, and whether a single (4, 4) was given. None is the identity."""
+def as_poses(value: Any, what: str, rigid: bool = False) -> tuple[NDArray[np.float64], bool]:
+    """(n, 4, 4) float64, and whether a single (4, 4) was given. None is the identity.
+
+    rigid: looks for that here, where the C++ half would name a pose otherwise than the user."""
     if value is None:
         return np.eye(4)[None], True
     array = as_numbers(value, what)
@@ -48,13 +50,24 @@ def as_poses(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
             return np.empty((0, 4, 4)), False
         raise InputError(f"{what}: has shape {array.shape}; give (4, 4) or (n, 4, 4)")
     poses = np.ascontiguousarray(array.reshape(-1, 4, 4), np.float64)
-    wrong = ~(np.abs(poses[:, 3] - (0, 0, 0, 1)) <= 1e-4).all(axis=1)
-    if wrong.any():
-        where = "" if array.ndim == 2 else f"[{int(np.argmax(wrong))}]"
-        raise InputError(
-            f"{what}{where}: the last row is not 0 0 0 1; matrices have the translation in the last column"
+    _refuse(~np.isfinite(poses).all(axis=(1, 2)), array.ndim, what, "an entry is not a finite number")
+    last_row = (np.abs(poses[:, 3] - (0, 0, 0, 1)) <= 1e-4).all(axis=1)
+    _refuse(
+        ~last_row, array.ndim, what, "the last row is not 0 0 0 1; matrices have the translation in the last column"
+    )
+    if rigid:
+        turn = poses[:, :3, :3]
+        shear = np.abs(np.swapaxes(turn, 1, 2) @ turn - np.eye(3)).max(axis=(1, 2), initial=0.0)
+        bent = (shear > 1e-4) | (np.linalg.det(turn) <= 0)
+        _refuse(
+            bent, array.ndim, what, "not rigid to 1e-4 (sheared, scaled or mirrored); nearest_rigid mends what drifted"
         )
     return poses, array.ndim == 2
+
+
+def _refuse(wrong: Any, ndim: int, what: str, why: str) -> None:
+    if wrong.any():
+        raise InputError(f"{what}{'' if ndim == 2 else f'[{int(np.argmax(wrong))}]'}: {why}")
 
 
 def as_ids(value: Any, what: str) -> tuple[NDArray[np.int64], bool]:
@@ -89,6 +102,14 @@ def as_length(value: Any, what: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise InputError(f"{what}: {value!r} is no number") from None
+
+
+def as_scale(value: Any) -> float:
+    """What coordinates are multiplied by."""
+    scale = as_length(value, "scale")
+    if not 0 < scale < np.inf:
+        raise InputError(f"scale: {value!r} is not finite and above 0; 0.001 makes metres of millimetres")
+    return scale
 
 
 def as_count(value: Any, what: str) -> int:

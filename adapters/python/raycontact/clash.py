@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arrays import as_count, as_length, as_poses
 from ._core import InputError
-from .mesh import Mesh
+from .mesh import Mesh, scaled_parts
 
 
 class Clash(NamedTuple):
@@ -76,31 +76,43 @@ class Clashes(Sequence[Clash]):
             depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m" if clash.depth > 0 else "touching"
             same = "  (the same part in the same place)" if clash.duplicate else ""
             lines.append(f"{depth:>12}  {clash.a}  x  {clash.b}{same}")
-        return "\n".join([*lines, repr(self)[1:-1]])
+        lines.append(repr(self)[1:-1])
+        if self.open:
+            lines.append(f"open, so that nothing is inside: {_some(self.open)}")
+        if self.faults:
+            lines.append(f"not checked: {_some(list(self.faults))}")
+        return "\n".join(lines)
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
 def clash(
     assembly: Any,
     *,
+    scale: float = 1.0,
     ignore_touching: Optional[float] = None,
     threads: int = 0,
     progress: Union[bool, Callable[[float], Any]] = False,
 ) -> Clashes:
     """Every pair of parts that shares a point (exact), with the depth of its deepest contact.
 
-    assembly: a file or a list of files (of a glTF file each node with a mesh is a part); or a list of parts: each an
-        `AssemblyPart`, a tuple (name, mesh, pose) or a mesh where it lies. Parts stay where they are placed.
+    assembly: a file or a list of files (of a glTF file each node with a mesh is a part); a list of parts: each an
+        `AssemblyPart`, a tuple (name, mesh, pose) or a mesh where it lies; a dict of meshes by name; or a scene of
+        trimesh. Parts stay where they are placed.
+    scale: what coordinates and places are multiplied by; 0.001 for files in millimetres.
     ignore_touching: leaves out clashes no deeper than this, metres; 0: those that only touch. None leaves out none.
     progress: True draws a bar if tqdm is installed; or a function of what is done, from 0 to 1.
 
     Raises InputError for files that cannot be read, for fewer than two parts and for poses that are not rigid.
     """
-    parts = _parts_of(assembly)
+    parts = scaled_parts(_parts_of(assembly), scale)
     if len(parts) < 2:
         raise InputError(f"clash: {len(parts)} part given; give several, or a glTF file whose nodes are parts")
-    names = [name for name, _, _ in parts]
-    poses = np.ascontiguousarray(np.stack([pose for _, _, pose in parts]))
-    meshes = [mesh for _, mesh, _ in parts]
+    names = [part.name for part in parts]
+    poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
+    meshes = [part.mesh._core for part in parts]
     with _Bar(progress) as bar:
         found, pairs, faults, opened = _core.find_clashes(names, meshes, poses, as_count(threads, "threads"), bar.tell)
     clashes = [
@@ -113,23 +125,29 @@ def clash(
     return Clashes(clashes, names, pairs, {names[i]: why for i, why in faults}, [names[i] for i in opened])
 
 
-def _parts_of(assembly: Any) -> list[tuple[str, Any, np.ndarray]]:
+def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]]:
     if isinstance(assembly, (str, os.PathLike)):
         assembly = [assembly]
+    if hasattr(assembly, "graph") and hasattr(assembly, "geometry"):  # of trimesh
+        placed = [(node, *assembly.graph[node]) for node in assembly.graph.nodes_geometry]
+        assembly = [(node, assembly.geometry[geometry], pose) for node, pose, geometry in placed]
+    if isinstance(assembly, dict):
+        assembly = [(name, mesh, None) for name, mesh in assembly.items()]
     if not isinstance(assembly, (list, tuple)) or hasattr(assembly, "faces"):
-        raise InputError(f"clash: {type(assembly).__name__} is no file and no list of files or parts")
+        raise InputError(f"clash: {type(assembly).__name__} is no file, and no list or dict of files or parts")
     if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
-        return [(name, mesh, pose[0]) for name, mesh, pose in _core.load_parts([os.fspath(file) for file in assembly])]
+        return _core.load_parts([os.fspath(file) for file in assembly])
     made: dict[int, Mesh] = {}
     parts = []
     for i, item in enumerate(assembly):
         name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
-        matrices, one = as_poses(pose, f"part {i}: pose")
+        matrices, one = as_poses(pose, f"part {i}: pose", rigid=True)
         if not one:
             raise InputError(f"part {i}: pose: give one, (4, 4)")
         if id(mesh) not in made:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
-        parts.append((str(name if name is not None else made[id(mesh)].name or i), made[id(mesh)]._core, matrices[0]))
+        own = made[id(mesh)]
+        parts.append((str(name if name is not None else own.name or i), own._core, matrices.copy()))
     return parts
 
 

@@ -66,6 +66,7 @@ class Contacts:
 
     @classmethod
     def _from_bytes(cls: type[_Self], memory: NDArray[np.uint8]) -> _Self:
+        memory.flags.writeable = False  # the scene and its recorder look at the same memory
         return cls(memory.view(CONTACT_DTYPE))
 
     @property

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import Any, NamedTuple, Optional, Protocol, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_length, as_numbers
+from ._arrays import as_numbers, as_scale
 from ._core import InputError, MeshReport
 
 
@@ -135,9 +136,10 @@ def _make(vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str) ->
     if corners.size and (corners.min() < 0 or corners.max() > 0xFFFFFFFF):
         row = int(np.argmax(((corners < 0) | (corners > 0xFFFFFFFF)).any(axis=1)))
         raise InputError(f"triangle {row}: has the vertex {corners[row].tolist()}; indices begin at 0")
-    if scale != 1.0:
-        points = points * as_length(scale, "scale")
-    return _core.make_mesh(np.ascontiguousarray(points, np.float64), np.ascontiguousarray(corners, np.uint32), name)
+    points = np.ascontiguousarray(points, np.float64)
+    if as_scale(scale) != 1.0:
+        points = points * scale
+    return _core.make_mesh(points, np.ascontiguousarray(corners, np.uint32), name)
 
 
 def _scaled(core: _core.Mesh, scale: float, name: Optional[str]) -> _core.Mesh:
@@ -158,17 +160,27 @@ class AssemblyPart(NamedTuple):
     pose: NDArray[np.float64]
 
 
-def load_assembly(file: Union[str, os.PathLike[str]]) -> list[AssemblyPart]:
+def load_assembly(file: Union[str, os.PathLike[str]], *, scale: float = 1.0) -> list[AssemblyPart]:
     """Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh.
 
-    Raises InputError as `Mesh` does for a file.
+    scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. Raises InputError as `Mesh`
+    does for a file.
     """
-    shared: dict[int, Mesh] = {}
-    parts = []
-    for name, core, pose in _core.load_assembly(os.fspath(file)):
-        mesh = shared.setdefault(id(core), Mesh._wrap(core))  # the list keeps each core, so ids stay theirs
-        parts.append(AssemblyPart(name, mesh, pose[0]))
-    return parts
+    return scaled_parts(_core.load_assembly(os.fspath(file)), scale)
+
+
+def scaled_parts(parts: Iterable[tuple[str, _core.Mesh, NDArray[np.float64]]], scale: float) -> list[AssemblyPart]:
+    """Of parts as the C++ half gives them; those that share a mesh share it afterwards."""
+    by = as_scale(scale)
+    kept, shared = list(parts), {}  # the list keeps each core, so their ids stay theirs
+    made = []
+    for name, core, poses in kept:
+        if id(core) not in shared:
+            shared[id(core)] = Mesh._wrap(core if by == 1.0 else _scaled(core, by, None))
+        pose = poses[0]
+        pose[:3, 3] *= by
+        made.append(AssemblyPart(name, shared[id(core)], pose))
+    return made
 
 
 __all__ = ["AssemblyPart", "HasFaces", "Mesh", "MeshLike", "MeshReport", "load_assembly"]

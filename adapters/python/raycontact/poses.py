@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,10 @@ def pose(translation: ArrayLike = (0, 0, 0), rotation: Optional[ArrayLike] = Non
     Raises InputError for other shapes, and where numbers of translations and rotations differ.
     """
     t = as_numbers(translation, "translation")
-    r = np.eye(3) if rotation is None else as_numbers(rotation, "rotation")
+    turn: Any = rotation
+    if hasattr(turn, "as_matrix"):  # of SciPy
+        turn = turn.as_matrix()
+    r = np.eye(3) if turn is None else as_numbers(turn, "rotation")
     if t.shape[-1:] != (3,):
         raise InputError(f"translation: has shape {t.shape}; give (3,) or (n, 3)")
     if r.shape[-2:] != (3, 3):

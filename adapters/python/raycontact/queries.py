@@ -76,8 +76,8 @@ class _Pairs:
     ) -> None:
         self.a, one_a = as_shapes(a, "a")
         self.b, one_b = as_shapes(b, "b")
-        self.pose_a, one_pose_a = as_poses(pose_a, "pose_a")
-        self.pose_b, one_pose_b = as_poses(pose_b, "pose_b")
+        self.pose_a, one_pose_a = as_poses(pose_a, "pose_a", rigid=True)
+        self.pose_b, one_pose_b = as_poses(pose_b, "pose_b", rigid=True)
         self.is_one = one_a and one_b and one_pose_a and one_pose_b
         self.core = _core.PlacedPairs(self.a, self.pose_a, self.b, self.pose_b, as_count(threads, "threads"))
 
@@ -191,7 +191,7 @@ def closest_point(
     negative or NaN, and where numbers of points and poses differ; each may be there once for all.
     """
     places, one_point = as_points(points, "points")
-    matrices, one_pose = as_poses(pose, "pose")
+    matrices, one_pose = as_poses(pose, "pose", rigid=True)
     found = _core.closest_points(
         as_shape(shape)._core, matrices, places, as_length(max, "max"), as_count(threads, "threads")
     )
@@ -247,7 +247,7 @@ def contains(
     Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """
     places, one_point = as_points(points, "points")
-    matrices, one_pose = as_poses(pose, "pose")
+    matrices, one_pose = as_poses(pose, "pose", rigid=True)
     found = _core.contains(as_shape(shape)._core, matrices, places, as_count(threads, "threads")).view(np.bool_)
     return bool(found[0]) if one_point and one_pose else found
 
@@ -258,7 +258,7 @@ def _rays(
     """Starts, directions, poses, and whether a single one of each was given."""
     starts, one_origin = as_points(origins, "origins")
     along, one_direction = as_points(directions, "directions")
-    matrices, one_pose = as_poses(pose, "pose")
+    matrices, one_pose = as_poses(pose, "pose", rigid=True)
     return starts, along, matrices, one_origin and one_direction and one_pose
 
 

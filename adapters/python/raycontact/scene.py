@@ -218,6 +218,12 @@ class Scene:
         """(n,) int64: of all bodies, by slot."""
         return self._core.ids
 
+    @property
+    def slot_count(self) -> int:
+        """Rows of an array that `Contacts.slots` index: one more than the highest slot of a body that is there."""
+        ids = self._core.ids
+        return int(ids[-1] % 2**32) + 1 if len(ids) else 0
+
     def __contains__(self, id: _Id) -> bool:
         return self._core.has(as_id(id, "id"))
 

@@ -34,6 +34,7 @@ class Shape:
     `Shape(mesh)` takes whatever `Mesh` takes alone: a Mesh, a file, an object with `vertices` and `faces`. To make one
     costs some microseconds a triangle, so make it once.
 
+    scale: what coordinates are multiplied by; 0.001 for a mesh in millimetres.
     repair: drop degenerate and duplicate triangles, make windings agree, turn components as `nesting` says; `report`
         names what was done. False: change nothing.
     nesting: which way closed components wind: "as_wound" (outermost ones outward, those inside others as they are),
@@ -43,9 +44,17 @@ class Shape:
     Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
     """
 
-    def __init__(self, mesh: MeshLike, *, repair: bool = True, nesting: str = "as_wound", threads: int = 0) -> None:
-        if not isinstance(mesh, Mesh):
-            mesh = Mesh(mesh)
+    def __init__(
+        self,
+        mesh: MeshLike,
+        *,
+        scale: float = 1.0,
+        repair: bool = True,
+        nesting: str = "as_wound",
+        threads: int = 0,
+    ) -> None:
+        if not isinstance(mesh, Mesh) or scale != 1.0:
+            mesh = Mesh(mesh, scale=scale)
         self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), as_count(threads, "threads"))
 
     @classmethod

@@ -60,6 +60,11 @@ void bind_report(nb::module_& m) {
         .def(
             "to_json", [](const MeshReport& report) { return to_json(report); },
             "The JSON of `raycontact mesh --json`.")
+        .def("__repr__",
+             [](const MeshReport& report) {
+                 return "<MeshReport: " + std::to_string(report.triangles) + " triangles, " + verdict_of(report).text
+                        + ">";
+             })
         .def("__str__", [](const MeshReport& report) { return to_text(report); });
 }
 

@@ -7,6 +7,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <string>
+
 namespace nb = nanobind;
 
 namespace raycontact::python {
@@ -23,7 +25,9 @@ void bind_stats(nb::module_& m) {
         .def_ro("memory_bytes", &DeviceInfo::memory_bytes, "of its own; of a CPU the host's")
         .def_ro("exact", &DeviceInfo::exact, "its contacts have the bits of every other exact device's")
         .def_ro("usable", &DeviceInfo::usable, "it can be opened, as far as can be told without opening it")
-        .def_ro("why_not", &DeviceInfo::why_not, "empty when usable");
+        .def_ro("why_not", &DeviceInfo::why_not, "empty when usable")
+        .def("__repr__",
+             [](const DeviceInfo& device) { return "<DeviceInfo " + device.id + ": " + device.name + ">"; });
     m.def("list_devices", &list_devices,
           "The CPU, then every device that a driver offers, in the same order each time. Never raises for a missing "
           "driver.");
@@ -71,7 +75,11 @@ void bind_stats(nb::module_& m) {
         .def_ro("pair_bytes", &StepStats::pair_bytes, "memory kept for the open pairs")
         .def_ro("devices_lost", &StepStats::devices_lost, "that failed in this step")
         .def_ro("warnings", &StepStats::warnings, "in plain words, as of a device that failed")
-        .def_ro("details", &StepStats::details, "counts of work, for who measures");
+        .def_ro("details", &StepStats::details, "counts of work, for who measures")
+        .def("__repr__", [](const StepStats& stats) {
+            return "<StepStats: " + std::to_string(stats.pairs) + " pairs, " + std::to_string(stats.contacts)
+                   + " contacts, " + std::to_string(stats.narrow_ms) + " ms>";
+        });
 }
 
 } // namespace raycontact::python
